@@ -8,59 +8,94 @@ namespace collocation {
 
 constexpr double TINY = 1e-300, LEAST = 1e-18;
 
-// x and x' at the Gauss points of every interval; values and slopes are (m, m + 1), x and the results (N, m, d).
-inline void at_gauss_points(const double* values, const double* slopes, const double* x, whole count, whole m, whole d, double* points, double* rates) {
-    for (whole i = 0; i < count; i++) {
-        const double *own = x + i * m * d, *after = i + 1 < count ? own + m * d : x;
+// One cycle: N intervals of m Gauss points with d states; `free` where the period is an unknown (autonomous flows).
+struct Cycle {
+    whole count, degree, node, free;
+    const double *values, *slopes, *weights, *scale;  // of the rule, (m, m + 1) twice and (m); (d)
+    double clock, unit;                               // what counts as large in the period and in the parameter
+    double *points, *rates;                           // x and x' at the Gauss points, (N, m, d)
+    double *residual, *derivative;                    // F and F_p, (N m d + free + N)
+    double *blocks, *by_period, *phase;               // (N, m d, (m + 1) d), (N, m d), (N, m d), in units of the scales
+    double *columns, *rows, *foot, *left, *right, *states, *shared, *room;  // of `System`, where k = free + 1 and s = 2
+};
+
+// x and x' at the Gauss points of every interval.
+inline void at_gauss_points(const Cycle& y, const double* x) {
+    const whole m = y.degree, d = y.node;
+    for (whole i = 0; i < y.count; i++) {
+        const double *own = x + i * m * d, *after = i + 1 < y.count ? own + m * d : x;
         for (whole c = 0; c < m; c++) {
-            double *y = points + (i * m + c) * d, *z = rates + (i * m + c) * d;
-            for (whole a = 0; a < d; a++) y[a] = values[c * (m + 1) + m] * after[a], z[a] = slopes[c * (m + 1) + m] * after[a];
-            for (whole j = 0; j < m; j++) {
-                double v = values[c * (m + 1) + j], s = slopes[c * (m + 1) + j];
-                for (whole a = 0; a < d; a++) y[a] += v * own[j * d + a], z[a] += s * own[j * d + a];
-            }
+            const double *values = y.values + c * (m + 1), *slopes = y.slopes + c * (m + 1);
+            double *at = y.points + (i * m + c) * d, *rate = y.rates + (i * m + c) * d;
+            for (whole a = 0; a < d; a++) at[a] = values[m] * after[a], rate[a] = slopes[m] * after[a];
+            for (whole j = 0; j < m; j++)
+                for (whole a = 0; a < d; a++) at[a] += values[j] * own[j * d + a], rate[a] += slopes[j] * own[j * d + a];
         }
     }
 }
 
-// Derivatives of the equations of each interval by the values at its nodes, (N, m d, (m + 1) d), in units of the scales.
-inline void blocks_of(const double* values, const double* slopes, const double* steps, const double* jacobian, const double* scale,
-                      whole count, whole m, whole d, double* blocks) {
-    const whole width = (m + 1) * d;
-    for (whole i = 0; i < count; i++)
-        for (whole c = 0; c < m; c++)
+// Residual and derivatives from f, df/dx and df/dp (null of forced flows) at the Gauss points; the phase condition is of unit length. Returns what
+// its length was: 0 where nothing moves.
+inline double assemble(const Cycle& y, const double* widths, double period, const double* f, const double* jacobian, const double* slope) {
+    const whole m = y.degree, d = y.node, width = (m + 1) * d, states = y.count * m * d;
+    for (whole i = 0; i < states + y.free + y.count; i++) y.residual[i] = y.derivative[i] = 0.0;
+    if (y.free)
+        for (whole i = 0; i < states; i++) y.phase[i] = 0.0;
+    for (whole i = 0; i < y.count; i++) {
+        const double step = period * widths[i];
+        double *own = y.phase + i * m * d, *after = i + 1 < y.count ? own + m * d : y.phase;
+        for (whole c = 0; c < m; c++) {
+            const double *values = y.values + c * (m + 1), *slopes = y.slopes + c * (m + 1), weight = widths[i] * y.weights[c];
             for (whole a = 0; a < d; a++) {
-                const double* J = jacobian + ((i * m + c) * d + a) * d;
-                double *row = blocks + ((i * m + c) * d + a) * width, by = -steps[i] / scale[a];
+                const whole at = (i * m + c) * d + a;
+                const double *J = jacobian + at * d, by = -step / y.scale[a];
+                double* row = y.blocks + at * width;
                 for (whole j = 0; j <= m; j++) {
-                    double v = by * values[c * (m + 1) + j];
-                    for (whole b = 0; b < d; b++) row[j * d + b] = v * J[b] * scale[b];
-                    row[j * d + a] += slopes[c * (m + 1) + j];
+                    double v = by * values[j];
+                    for (whole b = 0; b < d; b++) row[j * d + b] = v * J[b] * y.scale[b];
+                    row[j * d + a] += slopes[j];
                 }
+                y.residual[at] = y.rates[at] - step * f[at];
+                if (slope) y.derivative[at] = -step * slope[at];
+                if (!y.free) continue;
+                const double direction = f[at] / y.scale[a];
+                y.by_period[at] = -widths[i] * direction * y.clock;
+                for (whole j = 0; j < m; j++) own[j * d + a] += values[j] * weight * direction;
+                after[a] += values[m] * weight * direction;
             }
+        }
+    }
+    double square = 0.0;
+    if (y.free)
+        for (whole i = 0; i < states; i++) square += y.phase[i] * y.phase[i];
+    const double length = sqrt(square);
+    if (length > 0.0)
+        for (whole i = 0; i < states; i++) y.phase[i] /= length;
+    return length;
 }
 
-// Reflections that clear the first columns of an array below its diagonal; the sign of the determinant of what is eliminated.
+using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
+inline whole padded(whole width) { return (width + 3) & ~whole(3); }  // rows of panels are multiples of four numbers
+inline void add(double* __restrict to, double by, const double* __restrict from, whole first, whole width) {
+    for (whole c = first; c < width; c += 4) *reinterpret_cast<Four*>(to + c) += by * *reinterpret_cast<const Four*>(from + c);
+}
+
+// Reflections that clear the first columns of an array below its diagonal; the sign of the determinant of what is eliminated. Loops begin at a multiple
+// of four: what stands left of the diagonal is of no use to anybody.
 inline double triangularise(double* a, whole rows, whole columns, whole width, double* dots) {
-    double sign = 1.0;
+    double sign = 1.0, reflected[64];
     for (whole j = 0; j < columns; j++) {
         double square = 0.0, head = a[j * width + j];
         for (whole i = j + 1; i < rows; i++) square += a[i * width + j] * a[i * width + j];
         if (square > 0.0) {
-            double norm = -copysign(sqrt(square + head * head), head), first = head - norm, by = 1.0 / (norm * first);
-            double* top = a + j * width;
-            for (whole c = j + 1; c < width; c++) dots[c] = first * top[c];
-            for (whole i = j + 1; i < rows; i++) {
-                double v = a[i * width + j];
-                if (v == 0.0) continue;
-                for (whole c = j + 1; c < width; c++) dots[c] += v * a[i * width + c];
-            }
-            for (whole c = j + 1; c < width; c++) dots[c] *= by, top[c] += first * dots[c];
-            for (whole i = j + 1; i < rows; i++) {
-                double v = a[i * width + j];
-                if (v == 0.0) continue;
-                for (whole c = j + 1; c < width; c++) a[i * width + c] += v * dots[c];
-            }
+            const whole from = (j + 1) & ~whole(3);
+            double norm = -copysign(sqrt(square + head * head), head), first = head - norm, by = 1.0 / (norm * first), *top = a + j * width;
+            double* v = rows <= 64 ? reflected : dots + width;
+            for (whole c = from; c < width; c += 4) *reinterpret_cast<Four*>(dots + c) = first * *reinterpret_cast<Four*>(top + c);
+            for (whole i = j + 1; i < rows; i++) v[i] = a[i * width + j], add(dots, v[i], a + i * width, from, width);
+            for (whole c = from; c < width; c += 4) *reinterpret_cast<Four*>(dots + c) *= by;
+            add(top, first, dots, from, width);
+            for (whole i = j + 1; i < rows; i++) add(a + i * width, v[i], dots, from, width);
             top[j] = norm, sign = -sign;
         }
         if (a[j * width + j] < 0.0) sign = -sign;
@@ -72,8 +107,7 @@ inline double triangularise(double* a, whole rows, whole columns, whole width, d
 inline void take_out(const double* panel, whole columns, whole width, double* row) {
     for (whole j = 0; j < columns; j++) {
         double y = row[j] / panel[j * width + j];
-        if (y == 0.0) continue;
-        for (whole c = j + 1; c < width; c++) row[c] -= y * panel[j * width + c];
+        if (y != 0.0) add(row, -y, panel + j * width, (j + 1) & ~whole(3), width);
     }
 }
 
@@ -143,8 +177,8 @@ struct System {
 };
 
 inline whole room_for(whole count, whole inner, whole d, whole k, whole s) {
-    const whole all = inner + d, width = inner + 2 * d + k + s, wide = 3 * d + k + s;
-    return count * (inner * width + d * wide) + all * width + 2 * d * wide + (k + 2) * (width + wide) + 2 * (d + k) * (d + k + s + 1) + 2 * d * s;
+    const whole all = inner + d, width = padded(inner + 2 * d + k + s), wide = padded(3 * d + k + s);
+    return count * (inner * width + d * wide) + all * width + 2 * d * wide + (k + 2) * (width + wide) + 2 * (d + k) * (d + k + s + 1) + 2 * d * s + all + d;
 }
 
 // The unknowns of one eliminated group: triangle R and R^-1 applied to what the panel holds right of it.
@@ -167,16 +201,17 @@ inline void back(const double* panel, whole n, whole width, const double* first,
 }
 
 inline double solve(const System& y) {
-    const whole N = y.count, n = y.inner, d = y.node, k = y.shared, s = y.sides, K = k + s, all = n + d, width = n + 2 * d + K, wide = 3 * d + K;
+    const whole N = y.count, n = y.inner, d = y.node, k = y.shared, s = y.sides, K = k + s, all = n + d, width = padded(n + 2 * d + K), wide = padded(3 * d + K);
     const whole widest = width > wide ? width : wide;
     double *kept = y.room, *chain = kept + N * n * width, *panel = chain + N * d * wide, *two = panel + all * width;
-    double *border = two + 2 * d * wide, *dots = border + k * widest, *small = dots + widest;
+    double *border = two + 2 * d * wide, *dots = border + k * widest, *small = dots + widest + all + d;
     double *sides = small + (d + k) * (d + k), *ends = sides + (d + k) * s, *foot = ends + 2 * d * s;
     double *at_first = foot + k * K, *here = at_first + k * d;
     auto* order = reinterpret_cast<whole*>(here + k * d);
     double sign = 1.0;
     for (whole i = 0; i < k * K; i++) foot[i] = y.foot[i];
     for (whole i = 0; i < k * d; i++) here[i] = 0.0;
+    for (whole i = 0; i < 2 * d * wide; i++) two[i] = 0.0;
     for (whole b = 0; b < N; b++) {
         const double *A = y.blocks + b * all * (n + 2 * d), *C = y.columns + b * all * K;
         for (whole i = 0; i < all; i++) {
@@ -185,6 +220,7 @@ inline double solve(const System& y) {
             for (whole c = 0; c < n; c++) row[c] = a[d + c];
             for (whole c = 0; c < d; c++) row[n + c] = a[c], row[n + d + c] = a[d + n + c];
             for (whole c = 0; c < K; c++) row[n + 2 * d + c] = C[i * K + c];
+            for (whole c = n + 2 * d + K; c < width; c++) row[c] = 0.0;
         }
         sign *= triangularise(panel, all, n, width, dots);
         for (whole i = 0; i < n * width; i++) kept[b * n * width + i] = panel[i];
@@ -197,6 +233,7 @@ inline double solve(const System& y) {
             for (whole c = 0; c < n; c++) row[c] = own[d + c];
             for (whole c = 0; c < d; c++) row[n + c] = own[c] + here[r * d + c], row[n + d + c] = 0.0;
             for (whole c = 0; c < K; c++) row[n + 2 * d + c] = foot[r * K + c];
+            for (whole c = n + 2 * d + K; c < width; c++) row[c] = 0.0;
             take_out(panel, n, width, row);
         }
         if (b == 0) {  // two: x_i | x_0 | x_(i + 1) | shared
@@ -224,6 +261,7 @@ inline double solve(const System& y) {
             double* row = dots;
             for (whole c = 0; c < d; c++) row[c] = from[c], row[d + c] = at_first[r * d + c], row[2 * d + c] = from[d + c];
             for (whole c = 0; c < K; c++) row[3 * d + c] = from[2 * d + c];
+            for (whole c = 3 * d + K; c < wide; c++) row[c] = 0.0;
             take_out(two, d, wide, row);
             for (whole c = 0; c < d; c++) at_first[r * d + c] = row[d + c], here[r * d + c] = row[2 * d + c];
             for (whole c = 0; c < K; c++) foot[r * K + c] = row[3 * d + c];
@@ -254,6 +292,108 @@ inline double solve(const System& y) {
         for (whole i = 0; i < d * s; i++) ends[i] = own[i];
     }
     return sign;
+}
+
+// [[F_u, F_p], [border]] x = (-F, n) and (0, 1), all in the user's units; the mesh keeps its widths. Returns the determinant's sign.
+inline double bordered(const Cycle& y, double closure, double corner, const double* border, double n, double* step, double* tangent) {
+    const whole N = y.count, m = y.degree, d = y.node, all = m * d, states = N * all, tail = states + y.free, size = tail + N, k = y.free + 1, K = k + 2;
+    double widths_n = 0.0, widths_p = 0.0;
+    for (whole i = tail; i < size; i++) widths_p -= border[i] * y.derivative[i] * y.unit, widths_n -= border[i] * -y.residual[i];
+    for (whole i = 0; i < N; i++)
+        for (whole r = 0; r < all; r++) {
+            const whole at = i * all + r;
+            double *column = y.columns + at * K, own = y.scale[r % d];
+            if (y.free) column[0] = y.by_period[at], y.rows[(i * k) * all + r] = y.phase[at];
+            column[k - 1] = y.derivative[at] / own * y.unit, column[k] = -y.residual[at] / own, column[k + 1] = 0.0;
+            y.rows[(i * k + k - 1) * all + r] = border[at] * own;
+        }
+    double* last = y.foot + (k - 1) * K;
+    if (y.free) {
+        y.foot[0] = corner, y.foot[1] = y.derivative[states] * y.unit, y.foot[2] = -y.residual[states], y.foot[3] = 0.0;
+        last[0] = border[states] * y.clock;
+    }
+    last[k - 1] = border[size] * y.unit + widths_p, last[k] = n + widths_n, last[k + 1] = 1.0;
+    double sign = solve({N, all - d, d, k, 2, closure, y.blocks, y.columns, y.rows, y.foot, y.left, y.right, y.states, y.shared, y.room});
+    for (whole i = 0; i < states; i++) step[i] = y.states[2 * i] * y.scale[i % d], tangent[i] = y.states[2 * i + 1] * y.scale[i % d];
+    if (y.free) step[states] = y.shared[0] * y.clock, tangent[states] = y.shared[1] * y.clock;
+    step[size] = y.shared[2 * k - 2] * y.unit, tangent[size] = y.shared[2 * k - 1] * y.unit;
+    for (whole i = tail; i < size; i++) step[i] = -y.residual[i] - y.derivative[i] * step[size], tangent[i] = -y.derivative[i] * tangent[size];
+    return sign;
+}
+
+// x of a x = b by Gauss's elimination with partial pivoting, both destroyed, for s right sides; false where a pivot vanishes.
+inline bool solve_plain(double* a, double* b, whole n, whole s) {
+    for (whole j = 0; j < n; j++) {
+        whole pivot = j;
+        for (whole i = j + 1; i < n; i++)
+            if (fabs(a[i * n + j]) > fabs(a[pivot * n + j])) pivot = i;
+        if (!(fabs(a[pivot * n + j]) > 0.0)) return false;
+        if (pivot != j) {
+            for (whole c = j; c < n; c++) swap(a[j * n + c], a[pivot * n + c]);
+            for (whole c = 0; c < s; c++) swap(b[j * s + c], b[pivot * s + c]);
+        }
+        for (whole i = j + 1; i < n; i++) {
+            double ratio = a[i * n + j] / a[j * n + j];
+            if (ratio == 0.0) continue;
+            for (whole c = j + 1; c < n; c++) a[i * n + c] -= ratio * a[j * n + c];
+            for (whole c = 0; c < s; c++) b[i * s + c] -= ratio * b[j * s + c];
+        }
+    }
+    for (whole j = n - 1; j >= 0; j--)
+        for (whole c = 0; c < s; c++) {
+            for (whole l = j + 1; l < n; l++) b[j * s + c] -= a[j * n + l] * b[l * s + c];
+            b[j * s + c] /= a[j * n + j];
+        }
+    return true;
+}
+
+// Shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d), in units of the scale; -1 where one is singular.
+inline double distance_to_rest(const double* jacobian, const double* rates, const double* scale, whole n, whole d, double* room) {
+    double least = HUGE_VAL, *a = room, *b = room + d * d;
+    for (whole i = 0; i < n; i++) {
+        for (whole r = 0; r < d; r++) {
+            for (whole c = 0; c < d; c++) a[r * d + c] = jacobian[(i * d + r) * d + c] / scale[r] * scale[c];
+            b[r] = rates[i * d + r] / scale[r];
+        }
+        if (!solve_plain(a, b, d, 1)) return -1.0;
+        double square = 0.0;
+        for (whole r = 0; r < d; r++) square += b[r] * b[r];
+        least = square < least ? square : least;
+    }
+    return sqrt(least);
+}
+
+// The maps from each mesh point to the next one between the planes across the motion (speeds (N, d)): (N, d - 1, d - 1). Returns the product of the
+// factors by which the motion's own direction grows, 1 but for errors; -1 where the cycle stands still or a factor is singular.
+inline double across(const double* left, const double* right, const double* speeds, whole count, whole d, double* maps, double* room) {
+    const whole e = d - 1;
+    double product = 1.0, *a = room, *b = a + d * d, *v = b + d * d, *w = v + d;
+    auto mirror = [&](const double* speed, double* to) {  // the reflection that takes the direction of motion to the first axis
+        double square = 0.0;
+        for (whole r = 0; r < d; r++) square += speed[r] * speed[r];
+        double size = sqrt(square), head = speed[0] + copysign(size, speed[0]), norm = square - speed[0] * speed[0] + head * head;
+        for (whole r = 0; r < d; r++) to[r] = (r ? speed[r] : head) * sqrt(2.0 / norm);
+        return copysign(size, -speed[0]);
+    };
+    for (whole i = 0; i < count; i++) {
+        for (whole r = 0; r < d * d; r++) a[r] = right[i * d * d + r], b[r] = -left[i * d * d + r];
+        const double here = mirror(speeds + i * d, v), there = mirror(speeds + (i + 1 < count ? i + 1 : 0) * d, w);
+        if (!(fabs(here) > 0.0) || !solve_plain(a, b, d, d)) return -1.0;
+        for (whole r = 0; r < d; r++) {  // b (1 - v v')
+            double dot = 0.0;
+            for (whole c = 0; c < d; c++) dot += b[r * d + c] * v[c];
+            for (whole c = 0; c < d; c++) b[r * d + c] -= dot * v[c];
+        }
+        for (whole c = 0; c < d; c++) {  // (1 - w w') b
+            double dot = 0.0;
+            for (whole r = 0; r < d; r++) dot += w[r] * b[r * d + c];
+            for (whole r = 0; r < d; r++) b[r * d + c] -= dot * w[r];
+        }
+        product *= b[0] * here / there;
+        for (whole r = 0; r < e; r++)
+            for (whole c = 0; c < e; c++) maps[(i * e + r) * e + c] = b[(r + 1) * d + c + 1];
+    }
+    return product;
 }
 
 }  // namespace collocation

@@ -82,12 +82,18 @@ EXPORT whole core_periodic_multipliers(const double* A, const double* D, whole l
 }
 
 // ---- cycles of flows -------------------------------------------------------------------------------------------------------------
-EXPORT void core_at_gauss_points(const double* values, const double* slopes, const double* x, whole count, whole m, whole d, double* points, double* rates) {
-    collocation::at_gauss_points(values, slopes, x, count, m, d, points, rates);
+EXPORT void core_cycle_points(const collocation::Cycle* cycle, const double* x) { collocation::at_gauss_points(*cycle, x); }
+EXPORT double core_cycle_assemble(const collocation::Cycle* cycle, const double* widths, double period, const double* f, const double* jacobian, const double* slope) {
+    return collocation::assemble(*cycle, widths, period, f, jacobian, slope);
 }
-EXPORT void core_collocation_blocks(const double* values, const double* slopes, const double* steps, const double* jacobian, const double* scale,
-                                    whole count, whole m, whole d, double* blocks) {
-    collocation::blocks_of(values, slopes, steps, jacobian, scale, count, m, d, blocks);
+EXPORT double core_cycle_bordered(const collocation::Cycle* cycle, double closure, double corner, const double* border, double n, double* step, double* tangent) {
+    return collocation::bordered(*cycle, closure, corner, border, n, step, tangent);
 }
 EXPORT double core_collocation(const collocation::System* system) { return collocation::solve(*system); }
 EXPORT whole core_collocation_room(whole count, whole inner, whole d, whole k, whole s) { return collocation::room_for(count, inner, d, k, s); }
+EXPORT double core_distance_to_rest(const double* jacobian, const double* rates, const double* scale, whole n, whole d, double* room) {
+    return collocation::distance_to_rest(jacobian, rates, scale, n, d, room);
+}
+EXPORT double core_across(const double* left, const double* right, const double* speeds, whole count, whole d, double* maps, double* room) {
+    return collocation::across(left, right, speeds, count, d, maps, room);
+}

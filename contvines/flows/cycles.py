@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from typing import Any
@@ -13,8 +14,8 @@ from ..problems.images import in_order, linear_part
 from ..problems.protocol import Embedding, ProblemDefaults, Seed, Symmetry
 from ..problems.scales import Scales
 from . import mesh
-from .assembly import at_gauss_points, blocks_of
 from .collocation import Rule, rule
+from .core import distance_to_rest
 from .field import Field
 from .forms import LARGEST, neimark_sacker, period_doubling
 from .kernels import KERNELS, CycleWork, linearise, spectrum
@@ -116,7 +117,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
     def workspace(self) -> CycleWork:
         """Arrays for the kernels."""
-        return CycleWork(self.dimension)
+        return CycleWork(self)
 
     @property
     def parameter(self) -> str:
@@ -191,39 +192,71 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         NotEvaluable
             If the right-hand side fails, or the period is not positive.
         """
-        r, count, d, m = self.rule, self.intervals, self.node, self.rule.degree
+        r, count = self.rule, self.intervals
         x, period, widths = self.parts(u, p)
         if not period > 0.0:
             raise NotEvaluable(f"the period would be {period:.3g}")
-        points, slopes = at_gauss_points(r, x)
-        steps = period * widths
-        long = np.repeat(steps, m)[:, None]
+        core = work.core
+        points = self._at_gauss_points(r.values, x) if core is None else core.at_gauss_points(x)
         begins = np.append(0.0, np.cumsum(widths)[:-1])
         places = (begins[:, None] + widths[:, None] * r.points).reshape(-1) if self.field.forced else None
         times = None if places is None else period * places
         f, jacobian = self.field(points, p, times), self.field.jacobian(points, p, times)
-        work.blocks = blocks_of(r, steps, jacobian, self.node_scale)
-        work.residual[:], work.derivative[:] = 0.0, 0.0
-        work.residual[: self.states] = (slopes - long * f).reshape(-1)
+        slope = self.field.slope(points, p) if places is None else None
+        if not math.isfinite(f.sum() + jacobian.sum() + (0.0 if slope is None else slope.sum())):
+            raise NotEvaluable("the right-hand side or its derivative is not finite along the cycle")
+        if core is not None:
+            size = core.assemble(widths, period, f, jacobian, slope)
+        else:
+            size = self._assemble(work, x, widths, period, f, jacobian, slope)
+        work.along = np.array(x[:, 0]), p, jacobian, f
         if places is not None:
             by = self.field.along(lambda q: self._moved(points, q, places, widths), p)
             work.derivative[: self.states] = -by.reshape(-1)
             return
-        work.derivative[: self.states] = -(long * self.field.slope(points, p)).reshape(-1)
+        if not size > 0.0:  # an equilibrium, which moves in no direction
+            work.phase[0, 0] = 1.0
+        if self.reference is not None:
+            phase, origin = self.reference
+            work.phase[:] = phase
+            gap = (x / self.node_scale).reshape(count, -1) - origin
+            work.residual[self.states] = (phase * gap).sum()
+
+    def _at_gauss_points(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
+        return np.einsum("cj,ijk->ick", matrix, mesh.closed(x)).reshape(-1, self.node)
+
+    def _assemble(
+        self,
+        work: CycleWork,
+        x: np.ndarray,
+        widths: np.ndarray,
+        period: float,
+        f: np.ndarray,
+        jacobian: np.ndarray,
+        slope: np.ndarray | None,
+    ) -> float:
+        """Residual, derivatives and phase condition, in numpy; see :meth:`contvines.flows.core.CoreCycle.assemble`."""
+        r, count, d, m = self.rule, self.intervals, self.node, self.rule.degree
+        steps = np.repeat(period * widths, m)[:, None]
+        scaled = steps[:, :, None] * jacobian * (self.node_scale / self.node_scale[:, None])
+        blocks = -np.einsum("cj,icab->icajb", r.values, scaled.reshape(count, m, d, d))
+        diagonal = np.arange(d)
+        blocks[:, :, diagonal, :, diagonal] += r.slopes
+        work.blocks[:] = blocks.reshape(count, m * d, (m + 1) * d)
+        work.residual[:], work.derivative[:] = 0.0, 0.0
+        work.residual[: self.states] = (self._at_gauss_points(r.slopes, x) - steps * f).reshape(-1)
+        if slope is None:
+            return 0.0
+        work.derivative[: self.states] = -(steps * slope).reshape(-1)
         direction = (f / self.node_scale).reshape(count, m, d)
-        work.by_period = -(widths[:, None, None] * direction * self.clock).reshape(count, m * d)
+        work.by_period[:] = -(widths[:, None, None] * direction * self.clock).reshape(count, m * d)
         row = np.matmul(r.values.T, (widths[:, None] * r.weights)[:, :, None] * direction)
         phase = row[:, :-1].copy()
         phase[1:, 0] += row[:-1, -1]
         phase[0, 0] += row[-1, -1]
-        size = np.sqrt((phase**2).sum())
-        work.phase = (phase / size if size > 0.0 else self._first_phase(phase)).reshape(count, m * d)
-        if self.reference is not None:
-            work.phase, origin = self.reference
-            work.residual[self.states] = (
-                work.phase * ((x / self.node_scale).reshape(count, -1) - origin)
-            ).sum()
-        work.along = np.array(x[:, 0]), p, jacobian, direction
+        size = float(np.sqrt((phase**2).sum()))
+        work.phase[:] = (phase / (size or 1.0)).reshape(count, m * d)
+        return size
 
     reference: tuple[np.ndarray, np.ndarray] | None = None
 
@@ -238,13 +271,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         work = self.workspace()
         self.evaluate(u, p, work)
         x = u[: self.states].reshape(self.intervals, -1, self.node) / self.node_scale
-        self.reference = work.phase, x.reshape(self.intervals, -1)
-
-    def _first_phase(self, phase: np.ndarray) -> np.ndarray:
-        """A row where the cycle is an equilibrium, which moves in no direction."""
-        row = np.zeros_like(phase)
-        row[0, 0, 0] = 1.0
-        return row
+        self.reference = work.phase.copy(), x.reshape(self.intervals, -1)
 
     def _moved(self, points: np.ndarray, p: Any, places: np.ndarray, widths: np.ndarray) -> np.ndarray:
         """Period times width times f, of forced flows, as a function of the parameter alone."""
@@ -258,8 +285,11 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         x = u[: self.states].reshape(-1, self.node) / self.node_scale
         size = float(np.ptp(x, axis=0).max())
         short = float(np.log10(LONGEST * self.clock / max(float(u[self.states]), 1e-300)))
-        _, _, jacobian, direction = work.along
-        closeness = _distance_to_rest(jacobian * (self.node_scale / self.node_scale[:, None]), direction)
+        _, _, jacobian, f = work.along
+        closeness = distance_to_rest(jacobian, f, self.node_scale) if work.core is not None else None
+        if closeness is None:
+            scaled = jacobian * (self.node_scale / self.node_scale[:, None])
+            closeness = _distance_to_rest(scaled, f / self.node_scale)
         if not size > 0.0 or not np.isfinite(closeness):
             return np.array([short])
         return np.array([min(short, float(np.log10(max(closeness / size, 1e-300) / CLOSE)))])
@@ -538,8 +568,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
 
 def _distance_to_rest(matrices: np.ndarray, rates: np.ndarray) -> float:
-    """The shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates; infinite if there is none."""
-    rates = rates.reshape(len(matrices), -1)
+    """The shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d); infinite if there is none."""
     try:
         steps = np.linalg.solve(matrices, rates[..., None])[..., 0]
     except np.linalg.LinAlgError:  # one of them is singular to the last bit

@@ -65,6 +65,7 @@ class Field:
             self.complex_step = self.functions._complex_step_works(start, values.start)
         self.compiled = f if isinstance(f, CompiledRates) else None
         self.many = self.many_jacobian = False
+        self.many_slope: dict[str, bool] = {}  # by the name of the parameter
         self._find_vectorised(start)
 
     def against(self, values: ParameterSet) -> Field:
@@ -205,9 +206,12 @@ class Field:
             given = given.get(self.values.varying)
         if given is None:
             return self.along(lambda q: self(x, q, t), p)
-        times = [None] * len(x) if t is None else t
-        parameters, pairs = self.values.at(p), zip(x, times, strict=True)
-        return np.array([self._one(given, y, parameters, s, (self.node,)) for y, s in pairs])
+        times, parameters, shape = [None] * len(x) if t is None else t, self.values.at(p), (self.node,)
+        if self.values.varying not in self.many_slope:
+            self.many_slope[self.values.varying] = self._agrees(given, x[:7], parameters, times[:7], shape)
+        if self.many_slope[self.values.varying]:
+            return self._stacked(given, x, parameters, t, shape)
+        return np.array([self._one(given, y, parameters, s, shape) for y, s in zip(x, times, strict=True)])
 
 
 def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:

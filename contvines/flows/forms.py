@@ -17,11 +17,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse import block_array, csc_array
+from scipy.sparse.linalg import splu
 
 from . import mesh
 
-LARGEST = 3000  # unknowns of one return up to which there are normal forms
+LARGEST = 100_000  # unknowns of one return up to which there are normal forms
 STEP = 0.02  # of differences of Jacobians, in lengths over which the right-hand side bends
 FIRST = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
 SECOND = ((1, 1.5), (2, -0.15), (3, 1.0 / 90.0))
@@ -57,30 +58,37 @@ class Return:
         self.times = period * places if problem.field.forced else None
         self.jacobian = problem.field.jacobian(self.points, p, self.times)
         f = problem.field(self.points, p, self.times)
-        size = self.states + self.free
-        whole, closure = np.zeros((size, size)), np.zeros((size, size))
-        blocks = np.einsum(
-            "cj,icab->icajb", r.values, -(self.steps[:, None, None] * self.jacobian).reshape(count, m, d, d)
-        )
+        self.size = self.states + self.free
+        own = -self.steps[:, None, None] * self.jacobian
+        blocks = np.einsum("cj,icab->icajb", r.values, own.reshape(count, m, d, d))
         diagonal = np.arange(d)
         blocks[:, :, diagonal, :, diagonal] += r.slopes
         blocks = blocks.reshape(count, m * d, (m + 1) * d)
-        for i in range(count):
-            rows = slice(i * m * d, (i + 1) * m * d)
-            whole[rows, rows] = blocks[i][:, : m * d]
-            if i < count - 1:
-                whole[rows, (i + 1) * m * d : (i + 1) * m * d + d] += blocks[i][:, m * d :]
-            else:
-                closure[rows, :d] = blocks[i][:, m * d :]
+        # triples of rows, columns and values; what belongs to x_N stands in the columns of x_0, in a matrix of its own
+        rows = np.repeat(np.arange(self.states), (m + 1) * d).reshape(blocks.shape)
+        columns = (
+            np.broadcast_to(np.arange((m + 1) * d), blocks.shape) + (m * d * np.arange(count))[:, None, None]
+        )
+        last = columns >= self.states
+        inside = [(blocks[~last], rows[~last], columns[~last])]
+        shape = (self.size, self.size)
+        self.closure = csc_array((blocks[last], (rows[last], columns[last] - self.states)), shape=shape)
         if self.free:
-            whole[: self.states, -1] = -(self.widths[:, None] * f).reshape(-1)
             speed = problem.field(x[:1, 0], p)[0]
-            whole[-1, :d] = speed / np.linalg.norm(speed)
-        self.whole, self.closure = whole, closure
+            along = -(self.widths[:, None] * f).reshape(-1)
+            inside.append((along, np.arange(self.states), np.full(self.states, self.states)))
+            inside.append((speed / np.linalg.norm(speed), np.full(d, self.states), np.arange(d)))
+        values, i, j = (np.concatenate([np.ravel(part[k]) for part in inside]) for k in range(3))
+        self.whole = csc_array((values, (i, j)), shape=shape)
 
-    def closed_by(self, factor: complex) -> np.ndarray:
+    def closed_by(self, factor: complex) -> csc_array:
         """J(m)."""
-        return self.whole + factor * self.closure
+        return csc_array(self.whole + factor * self.closure)
+
+    def solve(self, factor: complex, side: np.ndarray) -> np.ndarray:
+        """J(m)^-1 applied to a vector."""
+        matrix = self.closed_by(factor)
+        return splu(matrix).solve(side.astype(matrix.dtype))
 
     def parts(self, x: np.ndarray, factor: complex) -> tuple[np.ndarray, Any]:
         """A perturbation at the Gauss points, and that of the period."""
@@ -118,17 +126,17 @@ class Return:
 
     def critical(self, factor: complex) -> tuple[np.ndarray, np.ndarray, complex]:
         """Null vector of J(m), of unit length at x_0, the left one, and w.K v."""
-        matrix = self.closed_by(factor)
-        n = len(matrix)
-        # the singular matrix with a row and a column more, which have no pattern
-        edges = np.random.default_rng(6).standard_normal((2, n)) / np.sqrt(n)
-        factors = lu_factor(
-            np.block([[matrix, edges[:1].T], [edges[1:], np.zeros((1, 1))]]), check_finite=False
-        )
-        side = np.append(np.zeros(n), 1.0)
-        v, w = lu_solve(factors, side)[:-1], lu_solve(factors, side, trans=1)[:-1]
-        v = v / np.linalg.norm(v[: self.problem.node])
-        return v, w, complex(w @ self.closure @ v)
+        matrix, d, n = self.closed_by(factor), self.problem.node, self.size
+        # the singular matrix with a row for x_0 and a column for the last equations, which have no pattern
+        edges = np.random.default_rng(6).standard_normal((2, n))
+        edges[0, : self.states - self.problem.rule.degree * d] = 0.0
+        edges[1, d:] = 0.0
+        bordered = block_array([[matrix, edges[:1].T], [edges[1:], None]], format="csc", dtype=matrix.dtype)
+        factors = splu(bordered)
+        side = np.append(np.zeros(n), 1.0).astype(matrix.dtype)
+        v, w = factors.solve(side)[:-1], factors.solve(side, trans="T")[:-1]
+        v = v / np.linalg.norm(v[:d])
+        return v, w, complex(w @ (self.closure @ v))
 
 
 def _apply(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
@@ -142,7 +150,7 @@ def period_doubling(problem: Any, u: np.ndarray, p: float) -> float:
     v, w = np.real(v), np.real(w)
     here = system.parts(v, -1.0)
     one, two = system.bent(here[0])
-    h = np.linalg.solve(system.closed_by(1.0), -system.second(one, here, here))
+    h = system.solve(1.0, -system.second(one, here, here))
     third = -system.steps[:, None] * _apply(two, here[0]) - 3.0 * system.widths[:, None] * here[1] * _apply(
         one, here[0]
     )
@@ -160,8 +168,8 @@ def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -
     a1, a2 = system.bent(np.real(here[0]))
     b1, b2 = system.bent(np.imag(here[0]))
     along, against = a1 + 1j * b1, a1 - 1j * b1
-    h11 = np.linalg.solve(system.closed_by(1.0).astype(complex), -system.second(along, here, other))
-    h20 = np.linalg.solve(system.closed_by(m**2), -system.second(along, here, here))
+    h11 = system.solve(1.0 + 0j, -system.second(along, here, other))
+    h20 = system.solve(m**2, -system.second(along, here, here))
     t, s = here[1], other[1]
     third = -system.steps[:, None] * _apply(a2 + b2, here[0]) - system.widths[:, None] * (
         2.0 * t * _apply(along, other[0]) + s * _apply(along, here[0])

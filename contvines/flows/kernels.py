@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ..core.library import native
 from ..problems.functions import NotEvaluable
 from ..problems.kernels import Kernels
+from .core import CoreCycle, across
 from .elimination import condense, multipliers_of, solve_collocation
 from .mesh import closed
 
@@ -21,14 +23,13 @@ class CycleWork:
     by the period, ``phase`` (N, m d) the row of the phase condition.
     """
 
-    def __init__(self, n: int) -> None:
-        self.residual, self.derivative = np.zeros(n), np.zeros(n)
-        self.blocks: np.ndarray = np.zeros(0)
-        self.by_period: np.ndarray = np.zeros(0)
-        self.phase: np.ndarray = np.zeros(0)
-        self.along: Any = (
-            None  # of autonomous flows: mesh points, parameter, Jacobians and rates at the Gauss points
-        )
+    def __init__(self, data: Any) -> None:
+        count, inner, d, free = data.intervals, data.rule.degree * data.node, data.node, data.free_period
+        self.residual, self.derivative = np.zeros(data.dimension), np.zeros(data.dimension)
+        self.blocks = np.zeros((count, inner, inner + d))
+        self.by_period, self.phase = np.zeros((2, count, inner)) if free else np.zeros((2, 0))
+        self.core = CoreCycle(data, self) if native() else None
+        self.along: Any = None  # mesh points, parameter, Jacobians and rates at the Gauss points
         self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
         self.kept: Any = None  # by_period and phase, while the closure is turned round
         self.full: Any = (
@@ -52,17 +53,17 @@ def linearise(data: Any, u: np.ndarray, p: float, work: CycleWork) -> float:
         except (ArithmeticError, ValueError, np.linalg.LinAlgError):
             return math.inf
     size = float(np.abs(work.residual / data.row_scale).max())
-    whole = size + float(np.abs(work.blocks).sum()) + float(np.abs(work.derivative).sum())
-    if not whole < math.inf:
-        data.trouble = "the right-hand side or its derivative is not finite along the cycle"
-        return math.inf
-    return size
+    return size if size < math.inf else math.inf
 
 
 def bordered(
     data: Any, work: CycleWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant."""
+    core = work.core
+    if core is not None and work.full is None:
+        work.mesh = core.left, core.right
+        return core.bordered(work.closure, work.corner, border, n, step, tangent)
     columns = np.concatenate([data.column_scale, [data.parameter_scale]])
     sides = np.zeros((len(border), 2))
     sides[:-1, 0], sides[-1] = -work.residual / data.row_scale, (n, 1.0)
@@ -139,7 +140,6 @@ def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
     left, right = condensed(data, work)
     if not data.free_period:
         return multipliers_of(left, right), 0.0
-    steps = -np.linalg.solve(right, left)
     points, p, _, _ = work.along
     speeds = data.field(points, p) / data.node_scale
     sizes = np.linalg.norm(speeds, axis=1)
@@ -148,14 +148,19 @@ def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
             left, right
         )  # a cycle that is an equilibrium: all motions are as slow as none
         return np.delete(values, int(np.argmin(np.abs(values - 1.0)))), 0.0
+    maps, product = (planes if work.core is None else across)(left, right, speeds)
+    return multipliers_of(maps, np.broadcast_to(-np.eye(maps.shape[1]), maps.shape)), abs(product - 1.0)
+
+
+def planes(left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:
+    """:func:`contvines.flows.core.across` in numpy."""
+    steps, sizes = -np.linalg.solve(right, left), np.linalg.norm(speeds, axis=1)
     units = speeds / sizes[:, None]
-    across = np.linalg.qr(units[:, :, None], mode="complete")[0][:, :, 1:]
-    after = np.roll(across, -1, axis=0)
+    here = np.linalg.qr(units[:, :, None], mode="complete")[0][:, :, 1:]
+    there = np.roll(here, -1, axis=0)
     along = np.einsum("ij,ijk,ik->i", np.roll(units, -1, axis=0), steps, units)
     growth = along * sizes / np.roll(sizes, -1)
-    missed = float(np.abs(np.prod(growth) - 1.0))
-    factors = np.matmul(after.transpose(0, 2, 1), np.matmul(steps, across))
-    return multipliers_of(factors, np.broadcast_to(-np.eye(factors.shape[1]), factors.shape)), missed
+    return np.matmul(there.transpose(0, 2, 1), np.matmul(steps, here)), float(np.prod(growth))
 
 
 def inspect(data: Any, u: np.ndarray, p: float, work: CycleWork, row: np.ndarray) -> None:
@@ -209,10 +214,10 @@ def flip(data: Any, work: CycleWork, sign: float) -> None:
     if not data.free_period:
         return
     if sign < 0.0:
-        work.kept = work.by_period, work.phase
-        work.by_period, work.phase = np.zeros_like(work.by_period), np.zeros_like(work.phase)
+        work.kept = work.by_period.copy(), work.phase.copy()
+        work.by_period[:], work.phase[:] = 0.0, 0.0
     else:
-        work.by_period, work.phase = work.kept
+        work.by_period[:], work.phase[:] = work.kept
     work.corner = 1.0 if sign < 0.0 else 0.0
 
 

@@ -131,6 +131,11 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             elif point.criticality is None and not transcritical:
                 curvature = departure.curvature / target.amplitude(departure.direction) ** 2
                 point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
+                if isinstance(point.problem, Adaptive) and name == "minus":
+                    # the form of the return map: amplitudes of unknowns that differ much in size say less
+                    exact = point.problem.normal_form("period-doubling", point.u, point.value)
+                    if exact is not None:
+                        rough, point.criticality = exact, "supercritical" if exact > 0.0 else "subcritical"
                 exactly = partial(_cubic, point.problem, point.u, point.value, name, rough)
                 point.coefficient = rough if point.criticality is None else exactly
             elif transcritical:
@@ -205,9 +210,7 @@ def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
 
 def _cubic(problem: Problem, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
     """The coefficient from derivatives of the equations, where these can be had; else the one of the branch that leaves."""
-    if isinstance(problem, Adaptive) and name == "minus":
-        return problem.normal_form("period-doubling", u, p)
-    if len(u) > DERIVATIVES:
+    if isinstance(problem, Adaptive) or len(u) > DERIVATIVES:
         return rough
     with OPEN:
         exact = cubic_form(problem, u, p, flip=name == "minus")

@@ -1,0 +1,107 @@
+"""Cycles in the native core: arrays of one workspace, and the calls that fill them (native/collocation.hpp)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
+from ..core.records import pack, place
+
+
+class CoreCycle:
+    """Arrays of one workspace and their addresses.
+
+    Parameters
+    ----------
+    data : CycleProblem
+    work : CycleWork
+        Its arrays are those that are filled.
+    """
+
+    def __init__(self, data: Any, work: Any) -> None:
+        r, count, d = data.rule, data.intervals, data.node
+        m, k = r.degree, data.free_period + 1
+        self.points, rates = np.empty((2, count * m, d))
+        room = function("core_collocation_room", WHOLE, *[WHOLE] * 5)(count, (m - 1) * d, d, k, 2)
+        self.left, self.right = np.empty((2, count, d, d))
+        elimination = [
+            np.empty((count, m * d, k + 2)),
+            np.empty((count, k, m * d)),
+            np.zeros((k, k + 2)),
+            self.left,
+            self.right,
+            np.empty((count, m * d, 2)),
+            np.empty((k, 2)),
+            np.empty(room),
+        ]
+        own = [self.points, rates, work.residual, work.derivative, work.blocks, work.by_period, work.phase]
+        rules = [r.values, r.slopes, r.weights, np.array(data.node_scale)]
+        self.unit = data.parameter_scale
+        numbers = float(data.clock), float(data.parameter_scale)
+        self.kept = rules, own, elimination
+        self.record = pack(count, m, d, data.free_period, *rules, *numbers, *own, *elimination)
+        self.at = address(self.record)
+        self._points = function("core_cycle_points", NOTHING, POINTER, POINTER)
+        self._assemble = function("core_cycle_assemble", NUMBER, POINTER, POINTER, NUMBER, *[POINTER] * 3)
+        self._bordered = function(
+            "core_cycle_bordered", NUMBER, POINTER, NUMBER, NUMBER, POINTER, NUMBER, *[POINTER] * 2
+        )
+
+    def at_gauss_points(self, x: np.ndarray) -> np.ndarray:
+        """The states at the Gauss points, shape (N m, d), in an array that is used again."""
+        x = np.ascontiguousarray(x, dtype=float)
+        self._points(self.at, address(x))
+        return self.points
+
+    def assemble(
+        self, widths: np.ndarray, period: float, f: np.ndarray, jacobian: np.ndarray, slope: np.ndarray | None
+    ) -> float:
+        """Residual, derivatives and phase condition; returns the length that the row of the phase condition had."""
+        arrays = [np.ascontiguousarray(array, dtype=float) for array in (widths, f, jacobian)]
+        by = None if slope is None else np.ascontiguousarray(slope, dtype=float)
+        at = [address(array) for array in arrays]
+        return self._assemble(self.at, at[0], period, *at[1:], None if by is None else address(by))
+
+    def bordered(
+        self,
+        closure: float,
+        corner: float,
+        border: np.ndarray,
+        n: float,
+        step: np.ndarray,
+        tangent: np.ndarray,
+    ) -> float:
+        """See :func:`contvines.flows.kernels.bordered`."""
+        border = np.ascontiguousarray(border, dtype=float)
+        return self._bordered(self.at, closure, corner, address(border), n, place(step), place(tangent))
+
+
+def distance_to_rest(jacobian: np.ndarray, rates: np.ndarray, scale: np.ndarray) -> float | None:
+    """The shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d); None where a Jacobian is singular."""
+    arrays = [np.ascontiguousarray(array, dtype=float) for array in (jacobian, rates, scale)]
+    d = len(scale)
+    call = function("core_distance_to_rest", NUMBER, *[POINTER] * 3, WHOLE, WHOLE, POINTER)
+    found = call(*map(place, arrays), len(jacobian), d, place(np.empty(d * d + d)))
+    return found if found >= 0.0 else None
+
+
+def across(left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:
+    """Maps from each mesh point to the next one between the planes across the motion, (N, d - 1, d - 1), and the factor by which the
+
+    direction of motion grows round the cycle: the trivial multiplier, as computed.
+
+    Raises
+    ------
+    LinAlgError
+        If an interval's equations are singular.
+    """
+    count, d = speeds.shape
+    maps, room = np.empty((count, d - 1, d - 1)), np.empty(2 * d * (d + 1))
+    arrays = [np.ascontiguousarray(array, dtype=float) for array in (left, right, speeds)]
+    call = function("core_across", NUMBER, *[POINTER] * 3, WHOLE, WHOLE, POINTER, POINTER)
+    product = call(*map(place, arrays), count, d, place(maps), place(room))
+    if product == -1.0:
+        raise np.linalg.LinAlgError("the equations of an interval are singular")
+    return maps, product
