@@ -131,12 +131,13 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             elif point.criticality is None and not transcritical:
                 curvature = departure.curvature / target.amplitude(departure.direction) ** 2
                 point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
-                if isinstance(point.problem, Adaptive) and name == "minus":
+                own: Any = point.problem
+                if isinstance(own, Adaptive) and name == "minus":
                     # the form of the return map: amplitudes of unknowns that differ much in size say less
-                    exact = point.problem.normal_form("period-doubling", point.u, point.value)
+                    exact = own.normal_form("period-doubling", point.u, point.value)
                     if exact is not None:
                         rough, point.criticality = exact, "supercritical" if exact > 0.0 else "subcritical"
-                exactly = partial(_cubic, point.problem, point.u, point.value, name, rough)
+                exactly = partial(_cubic, own, point.u, point.value, name, rough)
                 point.coefficient = rough if point.criticality is None else exactly
             elif transcritical:
                 run.remark(point.label, TRANSCRITICAL)
