@@ -81,9 +81,9 @@ class CoreCycle:
 def distance_to_rest(jacobian: np.ndarray, rates: np.ndarray, scale: np.ndarray) -> float | None:
     """The shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d); None where a Jacobian is singular."""
     arrays = [np.ascontiguousarray(array, dtype=float) for array in (jacobian, rates, scale)]
-    d = len(scale)
+    d, room = len(scale), np.empty(len(scale) * (len(scale) + 1))
     call = function("core_distance_to_rest", NUMBER, *[POINTER] * 3, WHOLE, WHOLE, POINTER)
-    found = call(*map(place, arrays), len(jacobian), d, place(np.empty(d * d + d)))
+    found = call(*map(place, arrays), len(jacobian), d, place(room))
     return found if found >= 0.0 else None
 
 
