@@ -18,9 +18,11 @@ from .collocation import Rule, rule
 from .core import distance_to_rest
 from .field import Field
 from .forms import LARGEST, neimark_sacker, period_doubling
-from .kernels import KERNELS, CycleWork, linearise, spectrum
+from .kernels import KERNELS, SPARSE, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
 from .returns import ReturnMap
+from .sparse import LEADING, SparseEquations
+from .sparse import distance_to_rest as rest_of_sparse
 
 SAME = 1e-7  # points closer than this, in units of the scale, are one
 AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
@@ -85,7 +87,11 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         self.free_period = 0 if field.forced else 1
         self.states = self.intervals * self.rule.degree * self.node
         self.dimension = self.states + self.free_period + self.intervals
+        pattern = field.sparsity
+        self.sparse = None if pattern is None else SparseEquations(pattern, self.rule, self.intervals)
         self.n_multipliers = self.node - self.free_period
+        if self.sparse is not None:  # the largest ones alone
+            self.kernels, self.n_multipliers = SPARSE, min(LEADING, self.n_multipliers)
         self.n_margins = self.free_period
         self.u0 = np.array(u, dtype=float)
         if len(self.u0) != self.dimension:
@@ -201,7 +207,9 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         begins = np.append(0.0, np.cumsum(widths)[:-1])
         places = (begins[:, None] + widths[:, None] * r.points).reshape(-1) if self.field.forced else None
         times = None if places is None else period * places
-        f, jacobian = self.field(points, p, times), self.field.jacobian(points, p, times)
+        f = self.field(points, p, times)
+        derivative = self.field.jacobian if work.sparse is None else self.field.jacobian_entries
+        jacobian = derivative(points, p, times)
         slope = self.field.slope(points, p) if places is None else None
         if not math.isfinite(f.sum() + jacobian.sum() + (0.0 if slope is None else slope.sum())):
             raise NotEvaluable("the right-hand side or its derivative is not finite along the cycle")
@@ -238,11 +246,14 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         """Residual, derivatives and phase condition, in numpy; see :meth:`contvines.flows.core.CoreCycle.assemble`."""
         r, count, d, m = self.rule, self.intervals, self.node, self.rule.degree
         steps = np.repeat(period * widths, m)[:, None]
-        scaled = steps[:, :, None] * jacobian * (self.node_scale / self.node_scale[:, None])
-        blocks = -np.einsum("cj,icab->icajb", r.values, scaled.reshape(count, m, d, d))
-        diagonal = np.arange(d)
-        blocks[:, :, diagonal, :, diagonal] += r.slopes
-        work.blocks[:] = blocks.reshape(count, m * d, (m + 1) * d)
+        if work.sparse is not None:
+            work.entries = work.sparse.entries(period * widths, jacobian, self.node_scale)
+        else:
+            scaled = steps[:, :, None] * jacobian * (self.node_scale / self.node_scale[:, None])
+            blocks = -np.einsum("cj,icab->icajb", r.values, scaled.reshape(count, m, d, d))
+            diagonal = np.arange(d)
+            blocks[:, :, diagonal, :, diagonal] += r.slopes
+            work.blocks[:] = blocks.reshape(count, m * d, (m + 1) * d)
         work.residual[:], work.derivative[:] = 0.0, 0.0
         work.residual[: self.states] = (self._at_gauss_points(r.slopes, x) - steps * f).reshape(-1)
         if slope is None:
@@ -287,7 +298,9 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         short = float(np.log10(LONGEST * self.clock / max(float(u[self.states]), 1e-300)))
         _, _, jacobian, f = work.along
         closeness = distance_to_rest(jacobian, f, self.node_scale) if work.core is not None else None
-        if closeness is None:
+        if work.sparse is not None:
+            closeness = rest_of_sparse(work.sparse.pattern, jacobian, f, self.node_scale)
+        elif closeness is None:
             scaled = jacobian * (self.node_scale / self.node_scale[:, None])
             closeness = _distance_to_rest(scaled, f / self.node_scale)
         if not size > 0.0 or not np.isfinite(closeness):
@@ -474,7 +487,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
 
     def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> float | None:
         """The coefficient at a period doubling or a Neimark-Sacker point; None where there is none. See :mod:`contvines.flows.forms`."""
-        if self.states > LARGEST:
+        if self.states > LARGEST or self.sparse is not None:
             return None
         try:
             with np.errstate(all="ignore"):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from scipy.sparse import issparse
 
 from ..problems.algebraic import AlgebraicProblem
 from ..problems.protocol import Embedding
@@ -59,9 +60,10 @@ class Equilibria(AlgebraicProblem):
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
         """At a Hopf point: the cycles that are born there, with the direction in which their amplitude grows."""
-        if kind != "hopf" or self.functions.structure != "dense":
+        if kind != "hopf" or self.functions.structure == "free":
             return []
         matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
+        matrix = matrix.toarray() if issparse(matrix) else matrix
         decomposed: Any = np.linalg.eig(matrix)
         values, vectors = decomposed[0].astype(complex), decomposed[1].astype(complex)
         upper = np.flatnonzero(values.imag > 0.0)

@@ -7,11 +7,14 @@ from copy import copy
 from typing import Any
 
 import numpy as np
+from scipy.sparse import issparse
 
+from ..problems.colouring import Colouring
 from ..problems.derivatives import COMPLEX_STEP, Differentiated
 from ..problems.functions import NotEvaluable
 from ..problems.parameters import ParameterSet
 from .compiled import CompiledRates
+from .sparse import LARGE, found_sparsity
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so 1e-14 of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
@@ -67,6 +70,7 @@ class Field:
         self.many = self.many_jacobian = False
         self.many_slope: dict[str, bool] = {}  # by the name of the parameter
         self._find_vectorised(start)
+        self.sparsity = self._find_sparsity(start) if self.node >= LARGE else None
 
     def against(self, values: ParameterSet) -> Field:
         """The same field with other values of the parameters."""
@@ -117,7 +121,8 @@ class Field:
 
     def _one(self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]) -> np.ndarray:
         try:
-            value = np.array(f(*self._arguments(x.copy(), parameters, t)))
+            value = f(*self._arguments(x.copy(), parameters, t))
+            value = value.toarray() if issparse(value) else np.array(value)
         except (ArithmeticError, ValueError, TypeError, IndexError, np.linalg.LinAlgError) as error:
             raise NotEvaluable(f"the right-hand side fails: {error}") from error
         if value.shape != shape:
@@ -157,7 +162,50 @@ class Field:
             return False
         return bool(np.allclose(single, together, rtol=AGREE, atol=AGREE * np.abs(single).max(initial=0.0)))
 
+    def _find_sparsity(self, start: np.ndarray) -> Colouring | None:
+        """Where df/dx has entries, at places beside the start."""
+        noise, p = np.random.default_rng(9).uniform(-0.3, 0.3, (3, self.node)), self.values.start
+        t = np.array([0.3 * self.length_of_period(p)]) if self.forced else None
+        given, parameters = self.given_jacobian, self.values.at(p)
+
+        def jacobian(x: np.ndarray) -> Any:
+            if given is None:
+                return self.jacobian(x[None, :], p, t)[0]
+            return given(*self._arguments(x, parameters, None if t is None else t[0]))
+
+        try:
+            with np.errstate(all="ignore"):
+                return found_sparsity(jacobian, start + noise * self.lengths)
+        except NotEvaluable:
+            return None
+
     # ------------------------------------------------------------------ derivatives
+    def jacobian_entries(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
+        """The entries of a sparse df/dx at the points, shape (n, entries): in the order of the sparsity pattern."""
+        pattern = self.sparsity
+        assert pattern is not None
+        if self.given_jacobian is not None:
+            times, parameters = [None] * len(x) if t is None else t, self.values.at(p)
+            found = np.empty((len(x), len(pattern.indices)))
+            for i, (y, s) in enumerate(zip(x, times, strict=True)):
+                value = self.given_jacobian(*self._arguments(y, parameters, s))
+                value = value.tocsr() if issparse(value) else np.asarray(value)
+                found[i] = np.asarray(value[pattern.indices, pattern.columns]).reshape(-1)
+            return found
+        found = np.empty((len(x), len(pattern.indices)))
+        for group in range(pattern.count):
+            mask = pattern.groups == group
+            if self.complex_step:
+                total = np.imag(self(x + 1j * COMPLEX_STEP * mask, p, t)) / COMPLEX_STEP
+            else:
+                along = STEP * self.lengths * mask
+                total = _difference(lambda s, along=along: self(x + s * along, p, t)) / STEP
+            own = mask[pattern.columns]
+            found[:, own] = total[:, pattern.indices[own]]
+        if not self.complex_step:
+            found /= self.lengths[pattern.columns]
+        return found
+
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """df/dx at the points, shape (n, d, d)."""
         shape = (self.node, self.node)

@@ -13,6 +13,7 @@ from ..problems.kernels import Kernels
 from .core import CoreCycle, across
 from .elimination import condense, multipliers_of, solve_collocation
 from .mesh import closed
+from .sparse import SparseEquations, leading_multipliers, solve_bordered
 
 
 class CycleWork:
@@ -26,9 +27,11 @@ class CycleWork:
     def __init__(self, data: Any) -> None:
         count, inner, d, free = data.intervals, data.rule.degree * data.node, data.node, data.free_period
         self.residual, self.derivative = np.zeros(data.dimension), np.zeros(data.dimension)
-        self.blocks = np.zeros((count, inner, inner + d))
+        self.sparse: SparseEquations | None = data.sparse
+        self.entries: np.ndarray = np.zeros(0)  # of the derivatives, where they are sparse
+        self.blocks = np.zeros((count, inner, inner + d)) if self.sparse is None else np.zeros(0)
         self.by_period, self.phase = np.zeros((2, count, inner)) if free else np.zeros((2, 0))
-        self.core = CoreCycle(data, self) if native() else None
+        self.core = CoreCycle(data, self) if native() and self.sparse is None else None
         self.along: Any = None  # mesh points, parameter, Jacobians and rates at the Gauss points
         self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
         self.kept: Any = None  # by_period and phase, while the closure is turned round
@@ -103,14 +106,30 @@ def _solve(
     foot[-1, k - 1 :] = border[-1], *sides[-1]
     foot[-1, k - 1] += border[tail] @ widths[:, 0]
     foot[-1, k:] -= border[tail] @ widths[:, 1:]
+    if work.sparse is not None:
+        matrix = work.sparse.closed(work.entries, work.closure)
+        outer = np.concatenate(shared, axis=2).reshape(states, -1)
+        solved, sign = solve_bordered(
+            matrix,
+            outer[:, :k],
+            rows.transpose(1, 0, 2).reshape(k, states),
+            foot[:, :k],
+            np.concatenate([outer[:, k:], foot[:, k:]]),
+        )
+        return _placed(data, solved[:states], solved[states:], widths), sign
     solved = solve_collocation(work.blocks, np.concatenate(shared, axis=2), rows, foot, d, work.closure)
     work.mesh = solved.left, solved.right
-    found = np.empty((len(border), 2))
-    found[:states] = solved.states.reshape(states, 2)
-    found[states : states + free] = solved.shared[:free]
-    found[-1] = solved.shared[-1]
-    found[tail] = widths[:, 1:] + widths[:, :1] * solved.shared[-1]
-    return found, solved.sign
+    return _placed(data, solved.states.reshape(states, 2), solved.shared, widths), solved.sign
+
+
+def _placed(data: Any, states: np.ndarray, shared: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    """Solutions in the order of the unknowns, the parameter last."""
+    found = np.empty((data.dimension + 1, 2))
+    found[: data.states] = states
+    found[data.states : data.states + data.free_period] = shared[: data.free_period]
+    found[data.states + data.free_period : -1] = widths[:, 1:] + widths[:, :1] * shared[-1]
+    found[-1] = shared[-1]
+    return found
 
 
 def _solve_full(
@@ -137,6 +156,10 @@ def condensed(data: Any, work: CycleWork) -> tuple[np.ndarray, np.ndarray]:
 
 def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
     """Multipliers, of autonomous flows without the trivial one, and by how much that one, as computed, misses 1."""
+    if work.sparse is not None:
+        points, p, _, _ = work.along
+        speed = data.field(points[:1], p)[0] / data.node_scale if data.free_period else None
+        return leading_multipliers(work.sparse, work.entries, speed)
     left, right = condensed(data, work)
     if not data.free_period:
         return multipliers_of(left, right), 0.0
@@ -248,4 +271,6 @@ KERNELS = Kernels(
     matrix=matrix,
 )
 
-__all__ = ["KERNELS", "CycleWork", "closed"]
+SPARSE = Kernels(linearise, bordered, inspect, compiled=False, assign=assign, column=1)
+
+__all__ = ["KERNELS", "SPARSE", "CycleWork", "closed"]

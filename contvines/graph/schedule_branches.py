@@ -209,7 +209,7 @@ def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
     return int((np.abs(spectrum - critical) < CRITICAL).sum()) or None
 
 
-def _cubic(problem: Problem, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
+def _cubic(problem: Any, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
     """The coefficient from derivatives of the equations, where these can be had; else the one of the branch that leaves."""
     if isinstance(problem, Adaptive) or len(u) > DERIVATIVES:
         return rough

@@ -1,0 +1,182 @@
+"""Cycles of large flows whose Jacobian is sparse: the bordered system factorised as a whole, and the leading multipliers by ARPACK.
+
+A point costs as much as the factors of one matrix with N m d rows do; no matrix with d^2 entries is made.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, splu
+
+from ..problems.colouring import Colouring
+from ..problems.factors import SuperLUFactors
+
+LARGE = 30  # states from which on entries that are zero are looked for
+DENSE = 0.25  # part of the entries from which on a Jacobian counts as full
+LEADING = 10  # multipliers
+ACCURATE = 1e-11  # of multipliers, relative
+SMALL = 1e-8  # size of the border rows: they are chosen as pivots last, and the factors stay sparse
+
+
+def found_sparsity(jacobian: Any, places: np.ndarray) -> Colouring | None:
+    """Where a Jacobian has entries at some places, with groups of columns; None where it is not sparse.
+
+    Parameters
+    ----------
+    jacobian : callable
+        x (d,) -> array or sparse matrix (d, d).
+    places : ndarray, shape (k, d)
+    """
+    d = places.shape[1]
+    pattern = sp.identity(d, format="csc")
+    for x in places:
+        value = jacobian(x)
+        pattern = pattern + abs(sp.csc_array(value)).astype(bool).astype(float)
+    if pattern.nnz > DENSE * d * d:
+        return None
+    return Colouring(pattern, d)
+
+
+class SparseEquations:
+    """Where the derivatives of the collocation equations of a mesh have entries.
+
+    Parameters
+    ----------
+    pattern : Colouring
+        Of df/dx.
+    rule : Rule
+    count : int
+        Of intervals.
+    """
+
+    def __init__(self, pattern: Colouring, rule: Any, count: int) -> None:
+        m, d = rule.degree, pattern.n
+        self.rule, self.count, self.node, self.pattern = rule, count, d, pattern
+        self.states = count * m * d
+        interval, point, node = np.ix_(np.arange(count), np.arange(m), np.arange(m + 1))
+        block_row, block_column = (interval * m + point) * d + 0 * node, (interval * m + node) * d + 0 * point
+        rows = [
+            (block_row[..., None] + pattern.indices).reshape(-1),
+            (block_row[..., None] + np.arange(d)).reshape(-1),
+        ]
+        columns = [
+            (block_column[..., None] + pattern.columns).reshape(-1),
+            (block_column[..., None] + np.arange(d)).reshape(-1),
+        ]
+        self.rows, self.columns = np.concatenate(rows), np.concatenate(columns)
+
+    def entries(self, steps: np.ndarray, jacobian: np.ndarray, scale: np.ndarray) -> np.ndarray:
+        """The entries, from those of df/dx at the Gauss points, shape (N m, entries)."""
+        m = self.rule.degree
+        ratio = scale[self.pattern.columns] / scale[self.pattern.indices]
+        scaled = (jacobian * ratio).reshape(self.count, m, 1, -1)
+        one = -steps[:, None, None, None] * self.rule.values[None, :, :, None] * scaled
+        two = np.broadcast_to(self.rule.slopes[None, :, :, None], (self.count, m, m + 1, self.node))
+        return np.concatenate([one.reshape(-1), two.reshape(-1)])
+
+    def closed(self, entries: np.ndarray, closure: float) -> Any:
+        """F_u by the values at the nodes: what belongs to the last node of all stands, times the closure, with the first one."""
+        last = self.columns >= self.states
+        columns = np.where(last, self.columns - self.states, self.columns)
+        values = np.where(last, closure * entries, entries)
+        return sp.csc_array((values, (self.rows, columns)), shape=(self.states, self.states))
+
+    def opened(self, entries: np.ndarray) -> tuple[Any, Any]:
+        """By the values at the first node, and by those at all others: the equations as they stand if the first node is given."""
+        first = self.columns < self.node
+        start = sp.csc_array(
+            (entries[first], (self.rows[first], self.columns[first])), shape=(self.states, self.node)
+        )
+        rest = sp.csc_array(
+            (entries[~first], (self.rows[~first], self.columns[~first] - self.node)),
+            shape=(self.states, self.states),
+        )
+        return start, rest
+
+
+def solve_bordered(
+    matrix: Any, columns: np.ndarray, rows: np.ndarray, corner: np.ndarray, sides: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Solve [[matrix, columns], [rows, corner]] x = sides; solutions and the sign of the determinant.
+
+    Parameters
+    ----------
+    matrix : sparse, (n, n)
+    columns, rows, corner : ndarray, shapes (n, k), (k, n), (k, k)
+    sides : ndarray, shape (n + k, s)
+    """
+    n = matrix.shape[0]
+    sides = sides.copy()
+    sides[n:] *= SMALL
+    whole = sp.block_array([[matrix, columns], [SMALL * rows, SMALL * corner]], format="csc")
+    top = float(np.abs(matrix.data).max(initial=1.0))
+    for shift in (0.0, 1e-14 * top):
+        shifted = whole + shift * sp.identity(whole.shape[0], format="csc") if shift else whole
+        try:
+            factors = SuperLUFactors(shifted.tocsc(), "COLAMD")
+        except RuntimeError:
+            continue
+        x = factors.solve(sides)
+        more = factors.solve(sides - whole @ x)
+        return (x + more if np.isfinite(more).all() else x), (0.0 if shift else factors.sign)
+    return np.full(sides.shape, np.nan), 0.0
+
+
+def leading_multipliers(
+    equations: SparseEquations, entries: np.ndarray, speed: np.ndarray | None
+) -> tuple[np.ndarray, float]:
+    """The largest multipliers, without the trivial one where the speed at the first node is given, and by how much that one misses 1.
+
+    Raises
+    ------
+    LinAlgError
+        If they do not converge.
+    """
+    d, count = equations.node, min(LEADING, equations.node - (0 if speed is None else 1))
+    start, rest = equations.opened(entries)
+    try:
+        factors = splu(rest)
+    except RuntimeError as error:
+        raise np.linalg.LinAlgError(str(error)) from error
+
+    def round_once(v: np.ndarray) -> np.ndarray:
+        return -factors.solve(start @ v)[-d:]
+
+    missed, along = 0.0, np.zeros(d)
+    if speed is not None and (size := float(np.linalg.norm(speed))) > 0.0:
+        along = speed / size
+        missed = float(np.linalg.norm(round_once(along) - along))
+
+    def across(v: np.ndarray) -> np.ndarray:
+        v = np.ravel(v)
+        image = round_once(v - along * (along @ v))
+        return image - along * (along @ image)
+
+    if count >= d - 1:
+        values = np.linalg.eigvals(np.column_stack([across(v) for v in np.eye(d)]))
+    else:
+        operator = LinearOperator((d, d), matvec=across, dtype=float)  # type: ignore[call-arg]
+        v0 = np.random.default_rng(7).standard_normal(d)
+        try:
+            values = eigs(operator, k=count, v0=v0, tol=ACCURATE, return_eigenvectors=False)
+        except ArpackNoConvergence as error:
+            values = error.eigenvalues
+        except ArpackError as error:
+            raise np.linalg.LinAlgError(str(error)) from error
+    values = np.asarray(values, dtype=complex)
+    values = values[np.argsort(-np.abs(values), kind="stable")][:count]
+    return np.append(values, np.zeros(count - len(values))), missed
+
+
+def distance_to_rest(pattern: Colouring, jacobian: np.ndarray, rates: np.ndarray, scale: np.ndarray) -> float:
+    """The Newton step to an equilibrium from the slowest of some points, with Jacobians (n, entries) and rates (n, d), in units of the scale."""
+    slow = int(np.argmin(((rates / scale) ** 2).sum(axis=1)))
+    matrix = sp.csc_array((jacobian[slow], (pattern.indices, pattern.columns)), shape=(pattern.n, pattern.n))
+    try:
+        step = splu(matrix).solve(rates[slow])
+    except RuntimeError:
+        return np.inf
+    return float(np.linalg.norm(step / scale))
