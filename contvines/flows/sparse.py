@@ -108,13 +108,13 @@ def solve_bordered(
     columns, rows, corner : ndarray, shapes (n, k), (k, n), (k, k)
     sides : ndarray, shape (n + k, s)
     """
-    n = matrix.shape[0]
+    n = len(columns)
     sides = sides.copy()
     sides[n:] *= SMALL
     whole = sp.block_array([[matrix, columns], [SMALL * rows, SMALL * corner]], format="csc")
     top = float(np.abs(matrix.data).max(initial=1.0))
     for shift in (0.0, 1e-14 * top):
-        shifted = whole + shift * sp.identity(whole.shape[0], format="csc") if shift else whole
+        shifted = whole + shift * sp.identity(len(sides), format="csc") if shift else whole
         try:
             factors = SuperLUFactors(shifted.tocsc(), "COLAMD")
         except RuntimeError:
@@ -161,7 +161,8 @@ def leading_multipliers(
         operator = LinearOperator((d, d), matvec=across, dtype=float)  # type: ignore[call-arg]
         v0 = np.random.default_rng(7).standard_normal(d)
         try:
-            values = eigs(operator, k=count, v0=v0, tol=ACCURATE, return_eigenvectors=False)
+            options: Any = {"k": count, "v0": v0, "tol": ACCURATE, "return_eigenvectors": False}
+            values = eigs(operator, **options)
         except ArpackNoConvergence as error:
             values = error.eigenvalues
         except ArpackError as error:
