@@ -86,7 +86,7 @@ class Cycle:
         """Duration, in the machine's own time."""
         if not self.forced:
             return float(self.nodes[:, 0].sum())
-        return 2.0 * np.pi * self.periods / self.parameters[self.model.phase_rate]
+        return 2.0 * np.pi * self.periods / float(self.model.phase_speed(self.params))
 
     @cached_property
     def symmetric(self) -> bool:

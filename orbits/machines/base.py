@@ -179,6 +179,11 @@ class Model(Varying):
         j = cls.parameter_names.index(name)
         return params[j] if params.ndim == 1 else params[..., j]
 
+    @classmethod
+    def phase_speed(cls, params: np.ndarray) -> Any:
+        """How fast the phase grows, in radians per unit of the machine's own time; shapes follow `params` (..., P)."""
+        return cls.column(params, cls.phase_rate)
+
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter cannot have.
 

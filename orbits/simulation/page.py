@@ -64,9 +64,8 @@ class PageTrajectory:
     @property
     def impact_times(self) -> np.ndarray:
         """Instants of the impacts, in the machine's time."""
-        rate = self.machine.phase_rate
-        speed = 1.0 if rate is None else self.params[self.machine.parameter_names.index(rate)]
-        return self.clocks[1:][[kind == HIT for _, kind, _ in self.events]] / speed
+        hits = [kind == HIT for _, kind, _ in self.events]
+        return self.clocks[1:][hits] / self.machine.phase_speed(self.params)
 
     @property
     def chatters(self) -> int:

@@ -266,9 +266,7 @@ class PageEquations:
 
     def clock_rate(self, numbers: np.ndarray) -> Any:
         """Clock per unit of time, from runtime numbers (L, ...)."""
-        if not self.forced:
-            return 1.0
-        return numbers[:, self.machine.parameter_names.index(str(self.machine.phase_rate))]
+        return self.machine.phase_speed(numbers)
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
         """Of the impact at a place: the rate of its wall's gap; the wall's push changes it."""

@@ -74,7 +74,7 @@ def measure(
 def _periods(machine: Any, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     if not machine.forced:
         return nodes[:, :, 0].sum(axis=1)
-    return 2.0 * np.pi * periods / params[:, machine.parameter_names.index(machine.phase_rate)]
+    return 2.0 * np.pi * periods / machine.phase_speed(params)
 
 
 def _spans(machine: Any, periods: int, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

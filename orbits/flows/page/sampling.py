@@ -42,7 +42,7 @@ def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
     clock = np.concatenate(clocks)
     result = {}
     if orbit.model.forced:
-        result["time"] = clock / orbit.parameters[str(orbit.model.phase_rate)]
+        result["time"] = clock / orbit.model.phase_speed(orbit.params)
         result["phase"] = first + clock
     else:
         result["time"] = clock

@@ -40,8 +40,7 @@ class Stepper:
         self.machine, self.params = machine, np.asarray(params, dtype=float)
         self.compiled, self.equations = machine.compiled, machine.equations
         self.absent = machine.absent(self.params)
-        rate = machine.phase_rate
-        self.clock_rate = 1.0 if rate is None else float(self.params[machine.parameter_names.index(rate)])
+        self.clock_rate = float(machine.phase_speed(self.params))
         self.state = np.zeros(machine.size)
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()

@@ -21,6 +21,7 @@ from orbits.machines.page.formulas import PageError
 from orbits.machines.page.mirror import MirrorImage
 from orbits.machines.page.page import Page, page_of
 from orbits.machines.page.patterns import Equations
+from orbits.machines.page.si import Units
 from orbits.machines.parameters import ParameterError
 from orbits.machines.varying import Varying
 from orbits.words.alphabet import Alphabet
@@ -49,6 +50,9 @@ class Machine(Varying):
         other values (a slope that is not zero) symmetric orbits and mirror images are looked for only if it holds there, too.
     starts : mapping of str to (low, high), optional
         Ranges of the states among which atlases and basins draw their starts; by default twice what the motion from rest reaches.
+    units : mapping of str to str, optional
+        Units of parameters and states by name, ``{"gap": "mm", "frequency": "Hz"}``: in them they are given (a text such as "1.2 mm" in any of
+        its kind) and shown. The formulas of the page see SI units; what has no unit here they see as it is.
 
     Raises
     ------
@@ -70,7 +74,10 @@ class Machine(Varying):
         phase_rate: str | None = None,
         mirror: Mapping[str, str] | None = None,
         starts: Mapping[str, tuple[float, float]] | None = None,
+        units: Mapping[str, str] | None = None,
     ) -> None:
+        self._units = Units(units, states, tuple(parameters), phase_rate)
+        parameters = {key: self._units.number(key, value) for key, value in parameters.items()}
         names.check_names(name, states, parameters, phase_rate, contacts)
         self.name = name
         self.states = tuple(states)
@@ -79,7 +86,9 @@ class Machine(Varying):
         self.starts = names.check_starts(starts, self.states)
         self.phase_rate, self.contacts = phase_rate, tuple(contacts)
         self.page: Page = page_of(motion)
-        self.equations = Equations(self.states, self.parameter_names, phase_rate, motion, self.contacts)
+        self.equations = Equations(
+            self.states, self.parameter_names, phase_rate, motion, self.contacts, self._units.factors
+        )
         params = self.vector()
         flips = self.equations.flips = checks.check_contacts(self.equations, params)
         image = None if mirror is None else MirrorImage(self.equations, params, mirror)
@@ -110,6 +119,11 @@ class Machine(Varying):
         return {"phase": SYMBOLS["phase"]}
 
     @property
+    def units(self) -> dict[str, str]:
+        """Units of parameters, states and measures by name; plain numbers have none."""
+        return self._units.shown(self.states)
+
+    @property
     def default_parameter(self) -> str:
         """The parameter that varies when none is named: the forcing's frequency, else the first."""
         return self.phase_rate or self.parameter_names[0]
@@ -131,7 +145,7 @@ class Machine(Varying):
         ParameterError
             If a name is unknown, or a value is not finite or out of range.
         """
-        given = dict(values or {})
+        given = {key: self._units.number(key, value) for key, value in dict(values or {}).items()}
         for key, value in given.items():
             if key not in self.parameters:
                 raise ParameterError(no_parameter(key, f"the machine {self.name!r}", self.parameter_names))
@@ -145,6 +159,13 @@ class Machine(Varying):
         for key, value in merged.items():
             self.check_value(key, value)
         return np.array([merged[key] for key in self.parameter_names])
+
+    def phase_speed(self, params: np.ndarray) -> Any:
+        """How fast the phase grows, in radians per unit of time; of a self-excited machine 1: shapes follow `params` (..., P)."""
+        if self.phase_rate is None:
+            return 1.0
+        speed = params[..., self.parameter_names.index(self.phase_rate)]
+        return speed * self.equations.factors.get(self.phase_rate, 1.0)
 
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter cannot have: the forcing's frequency, limits of friction and coefficients of restitution

@@ -119,6 +119,8 @@ class Equations:
     phase_rate : Symbol or None
     formulas_of_motion : callable
         As the page gives it.
+    factors : mapping of str to float
+        What one of a parameter or state is in SI units: the formulas of a page see SI units, all else the units that are shown.
     flips : dict of (wall, contact) to int or None
         What impacts do to the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
     """
@@ -130,8 +132,9 @@ class Equations:
         phase_rate: str | None,
         motion: Any,
         contacts: tuple[Any, ...],
+        factors: Mapping[str, float] | None = None,
     ) -> None:
-        self.states, self.contacts = states, contacts
+        self.states, self.contacts, self.factors = states, contacts, dict(factors or {})
         self.formulas_of_motion = motion
         self._patterns: dict[PatternKey, Pattern] = {}
         self.flips: Mapping[tuple[int, int], int | None] = {}
@@ -141,11 +144,11 @@ class Equations:
         self.signed = tuple(signed)
         self.x = [variable(name) for name in self.layout.states]
         self.clock = variable(CLOCK)
-        self.p = Named("p", {name: variable(f"p_{name}") for name in parameters})
+        self.p = Named("p", {name: self._in_si(name, variable(f"p_{name}")) for name in parameters})
         self.sign = {j: variable(f"sign_{contacts[j].name}") for j in signed}
         self.phase_rate = None if phase_rate is None else getattr(self.p, phase_rate)
         self.phase: Any = NoPhase() if phase_rate is None else self.clock
-        self.state = States(states, self.x)
+        self.state = States(states, [self._in_si(name, x) for name, x in zip(states, self.x)])
         self.gap, self.push, self.restitution = {}, {}, {}
         self.velocity, self.limit, self.surface = {}, {}, {}
         for j, contact in enumerate(contacts):
@@ -155,6 +158,7 @@ class Equations:
                     self.quantity(
                         contact.push.get(name, 0.0), f"the push of wall {contact.letter!r} on {name}"
                     )
+                    / self.factors.get(name, 1.0)
                     for name in states
                 ]
                 self.restitution[j] = self.quantity(
@@ -208,7 +212,12 @@ class Equations:
                 f"motion returns {len(rates)} rate{'s' if len(rates) != 1 else ''} for {len(self.states)} states "
                 f"({', '.join(self.states)}); return one rate per state, in their order"
             )
-        return [self._symbol(rate, f"motion's rate of {name}") for rate, name in zip(rates, self.states)]
+        told = [self._symbol(rate, f"motion's rate of {name}") for rate, name in zip(rates, self.states)]
+        return [rate / self.factors.get(name, 1.0) for rate, name in zip(told, self.states)]
+
+    def _in_si(self, name: str, shown: Any) -> Any:
+        """A parameter or state as the formulas see it."""
+        return shown * self.factors.get(name, 1.0)
 
     # ------------------------------------------------------------------ derivatives
     def along(self, value: Symbol, rates: Sequence[Symbol]) -> Symbol:

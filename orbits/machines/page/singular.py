@@ -49,8 +49,10 @@ def _on_numbers(
 ) -> Iterator[tuple[str, Callable]]:
     """What each formula of the page is, and its call with numbers in place of symbols."""
     names = [name.removeprefix("p_") for name in e.layout.numbers[: len(params)]]
-    p = Named("p", dict(zip(names, map(np.float64, params))))
-    arguments = States(e.states, [np.float64(x) for x in state]), e.phase, p
+    si = e.factors
+    p = Named("p", {name: np.float64(value) * si.get(name, 1.0) for name, value in zip(names, params)})
+    x = [np.float64(x) * si.get(name, 1.0) for name, x in zip(e.states, state)]
+    arguments = States(e.states, x), e.phase, p
     if e.phase_rate is not None:
         arguments = (arguments[0], np.float64(clock), p)
     forces = {}

@@ -78,6 +78,22 @@ def size(unit: str, kind: str) -> float | None:
     return found if math.isfinite(found) and found > 0.0 else None
 
 
+@cache
+def in_si(unit: str) -> float:
+    """What one of a unit is in SI units, radians and all.
+
+    Raises
+    ------
+    QuantityError
+        If it is no unit.
+    """
+    units = registry()
+    try:
+        return float(units.Quantity(1.0, units.parse_units(unit)).to_base_units().magnitude)
+    except Exception:  # pint refuses in many ways; which one does not matter
+        raise QuantityError(f"{unit!r} is no unit that is known; 'mm' or 'N s/m' would do") from None
+
+
 def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]:
     """A quantity as a number and the unit in which it was given.
 

@@ -1,0 +1,59 @@
+"""Units on a page: numbers are given and shown in them, the page's formulas see SI units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from contvines.shared.near_names import did_you_mean
+from orbits.machines.page.formulas import PageError
+from orbits.machines.physical.quantities import QuantityError
+from orbits.machines.physical.units import counted, in_si, size
+
+OF_A_STATE = ("max", "min", "first", "strobe")
+"""Measures that are values of a state."""
+
+
+class Units:
+    """Units by name of parameter or state; the clock is SI, a forcing's frequency in hertz counts turns.
+
+    Raises
+    ------
+    PageError
+        If a name or a unit is unknown.
+    """
+
+    def __init__(
+        self,
+        said: Mapping[str, str] | None,
+        states: Sequence[str],
+        parameters: Sequence[str],
+        phase_rate: str | None,
+    ) -> None:
+        self.said, self.factors = dict(said or {}), {}
+        for name, unit in self.said.items():
+            if name not in (*states, *parameters):
+                hint = did_you_mean(name, [*states, *parameters])
+                raise PageError(f"units: {name!r} is no state and no parameter{hint}")
+            try:
+                self.factors[name] = in_si(unit)
+            except QuantityError as error:
+                raise PageError(f"units: {name} = {error}") from None
+            if name == phase_rate:
+                turns = size(unit, "rad/s")
+                if turns is None:
+                    raise PageError(f"units: {name} = {unit!r}: a forcing's frequency is in 'Hz' or 'rad/s'")
+                self.factors[name] = turns
+
+    def number(self, name: str, value: Any) -> Any:
+        """A value, such as "1.2 mm", counted in the unit of its name; what is no text is a number in that unit already."""
+        return counted(name, value, self.said.get(name, "")) if isinstance(value, str) else value
+
+    def shown(self, states: Sequence[str]) -> dict[str, str]:
+        """Units of parameters, states and measures by name."""
+        if not self.said:
+            return {}
+        of_states = {
+            f"{kind}_{name}": self.said[name] for name in states if name in self.said for kind in OF_A_STATE
+        }
+        return {**self.said, **of_states, "period": "s", "time": "s"}
