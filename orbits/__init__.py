@@ -25,10 +25,8 @@ _PLACES = {
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
 lead(
     {
-        "attractor": "orbits.attractors.recurrence:find_attractor",
-        "attractor_of_page": "orbits.declared.attractor:find_attractor",
-        "attractors": "orbits.attractors.sweep:different_attractors",
-        "attractors_of_page": "orbits.declared.attractor:find_attractors",
+        "attractor": "orbits.attractors.search:find_attractor",
+        "attractors": "orbits.attractors.search:different_attractors",
         "deviation_of_page": "orbits.declared.deviation:deviation",
         "find": "orbits.starts.find:find",
         "find_on_page": "orbits.declared.starts:find",

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.declared.attractor import witness
 from orbits.flows.native.cycle_equations import unit_nodes
+from orbits.flows.protocol import SimulationError
 from orbits.simulation.native import NativeSimulator
 from orbits.simulation.section import Section, VariedSection, section_of_page
+from orbits.words import Word
 
 
 class Simulated:
@@ -35,29 +36,29 @@ class Simulated:
             "word" (None where there is none), "periods" and "kind" of each motion, sorted.
         """
         params, generator = self.values(p), np.random.default_rng(7)
-        if self.model.flow == "page":
-            return witness(self.model, params, starts)
         named = dict(zip(self.model.parameter_names, map(float, params)))
         found: dict[tuple[str, int, str], dict[str, Any]] = {}
         for i in range(starts):
             start = None if i == 0 else self.model.random_start(params, generator)
-            motion = find_attractor(self.model, start, max_period=12, patience=1, **named)
-            word = motion.word
-            text = None if word is None else word.spelled()
+            try:
+                motion = find_attractor(self.model, start, max_period=12, patience=1, **named)
+            except SimulationError:
+                continue  # it lies within a wall
+            text = None if motion.word is None else _told(motion.word)
             key = (text or "", int(motion.periods), motion.kind)
             found[key] = {"word": text, "periods": int(motion.periods), "kind": motion.kind}
         return [found[key] for key in sorted(found)]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
         """A stable motion as `witness` tells of it."""
-        if self.model.flow == "page":
-            return {
-                "word": self.word.canonical().text or None,
-                "periods": self.periods,
-                "kind": "periodic",
-            }
-        kind = "periodic" if self.word.impacts else "sliding" if len(self.word) else "stuck"
-        return {"word": self.word.spelled(), "periods": self.periods, "kind": kind}
+        kind = (
+            "periodic"
+            if self.word.impacts or self.model.flow == "page"
+            else "sliding"
+            if len(self.word)
+            else "stuck"
+        )
+        return {"word": _told(self.word), "periods": self.periods, "kind": kind}
 
     def section(self, p: float) -> Section | VariedSection:
         """Its motions by simulation, once per period of the cycle.
@@ -75,3 +76,8 @@ class Simulated:
             raise ValueError("the absorber that never slides has no section")
         unit = unit_nodes(self.word, self.model.node, self.units)[0]
         return Section(NativeSimulator(self.model, params), self.word, self.periods, unit)
+
+
+def _told(word: Any) -> str:
+    """One spelling for one motion, mirror images apart."""
+    return word.spelled() if isinstance(word, Word) else word.canonical().text

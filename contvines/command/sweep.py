@@ -82,12 +82,9 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
     from contvines.command.sweep_rows import FIRST, Rows, kept
 
     model = machine(study)
-    if study.machine is not None:
-        from orbits.declared.sweep import measure_names
-        from orbits.declared.sweep import sweep as simulate
-    else:
-        from orbits.attractors.sweep import measure_names
-        from orbits.attractors.sweep import sweep as simulate
+    from orbits.attractors.sweep import measure_names
+    from orbits.attractors.sweep import sweep as simulate
+
     low, high = study.sweep.within or study.within
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
     others: dict[str, Any] = {k: v for k, v in loose(study).items() if k != study.parameter}

@@ -53,71 +53,13 @@ class Kept:
 
 def kept(row: Any, direction: str, names: list[str]) -> Kept:
     """A row of `orbits.attractors.sweep` as it is kept; `names` are the measures in the CSV's order."""
-    found = row.detail
-    if hasattr(row, "dots"):
-        return _declared(row, direction, names)
+    found, guess = row.detail, row.detail.guess
     kind = "periodic" if row.attractor == "sliding" else row.attractor
     cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
     cells += [repr(float(row.measures[n])) for n in names]
     cells.append(str(int(found.symmetric)) if found.recurrent else "")
-    cells.append(_nodes(found))
-    dots = [float(row.measures["max_abs_q1"])] if "max_abs_q1" in row.measures else _impacts(found)
-    return Kept(cells, row.attractor, found.recurrent, dots, [float(x) for x in found.state])
-
-
-def _declared(row: Any, direction: str, names: list[str]) -> Kept:
-    """A row of a declared machine's sweep."""
-    orbit = row.detail.orbit
-    cells = [repr(row.value), direction, row.attractor, row.word, str(row.periods), str(row.impacts)]
-    cells += [repr(float(row.measures[n])) for n in names]
-    cells.append("" if orbit is None else str(int(orbit.symmetric)))
-    cells.append("" if orbit is None else json.dumps([[float(x) for x in node] for node in orbit.nodes]))
-    return Kept(cells, row.attractor, orbit is not None, row.dots, [float(x) for x in row.state])
-
-
-def _nodes(found: Any) -> str:
-    """The nodes as a study's `guess` takes them, read as the word is spelled; empty where no word describes the motion."""
-    if found.word is None:
-        return ""
-    if not len(found.word):
-        return "[]"  # stuck
-    orbit, place = found.orbit, _first_place(found)
-    if orbit.word.rotate(place) != _read(found):
-        orbit = orbit.mirror()
-    orbit = orbit.rotate(place) if place else orbit
-    return json.dumps([[float(x) for x in node] for node in orbit.nodes])
-
-
-def _read(found: Any) -> Any:
-    from orbits.words import Word
-
-    return Word.parse(found.text, found.word.frictionless)
-
-
-def _first_place(found: Any) -> int:
-    """Which of an attractor's events is the first one of its word as it is spelled."""
-    read, images = _read(found), (found.word, found.word.mirror())
-    return next(k for image in images for k in range(len(image)) if image.rotate(k) == read)
-
-
-def _impacts(found: Any) -> list[float]:
-    """B = (B+ - B-)/2, positive away from the wall, at every impact: from the word's first on.
-
-    B = v' - w', and v' does not change at an impact: B is half the jump of -w'.
-    """
-    import numpy as np
-
-    from orbits.attractors.sweep import follow
-
-    run = follow(found)
-    hits = run.codes < 2
-    away = 1.0 - 2.0 * run.codes[hits]  # L = 0, R = 1
-    jumps = 0.5 * away * (run.rows[hits, 3] - run.rows[hits, 4])
-    if found.periods and len(found.nodes):
-        first = _first_place(found) if found.word is not None else 0
-        since = run.phases[hits] - found.nodes[first, 0] + 1e-4
-        jumps = jumps[np.argsort(since % (2.0 * np.pi * found.periods))]
-    return [float(b * found.model.gauge("velocity", found.params)) for b in jumps]
+    cells.append("" if guess is None else json.dumps([[float(x) for x in node] for node in guess]))
+    return Kept(cells, row.attractor, found.recurrent, row.dots, [float(x) for x in found.state])
 
 
 def journal_of(target: Path) -> Path:

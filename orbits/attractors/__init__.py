@@ -4,11 +4,13 @@ The function `sweep` hides the module of the same name; ``from orbits.attractors
 """
 
 from orbits.attractors.attractor import Attractor
-from orbits.attractors.recurrence import find_attractor
-from orbits.attractors.sweep import SweepRow, different_attractors, find_attractors, sweep, sweeps
+from orbits.attractors.page import PageAttractor
+from orbits.attractors.search import different_attractors, find_attractor
+from orbits.attractors.sweep import SweepRow, find_attractors, sweep, sweeps
 
 __all__ = [
     "Attractor",
+    "PageAttractor",
     "SweepRow",
     "different_attractors",
     "find_attractor",

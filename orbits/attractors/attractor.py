@@ -7,15 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from orbits.attractors.settled import Settled
 from orbits.cycles.cycle import Cycle
-from orbits.doors import above
 from orbits.machines.stepping import Machine
+from orbits.orbit import Orbit
+from orbits.simulation.driver import follow
 from orbits.simulation.return_map import cyclic_distance
-from orbits.simulation.trajectory import LETTERS
+from orbits.simulation.trajectory import LETTERS, Trajectory
+from orbits.words import Word
 
 
 @dataclass(frozen=True, eq=False)
-class Attractor:
+class Attractor(Settled):
     """The motion that is left after a transient.
 
     Attributes
@@ -87,8 +90,6 @@ class Attractor:
 
         None where the motion has none: chaos, persistent contact, frictionless motion off the walls.
         """
-        from orbits.words import Word
-
         if not self.recurrent or np.any(self.codes > 4) or (self.kind == "sliding" and not len(self.codes)):
             return None
         frictionless = self.model.frictionless(self.params)
@@ -121,17 +122,55 @@ class Attractor:
         return Cycle(self.model, word, self.periods, nodes, self.params)
 
     @property
-    def orbit(self) -> Any:
-        """The attractor as an `orbits.orbit.Orbit`, ready for continuation; see `cycle`."""
-        return above("Orbit").of(self.cycle)
+    def found(self) -> Orbit:
+        """The attractor as an orbit, ready for continuation; see `cycle`."""
+        return Orbit.of(self.cycle)
 
-    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
-        """The attractor as a continuation problem, so that it can be handed to `contvines.diagram`; see `cycle` for what is raised."""
-        return self.orbit.problem(parameter, symmetric)
+    orbit = found
 
-    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
-        """Unknowns and parameter value in `problem`."""
-        return self.orbit.seed(problem)
+    @property
+    def guess(self) -> np.ndarray | None:
+        """The nodes as a study's `guess` takes them, read as the word is spelled; None where no word describes the motion."""
+        if self.word is None:
+            return None
+        if not len(self.word):
+            return np.empty((0, self.machine.node))  # stuck
+        orbit, place = self.found, self._first_place
+        if orbit.word.rotate(place) != self._read:
+            orbit = orbit.mirror()
+        return (orbit.rotate(place) if place else orbit).nodes
+
+    @property
+    def _read(self) -> Word:
+        """The word as it is spelled."""
+        return Word.parse(self.text, self.word.frictionless)
+
+    @property
+    def _first_place(self) -> int:
+        """Which of the events is the first one of the word as it is spelled."""
+        read, images = self._read, (self.word, self.word.mirror())
+        return next(k for image in images for k in range(len(image)) if image.rotate(k) == read)
+
+    def follow(self, periods: float | None = None) -> Trajectory:
+        """The motion from `state`: over one cycle, or sixteen periods where nothing recurs."""
+        length = periods if periods is not None else self.periods or (1 if self.kind == "stuck" else 16)
+        return follow(self.model, self.machine, self.params, self.state.copy(), length, 100_000)
+
+    @property
+    def dots(self) -> list[float]:
+        """B = (B+ - B-)/2, positive away from the wall, at every impact: from the word's first on.
+
+        B = v' - w', and v' does not change at an impact: B is half the jump of -w'.
+        """
+        run = self.follow()
+        hits = run.codes < 2
+        away = 1.0 - 2.0 * run.codes[hits]  # L = 0, R = 1
+        jumps = 0.5 * away * (run.rows[hits, 3] - run.rows[hits, 4])
+        if self.periods and len(self.nodes):
+            first = self._first_place if self.word is not None else 0
+            since = run.phases[hits] - self.nodes[first, 0] + 1e-4
+            jumps = jumps[np.argsort(since % (2.0 * np.pi * self.periods))]
+        return [float(b * self.model.gauge("velocity", self.params)) for b in jumps]
 
     def distance(self, other: Attractor) -> float:
         """Largest difference of the nodes, over all rotations, shifts by 2 pi and the mirror image.

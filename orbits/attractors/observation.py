@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from orbits.attractors.attractor import Attractor
+from orbits.flows.native.measures import gauged
 from orbits.machines.states import state_of
 from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS
 from orbits.simulation.driver import collect
@@ -92,6 +94,31 @@ def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
         impacts_per_period=seen.impacts_per_period,
         impact_speed=seen.impact_speed,
     )
+
+
+def measure_names(model: Any) -> tuple[str, ...]:
+    """Measures in a sweep's rows.
+
+    ``max_abs_w``; ``impact_speed``: fastest approach |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
+    ``max_abs_q1``: largest displacement of the cavity; in the reduced model ``C2``: squared amplitude of its motion.
+    Motions that do not recur are looked at until these numbers settle.
+    """
+    own = ("C2",) if "amplitude" in model.parameter_names else ("max_abs_q1",)
+    return (*own, "max_abs_w", "impact_speed", "impacts_per_period")
+
+
+def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
+    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
+    seen, model, params = observe(found), found.model, found.params
+    known = {name: getattr(seen, name, np.nan) for name in measure_names(model)}
+    if "C2" in known:
+        known["C2"] = float(params[model.parameter_names.index("amplitude")]) ** 2
+    return lasting(found, seen), gauged(model, params, known)
+
+
+def dots(found: Attractor, measures: Mapping[str, float]) -> list[float]:
+    """What a picture shows: the largest |q1|, or B at every impact."""
+    return [float(measures["max_abs_q1"])] if "max_abs_q1" in measures else found.dots
 
 
 class _Tally:

@@ -9,7 +9,6 @@ import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.creeping import move_on
-from orbits.attractors.observation import lasting
 from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate, touches
 from orbits.machines.states import event_states, nodes_of
 from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine, V
@@ -18,6 +17,8 @@ from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import TWO_PI
 
 EVENTS_PER_PERIOD = 400
+PATIENCE = 2
+"""How often a sweep prolongs the transient fourfold before a motion is said not to recur: weakly damped ones settle late."""
 UNSTABLE = 1e-5
 PASSING, CLOSED = 0.99, 1e-9  # a slower recurrence, open by more, passes beside a fold
 NEARLY = 1e-3  # nodes of a slow motion differ by less from one recurrence to the next
@@ -26,76 +27,36 @@ TO_WALLS = 8  # times that a creeping motion is moved on to a wall
 AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
 
 
-def find_attractor(
-    model: Any,
-    start: Mapping[str, float] | np.ndarray | None = None,
-    *,
-    transient: float = 300,
-    max_period: int = 16,
-    tolerance: float = 1e-6,
-    patience: int = 2,
-    **parameters: float,
-) -> Attractor:
-    """Simulate, leave out the transient, and recognise what is left.
-
-    Parameters
-    ----------
-    model : Model
-        The machine.
-    start : mapping or ndarray, optional
-        As for `orbits.simulation.simulate`; by default the absorber starts from rest in the middle of the cavity.
-    transient : float
-        Forcing periods left out first.
-    max_period : int
-        Longest recurrence looked for, in forcing periods.
-    tolerance : float
-        Largest difference of two nodes that may count as a return; the orbit is then polished.
-    patience : int
-        How often the transient is prolonged fourfold when nothing recurs.
-    **parameters
-        Parameters that are no fields of the machine (`amplitude`), or that replace them.
-
-    Returns
-    -------
-    Attractor
-
-    Raises
-    ------
-    SimulationError
-        If the start or the lengths cannot be.
-    """
-    return lasting(
-        left_over(
-            model,
-            start,
-            transient=transient,
-            max_period=max_period,
-            tolerance=tolerance,
-            patience=patience,
-            **parameters,
-        )
-    )
-
-
 def left_over(
     model: Any,
     start: Mapping[str, float] | np.ndarray | None = None,
-    *,
     transient: float = 300,
     max_period: int = 16,
     tolerance: float = 1e-6,
     patience: int = 2,
     **parameters: float,
 ) -> Attractor:
-    """`find_attractor`, a motion that does not recur not yet observed (see `orbits.attractors.observation.lasting`)."""
-    if max_period < 1:
-        raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
-    if not (np.isfinite(transient) and transient >= 0.0):
-        raise SimulationError(f"transient = {transient}: give a number of forcing periods, 0 or above")
+    """The attractor of a start, one that does not recur not yet observed (see `orbits.attractors.observation.lasting`)."""
     params = model.vector(parameters)
     engine = machine(model.name)
     state = first_state(model, engine, params, start)
     return settle(model, engine, params, state, transient, max_period, tolerance, patience)
+
+
+def begun(model: Any, params: np.ndarray, start: Any) -> np.ndarray:
+    """The state of a start, shape (S,)."""
+    return first_state(model, machine(model.name), params, start)
+
+
+def carried(
+    model: Any, params: np.ndarray, state: np.ndarray, nudge: float, transient: float, max_period: int
+) -> Attractor:
+    """The attractor that a sweep's motion goes on to with other parameters."""
+    engine, state = machine(model.name), state.copy()
+    if nudge and state[MODE] != 0.0:
+        state[RATE] += nudge * np.sign(state[MODE])
+    engine.launch(state, params)
+    return settle(model, engine, params, state, transient, max_period, patience=PATIENCE)
 
 
 def settle(
@@ -108,7 +69,7 @@ def settle(
     tolerance: float = 1e-6,
     patience: int = 2,
 ) -> Attractor:
-    """`find_attractor` from a state, which is moved along (for sweeps)."""
+    """The attractor of a state, which is moved along."""
     state[TURNS] = 0.0
     length = float(transient)
     window = _Window(engine, params)

@@ -11,17 +11,9 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from contvines.shared.processes import ATTEMPTS, spread
-from orbits.attractors.attractor import Attractor
-from orbits.attractors.observation import Observation, lasting, observe
-from orbits.attractors.recurrence import find_attractor, settle
-from orbits.flows.native.measures import gauged
-from orbits.machines.stepping import MODE, RATE
-from orbits.simulation.driver import SimulationError, collect, first_state, machine
-from orbits.simulation.trajectory import Trajectory
-
-SAME = 1e-4  # difference of the nodes of one motion met twice
-PATIENCE = 2
-"""How often the transient is prolonged fourfold before a motion is said not to recur: weakly damped ones settle late."""
+from orbits.attractors import observation, page, recurrence
+from orbits.attractors.search import find_attractor
+from orbits.flows.protocol import SimulationError
 
 
 @dataclass(frozen=True)
@@ -35,15 +27,15 @@ class SweepRow:
     direction : str
         ``up`` or ``down``.
     attractor : str
-        ``periodic``, ``sliding``, ``stuck``, ``chatter`` or ``chaotic``; see `orbits.attractors.attractor.Attractor`.
+        Its kind; see `orbits.attractors.attractor.Attractor` and `orbits.attractors.page.PageAttractor`.
     word : str
         Events of the cycle; empty where nothing recurs.
     periods, impacts : int
         k and l of the cycle; 0 where nothing recurs.
     measures : dict
         Numbers by name, the same names in every row; see `measure_names`.
-    detail : Attractor
-        The attractor itself, with its nodes.
+    detail : Attractor or PageAttractor
+        The attractor itself, with its nodes and the state reached.
     """
 
     value: float
@@ -53,18 +45,30 @@ class SweepRow:
     periods: int
     impacts: int
     measures: Mapping[str, float]
-    detail: Attractor = field(repr=False)
+    detail: Any = field(repr=False)
+
+    @property
+    def dots(self) -> list[float]:
+        """What a picture shows of it."""
+        return _observed(self.detail.model).dots(self.detail, self.measures)
+
+
+def _searched(model: Any) -> Any:
+    return page if model.flow == "page" else recurrence
+
+
+def _observed(model: Any) -> Any:
+    return page if model.flow == "page" else observation
 
 
 def measure_names(model: Any) -> tuple[str, ...]:
-    """Measures in a sweep's rows.
+    """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
+    return _observed(model).measure_names(model)
 
-    ``max_abs_w``; ``impact_speed``: fastest approach |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
-    ``max_abs_q1``: largest displacement of the cavity; in the reduced model ``C2``: squared amplitude of its motion.
-    Motions that do not recur are looked at until these numbers settle; see `orbits.attractors.observation`.
-    """
-    own = ("C2",) if "amplitude" in model.parameter_names else ("max_abs_q1",)
-    return (*own, "max_abs_w", "impact_speed", "impacts_per_period")
+
+def described(found: Any) -> tuple[Any, dict[str, float]]:
+    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
+    return _observed(found.model).described(found)
 
 
 def sweep(
@@ -83,8 +87,7 @@ def sweep(
 
     Parameters
     ----------
-    model : Model
-        The machine.
+    model : Model or Machine
     over : str
         Name of the swept parameter.
     values : iterable of float
@@ -94,7 +97,7 @@ def sweep(
     transient, max_period
         As for `find_attractor`, at every value.
     nudge : float
-        The velocity is changed by this at each value, as noise would: a motion that has become unstable is then
+        A velocity is changed by this at each value, as noise would: a motion that has become unstable is then
         left. 0 for none.
     progress : callable, optional
         Called with each row.
@@ -118,64 +121,20 @@ def sweep(
     vectors = [
         model.vector_at(over, value, parameters) for value in numbers
     ]  # all refused before work starts
-    engine = machine(model.name)
-    state = first_state(model, engine, vectors[0], start)
+    searched = _searched(model)
+    state = searched.begun(model, vectors[0], start)
     direction = "up" if numbers[-1] >= numbers[0] else "down"
     rows = []
     for value, params in zip(numbers, vectors):
-        if nudge and state[MODE] != 0.0:
-            state[RATE] += nudge * np.sign(state[MODE])
-        engine.launch(state, params)
-        found = settle(model, engine, params, state, transient, max_period, patience=PATIENCE)
-        row = _row(value, direction, found)
+        found, measures = described(searched.carried(model, params, state, nudge, transient, max_period))
+        row = SweepRow(
+            value, direction, found.kind, found.text, found.periods, found.impacts, measures, found
+        )
+        state = found.state
         rows.append(row)
         if progress is not None:
             progress(row)
     return rows
-
-
-def _row(value: float, direction: str, found: Attractor) -> SweepRow:
-    found, numbers = described(found)
-    return SweepRow(
-        value=value,
-        direction=direction,
-        attractor=found.kind,
-        word=found.text,
-        periods=found.periods,
-        impacts=found.impacts,
-        measures=numbers,
-        detail=found,
-    )
-
-
-def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
-    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
-    seen = observe(found)
-    return lasting(found, seen), _named(found, seen)
-
-
-def _named(found: Attractor, seen: Observation) -> dict[str, float]:
-    model, params = found.model, found.params
-    known = {
-        "max_abs_q1": seen.max_abs_q1,
-        "max_abs_w": seen.max_abs_w,
-        "impact_speed": seen.impact_speed,
-        "impacts_per_period": seen.impacts_per_period,
-    }
-    if "C2" in measure_names(model):
-        known["C2"] = float(params[model.parameter_names.index("amplitude")]) ** 2
-    return gauged(model, params, {name: known[name] for name in measure_names(model)})
-
-
-def follow(found: Attractor, periods: float | None = None) -> Trajectory:
-    """The motion on an attractor from its `state`: over one cycle, or sixteen periods where nothing recurs."""
-    engine = found.machine
-    begin = found.state.copy()
-    state = begin.copy()
-    length = periods if periods is not None else found.periods or (1 if found.kind == "stuck" else 16)
-    until = state[4] + state[0] / (2.0 * np.pi) + length
-    codes, modes, rows, status = collect(engine, state, found.params, until, 100_000)
-    return Trajectory(found.model, found.params, engine, begin, state, codes, modes, rows, status)
 
 
 def find_attractors(
@@ -184,30 +143,9 @@ def find_attractors(
     *,
     workers: int = 1,
     **options: Any,
-) -> list[Attractor]:
+) -> list[Any]:
     """`find_attractor` from many starts; the result does not depend on the number of worker processes."""
     return _many(partial(_one_attractor, model, options), starts, workers)
-
-
-def different_attractors(model: Any, count: int, seed: int = 0, **options: Any) -> list[Attractor]:
-    """The different attractors that `count` random starts lead to, in the order in which they are met; mirror images are one.
-
-    Parameters
-    ----------
-    model : Model
-    count, seed : int
-        Starts, and the seed of their generator.
-    **options
-        As for `find_attractor`, parameters of the machine included.
-    """
-    generator = np.random.default_rng(seed)
-    params = model.vector({k: v for k, v in options.items() if k in model.parameter_names})
-    found: list[Attractor] = []
-    for _ in range(count):
-        one = find_attractor(model, model.random_start(params, generator), **options)
-        if not any(one.distance(known) < SAME for known in found):
-            found.append(one)
-    return found
 
 
 def sweeps(
@@ -217,7 +155,7 @@ def sweeps(
     return _many(partial(_one_sweep, model, over, options), runs, workers)
 
 
-def _one_attractor(model: Any, options: dict[str, Any], start: Any) -> Attractor:
+def _one_attractor(model: Any, options: dict[str, Any], start: Any) -> Any:
     return find_attractor(model, start, **options)
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from orbits.attractors.page import attracted
 from orbits.attractors.recurrence import settle
 from orbits.contacts.letters import SLIP
-from orbits.declared.attractor import attracted
 from orbits.flows.page.stepper import Stepper
 from orbits.flows.protocol import SimulationError
 from orbits.machines.catalogue import stepper

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from orbits.declared.attractor import find_attractor, polished, random_start
+from orbits.attractors.page import polished
+from orbits.attractors.search import find_attractor
+from orbits.attractors.sweep import sweep
 from orbits.declared.starts import find
-from orbits.declared.sweep import sweep
 from orbits.flows.page.stepper import Stepper
 from orbits.flows.protocol import SimulationError
 from orbits.machines.page.loading import load_page
@@ -87,7 +88,8 @@ class PageFamily:
         )
         for changed in ({}, *({str(self.over): float(value)} for value in places)):
             try:
-                orbit = find_attractor(machine, self.state, parameters={**given, **changed}).orbit
+                fixed: dict[str, Any] = {**given, **changed}
+                orbit = find_attractor(machine, self.state, **fixed).orbit
             except SimulationError as error:
                 refusal = StartError(str(error))
                 continue
@@ -126,7 +128,9 @@ class PageFamily:
             generator = np.random.default_rng(20)
             stepper = Stepper(machine, machine.vector({**given, over: value}))
             for trial in range(starts):
-                start = dict(self.state or {}) if trial == 0 else random_start(machine, generator)
+                start = (
+                    dict(self.state or {}) if trial == 0 else machine.random_start(stepper.params, generator)
+                )
                 phase = start.pop("phase", 0.0)
                 state = outside(stepper, np.array([start.get(s, 0.0) for s in machine.states]), phase)
                 try:

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from orbits.attractors.search import find_attractor
 from orbits.contacts.letters import HIT
-from orbits.declared.attractor import find_attractor, random_start
 from orbits.flows.page.solving import SOLVED, newton
 from orbits.flows.page.stepper import TWO_PI, SimulationError
 from orbits.machines.page.machine import Machine
@@ -106,11 +106,9 @@ def _simulated(
     values = dict(zip(machine.parameter_names, map(float, params)))
     nearest, distance = "", np.inf
     for trial in range(TRIALS):
-        start = None if trial == 0 else random_start(machine, generator)
+        start = None if trial == 0 else machine.random_start(params, generator)
         try:
-            found = find_attractor(
-                machine, start, max_period=max(4, 2 * periods), patience=2, parameters=values
-            ).orbit
+            found = find_attractor(machine, start, max_period=max(4, 2 * periods), patience=2, **values).orbit
         except SimulationError:
             continue
         if found is None:

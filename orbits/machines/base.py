@@ -307,7 +307,9 @@ class Model(Varying):
         """Nodes at random from which Newton's method may find an orbit; None if that is hopeless."""
         return None
 
-    def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
+    def random_start(
+        self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
+    ) -> dict[str, float]:
         """A state at random, as `orbits.simulation.simulate` takes it."""
         return {
             "phase": generator.uniform(0.0, 2.0 * np.pi),

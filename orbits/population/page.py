@@ -10,10 +10,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from orbits.attractors.motion import RARE, Motion, wandering
+from orbits.attractors.page import RETURNED, look, of_record, returning, skip
+from orbits.attractors.sweep import sweep
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
-from orbits.declared.attractor import RETURNED, look, of_record, returning, skip
-from orbits.declared.sweep import sweep
 from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.flows.protocol import Record

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from orbits.attractors.recurrence import find_attractor
+from orbits.attractors.search import find_attractor
 from orbits.flows.native.cycle_equations import equations
 from orbits.flows.solving import solved_at
 from orbits.machines.base import Model

@@ -224,7 +224,9 @@ class Cavity(Shaken):
         for sign in (-np.sign(b), np.sign(b)):  # where the table brakes the more the later it is hit: stable
             yield np.array([[sign * np.arccos(cosine / speed) % (2.0 * np.pi), -b * half]])
 
-    def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
+    def random_start(
+        self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
+    ) -> dict[str, float]:
         start = super().random_start(params, generator)
         left, right = (float(wall) for wall in self.walls(params))
         size = min(max(left, -right), 10.0 * min(left, -right))  # a wall out of reach is no measure

@@ -137,7 +137,9 @@ class Coupled(Model):
     def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
         return float(node[3]), np.array([0.0, 0.0, 0.0, 1.0])
 
-    def random_start(self, params: np.ndarray, generator: np.random.Generator) -> dict[str, float]:
+    def random_start(
+        self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
+    ) -> dict[str, float]:
         start = super().random_start(params, generator)
         return start | {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
 

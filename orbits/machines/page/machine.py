@@ -234,6 +234,13 @@ class Machine(Varying):
                 modes.append(STUCK if value == 0.0 else (1 if value > 0.0 else -1))
         return tuple(modes)
 
+    def random_start(
+        self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
+    ) -> dict[str, float]:
+        """States within +-size and a phase."""
+        start = {name: float(generator.uniform(-size, size)) for name in self.states}
+        return start | ({"phase": float(generator.uniform(0.0, 2.0 * np.pi))} if self.forced else {})
+
     def simulate(
         self,
         start: Mapping[str, float] | None = None,
@@ -247,12 +254,12 @@ class Machine(Varying):
         return above("simulate")(self, start, periods=periods, time=time, events=events, **parameters)
 
     def attractor(self, start: Mapping[str, float] | None = None, **parameters: float) -> Any:
-        """The attractor that a start leads to; see `orbits.declared.attractor.find_attractor`."""
-        return above("attractor_of_page")(self, start, parameters=parameters)
+        """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
+        return above("attractor")(self, start, **parameters)
 
     def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: float) -> list[Any]:
-        """The different attractors that `count` random starts (states within +-`size`) lead to; see `orbits.declared.attractor`."""
-        return above("attractors_of_page")(self, count, seed, size, parameters=parameters)
+        """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
+        return above("attractors")(self, count, seed, size, **parameters)
 
     def population(self, over: str | None = None, **parameters: float) -> Any:
         """Many starts and what they settle on; see `orbits.population.Population`."""

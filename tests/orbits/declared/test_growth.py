@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.declared import growth as module
+from orbits.flows.page import growth as module
 
 
 class Doubling:

@@ -8,35 +8,35 @@ from typing import Any
 
 import numpy as np
 
-from orbits.contacts.letters import HOLD, RELEASE, SLIP
+from orbits.attractors.settled import Settled
+from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.solving import SOLVED, newton
-from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
+from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.protocol import Record
 from orbits.machines.page.machine import Machine
 from orbits.orbit import Orbit
-from orbits.simulation.page import PageTrajectory, collect, first_state
+from orbits.simulation.page import PageTrajectory, collect, first_state, outside
 from orbits.words.of_pages import PageWord
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
 LONGEST_WORD = 400
-EARLY, SHORT = (
-    5,
-    4,
-)  # a first look after a fifth of the transient, at short cycles first: what attracts and has returned need not be waited for
+SAMPLES = 2000  # of a motion without a period, for its extremes
+EARLY, SHORT = 5, 4
+"""A first look comes after a fifth of the transient, at short cycles first: what attracts and has returned need not be waited for."""
 PLAIN = 40  # events up to which the plainest reading is looked for
 REPELS = 1.0 + 1e-6  # an orbit with a larger multiplier repels, and ...
 CLOSED = 1e-9  # ... a return to it that is open by more, relative to 1 + states, only passes it by
 
 
 @dataclass(frozen=True, eq=False)
-class DeclaredAttractor:
-    """What a start leads to.
+class PageAttractor(Settled):
+    """What a start of a machine on a page leads to.
 
     Attributes
     ----------
-    machine : Machine
+    model : Machine
     params : float array (P,)
     kind : str
         "periodic", "chatter" (periodic or not, with infinitely many impacts in finite time), "rest" (a wall holds the body for good, or a
@@ -45,13 +45,21 @@ class DeclaredAttractor:
         Of a periodic one.
     trajectory : PageTrajectory
         The last part of the simulation.
+    state : float array (n + 1,)
+        Clock and states reached.
     """
 
-    machine: Machine
+    model: Machine
     params: np.ndarray
     kind: str
     orbit: Orbit | None
     trajectory: PageTrajectory = field(repr=False)
+    state: np.ndarray = field(repr=False)
+
+    @property
+    def machine(self) -> Machine:
+        """The machine."""
+        return self.model
 
     @property
     def word(self) -> PageWord | None:
@@ -59,9 +67,34 @@ class DeclaredAttractor:
         return None if self.orbit is None else self.orbit.word
 
     @property
+    def text(self) -> str:
+        """The word as text; empty where there is none."""
+        return "" if self.orbit is None else self.orbit.word.text
+
+    @property
     def periods(self) -> int:
         """Forcing periods of the orbit; 0 where there is none."""
         return 0 if self.orbit is None else self.orbit.periods
+
+    @property
+    def impacts(self) -> int:
+        """Impacts of the orbit; 0 where there is none."""
+        return 0 if self.orbit is None else self.orbit.impacts
+
+    @property
+    def recurrent(self) -> bool:
+        """Whether the motion is a periodic orbit."""
+        return self.orbit is not None
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the orbit equals its mirror image."""
+        return self.orbit is not None and self.orbit.symmetric
+
+    @property
+    def guess(self) -> np.ndarray | None:
+        """The nodes as a study's `guess` takes them."""
+        return None if self.orbit is None else self.orbit.nodes
 
     @property
     def found(self) -> Orbit:
@@ -81,63 +114,63 @@ class DeclaredAttractor:
                 "aperiodic": "no period was found",
             }[self.kind]
             raise ValueError(
-                f"this attractor of {self.machine.name!r} is no orbit that can be continued ({self.kind}: {why}); choose other "
+                f"this attractor of {self.model.name!r} is no orbit that can be continued ({self.kind}: {why}); choose other "
                 "parameters or another start, or give a word to machine.orbit"
             )
         return self.orbit
 
-    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
-        """The orbit as a continuation problem.
+    @property
+    def approaches(self) -> list[float]:
+        """Approach speeds of the impacts of the cycle, or of the last part of the run: the gap's rate after each over restitution."""
+        run, machine = self.trajectory, self.model
+        speeds = []
+        first = 0 if self.orbit is None else max(len(run) - len(self.orbit.word), 0)
+        for k in range(first, len(run)):
+            contact, kind, _ = run.events[k]
+            if kind != HIT:
+                continue
+            clock = run.clocks[k + 1] if machine.forced else 0.0
+            numbers = machine.compiled.numbers(run.params, run.modes[k + 1])
+            rate, restitution = machine.compiled.rebound(contact).one(
+                run.states[k + 1], float(clock), numbers
+            )
+            speeds.append(float(rate / restitution))
+        return speeds
 
-        Raises
-        ------
-        ValueError
-            If the attractor is no periodic orbit.
-        """
-        return self.found.problem(parameter, symmetric)
-
-    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
-        """Unknowns and parameter value in `problem`."""
-        return self.found.seed(problem)
+    def distance(self, other: PageAttractor) -> float:
+        """Largest difference of the canonical nodes, relative to 1 + nodes; inf if the words differ."""
+        if self.orbit is None or other.orbit is None:
+            return 0.0 if self.orbit is other.orbit and self.kind == other.kind else np.inf
+        one, two = (x.found.problem(symmetric=False).canonical(*_seed(x.found)) for x in (self, other))
+        return (
+            np.inf
+            if one[0] != two[0]
+            else float(np.abs(one[1] - two[1]).max() / (1.0 + np.abs(one[1]).max()))
+        )
 
     def __repr__(self) -> str:
-        what = f"word {self.orbit.word.text!r}, periods {self.orbit.periods}" if self.orbit else self.kind
-        return f"<Attractor of {self.machine.name}: {what}>"
+        what = f"word {self.text!r}, periods {self.periods}" if self.orbit else self.kind
+        return f"<Attractor of {self.model.name}: {what}>"
 
 
-def find_attractor(
-    machine: Machine,
-    start: Mapping[str, float] | None = None,
-    *,
-    transient: int = 100,
-    max_period: int = 16,
-    patience: int = 4,
-    parameters: Mapping[str, float] | None = None,
-) -> DeclaredAttractor:
-    """Simulate until the motion returns to itself.
+def _seed(orbit: Orbit) -> tuple[np.ndarray, float]:
+    return orbit.seed(orbit.problem(symmetric=False))
+
+
+def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) -> PageAttractor:
+    """What the motion of a stepper leads to: simulated until it returns to itself.
 
     Parameters
     ----------
-    machine : Machine
-    start : mapping, optional
-        States by name and `phase`; what is not given is 0.
+    stepper : Stepper
+        Moved on.
     transient : int
         Forcing periods (of a self-excited machine: events) simulated first; twice as many each time nothing has returned.
     max_period : int
         Longest period looked for, in forcing periods (events per cycle: 25 times as many).
     patience : int
         How often the transient is doubled.
-    parameters : mapping, optional
-        In place of the page's own.
     """
-    params = machine.vector(parameters)
-    stepper = Stepper(machine, params)
-    stepper.start(*first_state(machine, start))
-    return attracted(stepper, transient, max_period, patience)
-
-
-def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) -> DeclaredAttractor:
-    """What the motion of a stepper leads to; `find_attractor` says what the numbers are."""
     machine, params = stepper.machine, stepper.params
     early = transient // EARLY
     skip(stepper, early)
@@ -145,19 +178,24 @@ def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) 
         run = look(stepper, longest)
         orbit = returning(run, longest, SETTLED)
         if orbit is not None:
-            return DeclaredAttractor(machine, params, "periodic", orbit, run)
+            return PageAttractor(machine, params, "periodic", orbit, run, reached(stepper))
     for attempt in range(patience + 1):
         skip(stepper, transient * 2**attempt - (0 if attempt else early))
         run = look(stepper, max_period)
         orbit = returning(run, max_period, RETURNED if attempt else SETTLED)
         if orbit is not None:
-            return DeclaredAttractor(machine, params, "periodic", orbit, run)
+            return PageAttractor(machine, params, "periodic", orbit, run, reached(stepper))
         if run.held or not (run.events or machine.forced):
-            return DeclaredAttractor(machine, params, "rest", None, run)
+            return PageAttractor(machine, params, "rest", None, run, reached(stepper))
         if run.chatters and attempt:
             break
     kind = "chatter" if run.chatters else "aperiodic"
-    return DeclaredAttractor(machine, params, kind, None, run)
+    return PageAttractor(machine, params, kind, None, run, reached(stepper))
+
+
+def reached(stepper: Stepper) -> np.ndarray:
+    """Clock and states now, shape (n + 1,)."""
+    return np.append(stepper.clock, stepper.state)
 
 
 def skip(stepper: Stepper, count: int) -> None:
@@ -303,65 +341,51 @@ def _eventless(run: PageTrajectory, max_period: int, near: float) -> Orbit | Non
     return None
 
 
-def random_start(machine: Machine, generator: np.random.Generator, size: float = 1.0) -> dict[str, float]:
-    """States within +-size and a phase."""
-    start = {name: float(generator.uniform(-size, size)) for name in machine.states}
-    if machine.forced:
-        start["phase"] = float(generator.uniform(0.0, TWO_PI))
-    return start
+def begun(machine: Machine, params: np.ndarray, start: Any) -> np.ndarray:
+    """Clock and states of a start given by names, moved out of the walls that lie over it, shape (n + 1,)."""
+    if isinstance(start, np.ndarray):
+        return start
+    point, clock = first_state(machine, start)
+    return np.append(clock, point)
 
 
-def find_attractors(
-    machine: Machine,
-    count: int,
-    seed: int = 0,
-    size: float = 1.0,
-    parameters: Mapping[str, float] | None = None,
-) -> list[DeclaredAttractor]:
-    """The different attractors that `count` random starts (states within +-`size`) lead to; those of one motion once.
-
-    Raises
-    ------
-    SimulationError
-        If no start can be simulated.
-    """
-    generator = np.random.default_rng(seed)
-    found: list[DeclaredAttractor] = []
-    forms: list[Any] = []
-    refused: SimulationError | None = None
-    for _ in range(count):
-        for _ in range(200):
-            start = random_start(machine, generator, size)
-            try:
-                attractor = find_attractor(machine, start, parameters=parameters)
-                break
-            except SimulationError as error:
-                refused = error
-        else:
-            raise SimulationError(f"no start with states within {size:g} could be simulated: {refused}")
-        if attractor.orbit is None:
-            form: Any = (attractor.kind, None)
-        else:
-            problem = attractor.problem(symmetric=False)
-            form = problem.canonical(*attractor.seed(problem))
-        if not any(_same(form, other) for other in forms):
-            forms.append(form)
-            found.append(attractor)
-    return found
+def carried(
+    machine: Machine, params: np.ndarray, state: np.ndarray, nudge: float, transient: float, max_period: int
+) -> PageAttractor:
+    """The attractor that a sweep's motion goes on to with other parameters."""
+    stepper = Stepper(machine, params)
+    stepper.start(outside(stepper, state[1:], float(state[0])), float(state[0]))
+    stepper.state[-1] += nudge
+    return attracted(stepper, int(transient), max_period, 0)
 
 
-def witness(machine: Machine, params: np.ndarray, starts: int) -> list[dict[str, Any]]:
-    """Word, periods and kind of what random starts lead to, sorted; empty where nothing can be simulated."""
-    parameters = dict(zip(machine.parameter_names, map(float, params)))
-    try:
-        found = find_attractors(machine, starts, 7, parameters=parameters)
-    except SimulationError:
-        return []
-    named = {(a.word.canonical().text if a.word is not None else "", a.periods, a.kind): a for a in found}
-    return [{"word": word or None, "periods": periods, "kind": kind} for word, periods, kind in sorted(named)]
+def measure_names(machine: Machine) -> tuple[str, ...]:
+    """Measures in a sweep's rows: `max_` and `min_` of the first state, `approach_speed`, `impacts_per_period` (of a self-excited machine: per unit of time)."""
+    first = machine.states[0]
+    return (f"max_{first}", f"min_{first}", "approach_speed", "impacts_per_period")
 
 
-def _same(one: Any, other: Any) -> bool:
-    if one[0] != other[0] or (one[1] is None) != (other[1] is None):
-        return False
-    return one[1] is None or bool(np.abs(one[1] - other[1]).max() < 1e-6 * (1.0 + np.abs(one[1]).max()))
+def described(found: PageAttractor) -> tuple[PageAttractor, dict[str, float]]:
+    """The attractor and its measures by name; see `measure_names`."""
+    machine, orbit, first = found.model, found.orbit, found.model.states[0]
+    run, speeds = found.trajectory, found.approaches
+    if orbit is not None:
+        taken = orbit.measures(f"max_{first}", f"min_{first}")
+        span = orbit.periods if machine.forced else orbit.period
+    else:
+        x = run.sample(np.linspace(run.clocks[0], run.end, SAMPLES))[:, 0]
+        taken = {f"max_{first}": float(x.max()), f"min_{first}": float(x.min())}
+        span = (run.end - run.clocks[0]) / (TWO_PI if machine.forced else 1.0)
+    own = {
+        "approach_speed": max(speeds, default=0.0),
+        "impacts_per_period": len(speeds) / span if span > 0.0 else 0.0,
+    }
+    return found, {**taken, **own}
+
+
+def dots(found: PageAttractor, measures: Mapping[str, float]) -> list[float]:
+    """What a picture shows: the approach speed of every impact; of a machine without walls the first state's extremes."""
+    if any(isinstance(contact, Wall) for contact in found.model.contacts):
+        return found.approaches
+    first = found.model.states[0]
+    return [measures[f"max_{first}"], measures[f"min_{first}"]]
