@@ -29,7 +29,6 @@ lead(
         "attractors": "orbits.attractors.search:different_attractors",
         "deviation_of_page": "orbits.declared.deviation:deviation",
         "find": "orbits.starts.find:find",
-        "find_on_page": "orbits.declared.starts:find",
         "of_branch": "orbits.proofs.subjects:of_branch",
         "of_orbit": "orbits.proofs.subjects:of_orbit",
         "of_point": "orbits.proofs.subjects:of_point",

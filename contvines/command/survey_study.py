@@ -57,18 +57,12 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
 def family_of(study: Study, model: Any) -> Any:
     """The machines of a study's survey."""
     from contvines.command.compose import loose
-    from orbits.declared.family import PageFamily
     from orbits.design import Family
 
-    if study.machine is not None:
-        _, _, name = study.name.partition(":")
-        return PageFamily(
-            study.machine.page.path, name, loose(study), study.word, study.periods, study.guess, study.state, study.parameter,
-            study.within,
-        )  # fmt: skip
     return Family(
-        model, study.word, study.periods, study.guess, loose(study), over=study.parameter, within=study.within
-    )
+        model, study.word, study.periods, study.guess, loose(study), study.parameter, study.within,
+        study.state if study.machine is not None else None,
+    )  # fmt: skip
 
 
 def outcomes_of(study: Study) -> list[Any]:

@@ -69,6 +69,13 @@ def find_attractor(
     return lasting(left_over(model, start, length, max_period, tolerance, tries, **parameters))
 
 
+def unobserved(model: Any, start: Any = None, **parameters: Any) -> Any:
+    """`find_attractor`, a motion that does not recur not yet observed for long: for those who observe it themselves."""
+    if model.flow == "page":
+        return find_attractor(model, start, **parameters)
+    return left_over(model, start, **parameters)
+
+
 def different_attractors(
     model: Any, count: int, seed: int = 0, size: float = 1.0, **options: Any
 ) -> list[Any]:

@@ -13,29 +13,27 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.attractors.recurrence import left_over
+from orbits.attractors.search import unobserved
 from orbits.attractors.sweep import described
-from orbits.machines.base import Model
+from orbits.flows.protocol import SimulationError
 from orbits.orbit import Orbit
-from orbits.starts.find import StartError, find, polish
-from orbits.words import Word
+from orbits.starts.find import StartError, centred, find, polish
 
 PLACES = 5  # where an orbit is looked for in the interval
 NARROW = 1.0 / 64.0  # the least part of the way that is tried
 
 
-def settled(model: Model, params: np.ndarray) -> Any:
-    """The orbit to which the machine settles from rest; None where nothing recurs."""
+def settled(model: Any, params: np.ndarray, state: Any = None) -> Any:
+    """The orbit to which the machine settles from rest, or from a state; None where nothing recurs."""
     values: dict[str, Any] = dict(zip(model.parameter_names, (float(value) for value in params)))
-    found = find_attractor(model, max_period=8, **values)
+    found = find_attractor(model, state, max_period=8, **values)
     if found.kind == "stuck":
         return Orbit.at_rest(model, params)
-    if found.word is None or not found.nodes.size:
+    if found.word is None:
         return None
-    orbit = found.orbit
-    if orbit.word.impact_free:  # it may be shifted as a whole: take the middle
-        orbit.nodes[:, 1] -= 0.5 * (orbit.nodes[:, 1].max() + orbit.nodes[:, 1].min())
-    orbit = polish(orbit.root())
+    orbit = found.found.root()
+    centred(model, orbit.word, orbit.nodes)
+    orbit = polish(orbit)
     return orbit if orbit is not None and orbit.real else None
 
 
@@ -45,7 +43,7 @@ class Family:
 
     Parameters
     ----------
-    machine : Model
+    machine : Model or Machine
         The parameters that do not vary.
     word : str, optional
         Of the orbit to begin with; without it the one to which the machine settles from rest.
@@ -56,15 +54,18 @@ class Family:
         Parameters that belong to the orbit rather than to the machine.
     over, within : optional
         A parameter and its interval in which an orbit to begin with may lie elsewhere, where the machine itself has none.
+    state : mapping, optional
+        Where simulations begin that look for such an orbit: at rest by default.
     """
 
-    machine: Model
+    machine: Any
     word: str | None = None
     periods: int = 1
     guess: Any = None
     loose: Mapping[str, float] | None = None
     over: str | None = None
     within: tuple[float, float] | None = None
+    state: Mapping[str, float] | None = None
 
     @property
     def notation(self) -> dict[str, str]:
@@ -94,17 +95,21 @@ class Family:
                 return orbit
         refusal = None
         try:
-            orbit = (
-                None if self.word is None else find(model, self.word, self.periods, self.guess, loose, Orbit)
-            )
+            orbit = None if self.word is None else find(model, self.word, self.periods, self.guess, loose)
             if orbit is not None and orbit.real:
                 return orbit
         except StartError as error:
             refusal = error
-        orbit = settled(model, model.vector(loose))
-        for value in self._elsewhere():
-            if orbit is None:
-                orbit = settled(model, model.vector_at(self.over or "", value, loose))
+        places = [
+            model.vector(loose),
+            *(model.vector_at(self.over or "", x, loose) for x in self._elsewhere()),
+        ]
+        orbit = None
+        for params in places:
+            try:
+                orbit = orbit or settled(model, params, self.state)
+            except SimulationError as error:
+                refusal = refusal or StartError(str(error))
         if orbit is None:
             raise refusal or StartError(
                 "the simulator finds no periodic motion to begin with; give a word, or another interval"
@@ -115,6 +120,8 @@ class Family:
 
     def machine_at(self, values: Mapping[str, float]) -> tuple[Any, dict[str, float]]:
         """The machine with these values, and the parameters left to its orbits."""
+        if self.machine.flow == "page":
+            return self.machine, {**(self.loose or {}), **values}
         own = {name: value for name, value in values.items() if name not in (self.loose or {})}
         loose = {**(self.loose or {}), **{name: value for name, value in values.items() if name not in own}}
         with_ = getattr(self.machine, "with_", None)  # a physical machine counts in its units
@@ -150,15 +157,21 @@ class Family:
             numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
             generator = np.random.default_rng(20)
             for trial in range(starts):
-                start = None if trial == 0 else model.random_start(params, generator)
-                attractor, numbers_of = described(left_over(model, start, **numbers))
+                start = self.state if trial == 0 else model.random_start(params, generator)
+                try:
+                    attractor, numbers_of = described(unobserved(model, start, **numbers))
+                except SimulationError:
+                    continue  # it lies within a wall
                 found.append((float(value), numbers_of, attractor.text))
         return found
 
     @staticmethod
-    def near(orbit: Any) -> tuple[np.ndarray, np.ndarray, Any] | None:
-        """What a neighbour's orbit may begin with: nodes, parameter vector, word."""
-        return (orbit.nodes, orbit.params, orbit.word) if len(orbit.word) else None
+    def near(orbit: Any) -> tuple[Any, ...] | None:
+        """What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
+        word = orbit.word
+        return (
+            (orbit.nodes, orbit.params, word.events, word.modes, orbit.periods) if len(orbit.nodes) else None
+        )
 
     def starts(self, systems: Sequence[Mapping[str, float]], neighbours: Sequence[int | None]) -> list[Any]:
         """`near` of each system's own orbit, each carried over from its neighbour; None where that fails."""
@@ -176,17 +189,17 @@ class Family:
                 found.append(None)
         return found
 
-    def _carried(self, model: Model, params: np.ndarray, near: Any) -> Orbit | None:
+    def _carried(self, model: Any, params: np.ndarray, near: Any) -> Orbit | None:
         """The orbit at `params` from one nearby, both with the word of the latter."""
-        nodes, here, word = near
-        if word.frictionless != model.frictionless(params):
+        nodes, here, events, modes, periods = near
+        word = model.word_of(events, modes, params)
+        if word is None:
             return None
-        assert isinstance(word, Word)
         reached, step = 0.0, 1.0
         while reached < 1.0:
             goal = min(reached + step, 1.0)
             there = params if goal == 1.0 else here + goal * (params - here)
-            orbit = polish(Orbit(model, word, self.periods, nodes, there))
+            orbit = polish(Orbit(model, word, periods, nodes, there))
             if orbit is None or not orbit.real:
                 step *= 0.5
                 if step < NARROW:

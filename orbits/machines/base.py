@@ -24,7 +24,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, fields
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -33,10 +33,7 @@ from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest
 from orbits.machines.varying import Varying
-
-if TYPE_CHECKING:
-    from orbits.words import Word
-
+from orbits.words import Word
 
 ONE = np.float64(1.0)
 
@@ -297,6 +294,16 @@ class Model(Varying):
         return cls.column(params, "friction") * cls.column(params, "gravity") * np.abs(steps).sum(axis=1)
 
     # ------------------------------------------------------------------ starts and measures
+    def word(self, text: str | Word, params: np.ndarray) -> Word:
+        """Read a word of this machine."""
+        return Word.parse(text, frictionless=self.frictionless(params))
+
+    def word_of(self, events: Sequence[str], modes: Sequence[int], params: np.ndarray) -> Word | None:
+        """The word with these events and modes; None if the machine has none such at these parameters."""
+        if self.frictionless(params) and not {"L", "R"}.issuperset(events):
+            return None
+        return Word(tuple(events), tuple(modes), self.frictionless(params))
+
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
         """Nodes to start from in closed form, where there are any."""
         return iter(())
@@ -354,7 +361,7 @@ class Model(Varying):
         **parameters: Any,
     ) -> Any:
         """Solve for the orbit with this word; see `orbits.starts.find.find`."""
-        return above("find")(self, word, periods, guess, parameters, made=above("Orbit"))
+        return above("find")(self, word, periods, guess, parameters)
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """The machine's own fields by name, ready for JSON; those of a page are its parameters, at `params` where they are given."""

@@ -6,14 +6,14 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from orbits.attractors.search import find_attractor
-from orbits.flows.native.cycle_equations import equations
+from orbits.flows.catalogue import flow_of
+from orbits.flows.protocol import SimulationError
 from orbits.flows.solving import solved_at
-from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.starts.reading import DirectionError, directed, readings
 from orbits.words import Word
@@ -21,7 +21,9 @@ from orbits.words import Word
 NEARBY = 0.1  # residual of a guess that may be read from another event than its word
 BETTER = 0.1  # part of the residual with which another reading is believed
 TOLERANCE = 1e-12
-LONG = 12  # words with more events are not looked for from random nodes
+LONG = 12  # events of a word that are shown
+LONGEST = 24  # words with more events are not looked for from random nodes
+TRIALS = 24  # simulated starts
 
 
 class StartWarning(UserWarning):
@@ -32,24 +34,22 @@ class StartError(ValueError):
     """No orbit was found; the sentence says what was tried and what the simulator finds there."""
 
 
-Found = TypeVar("Found", bound=Orbit)
-
-
-def polish(orbit: Found, limit: int = 30) -> Found | None:
+def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     """Newton's method from the orbit's nodes at fixed parameters; None if it does not converge to an orbit with this word."""
     parameter = orbit.model.default_parameter
     half = orbit.symmetric and orbit.model.has_mirror(orbit.params, parameter)
-    system = equations(orbit.model, orbit.word, orbit.periods, parameter, orbit.params, half)
+    system = orbit.flow.equations(orbit.model, orbit.word, orbit.periods, parameter, orbit.params, half)
     value = system.value(orbit.params)
     u, residual = solved_at(system, system.reduce(orbit.nodes), value, TOLERANCE, limit)
     if not residual < 1e-9 * max(1.0, float(np.abs(u).max())):
         return None
     nodes = system.expand(u, value)
-    nodes[:, 0] -= 2.0 * np.pi * np.floor(nodes[0, 0] / (2.0 * np.pi))
+    if orbit.forced:
+        nodes[:, 0] -= 2.0 * np.pi * np.floor(nodes[0, 0] / (2.0 * np.pi))
     return replace(orbit, nodes=nodes)
 
 
-def check_guess(word: Word, names: Sequence[str], guess: Any) -> np.ndarray:
+def check_guess(word: Any, names: Sequence[str], guess: Any) -> np.ndarray:
     """The guess as an array (L, n).
 
     Raises
@@ -61,7 +61,7 @@ def check_guess(word: Word, names: Sequence[str], guess: Any) -> np.ndarray:
         nodes = np.array(guess, dtype=float)
     except (TypeError, ValueError):
         raise StartError(f"guess = {guess!r} is no table of numbers: give one list per event") from None
-    if nodes.shape != (len(word), len(names)):
+    if nodes.shape != (max(len(word), 1), len(names)):
         what = f"[{', '.join(names)}]"
         raise StartError(
             f"guess has the shape {nodes.shape}, but the word {word.text!r} has {len(word)} events "
@@ -75,29 +75,26 @@ def check_guess(word: Word, names: Sequence[str], guess: Any) -> np.ndarray:
 
 
 def find(
-    model: Model,
-    word: str | Word,
+    model: Any,
+    word: Any,
     periods: int = 1,
     guess: Sequence[Sequence[float]] | np.ndarray | None = None,
     parameters: Mapping[str, float] | None = None,
-    made: Any = Orbit,
-) -> Any:
+) -> Orbit:
     """The orbit of `model` with this word.
 
     Parameters
     ----------
-    model : Model
-    word : str or Word
-        Events, or the paper's maps.
+    model : Model or Machine
+    word : str or Word or PageWord
+        Events, or of a built-in machine the paper's maps.
     periods : int
-        Forcing periods k >= 1.
+        Forcing periods k >= 1; of a self-excited machine 1.
     guess : array (L, n), optional
         Nodes to start Newton's method from. Without it: the closed forms, then simulation from many starts, then
         Newton's method from many random nodes.
     parameters : mapping
         Parameters that are no fields of the machine, or replace them.
-    made : type
-        Of what is returned: a `Orbit`, or a kind of one.
 
     Raises
     ------
@@ -107,45 +104,45 @@ def find(
         For bad parameters and words.
     """
     params = model.vector(parameters)
-    reading = Word.parse(word, frictionless=model.frictionless(params))
+    reading = model.word(word, params)
     if isinstance(periods, bool) or int(periods) != periods or periods < 1:
         raise StartError(
             f"periods = {periods!r} closes no orbit: give a whole number of forcing periods, 1 or more"
         )
     periods = int(periods)
-    if len(reading) == 0:
-        return _stuck(made.at_rest(model, params))
+    if len(reading) == 0 and model.flow == "native":
+        return _stuck(Orbit.at_rest(model, params))
     tried = []
     if guess is not None:
         nodes = check_guess(reading, model.node_names, guess)
-        if reading.impact_free:
-            nodes[:, 1] -= 0.5 * (nodes[:, 1].max() + nodes[:, 1].min())
-        try:
-            reading = directed(word, reading, nodes)
-        except DirectionError as error:
-            raise StartError(str(error)) from None
-        orbit = _from_guess(made(model, reading, periods, nodes, params))
+        centred(model, reading, nodes)
+        if isinstance(reading, Word):
+            try:
+                reading = directed(word, reading, nodes)
+            except DirectionError as error:
+                raise StartError(str(error)) from None
+        orbit = _from_guess(Orbit(model, reading, periods, nodes, params))
         if orbit is not None:
             _warn_virtual(orbit)
             return orbit
         tried.append("Newton's method from the guess")
     else:
         for nodes in model.start_nodes(reading, periods, params):
-            orbit = polish(made(model, reading, periods, nodes, params))
+            orbit = polish(Orbit(model, reading, periods, nodes, params))
             if orbit is not None:
                 return orbit
         tried.append("the closed forms")
-    orbit, nearest = _simulated(model, reading, periods, params, made)
+    orbit, nearest = _simulated(model, reading, periods, params)
     if orbit is not None:
         _warn(guess, reading, "simulation from many starts")
         return orbit
     tried.append("simulation from many starts")
     if guess is None:
-        orbit = _random(model, reading, periods, params, made)
+        orbit = _random(model, reading, periods, params)
         if orbit is not None:
             return orbit
         tried.append("Newton's method from random nodes")
-    orbit = _repeated(model, reading, periods, parameters, made)
+    orbit = _repeated(model, reading, periods, parameters)
     if orbit is not None:
         _warn(guess, reading, "a shorter orbit, written several times")
         return orbit
@@ -170,6 +167,12 @@ def find(
     )
 
 
+def centred(model: Any, word: Any, nodes: np.ndarray) -> None:
+    """Move nodes along what is free in any motion with the word: to the middle."""
+    for j in flow_of(model).loose(model, word):
+        nodes[:, j] -= 0.5 * (nodes[:, j].max() + nodes[:, j].min())
+
+
 def _from_guess(first: Orbit) -> Orbit | None:
     """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
     mirrored = first.model.has_mirror(first.params, first.model.default_parameter)
@@ -185,7 +188,7 @@ def _from_guess(first: Orbit) -> Orbit | None:
     return virtual
 
 
-def _warn(guess: Any, word: Word, instead: str) -> None:
+def _warn(guess: Any, word: Any, instead: str) -> None:
     if guess is not None:
         shown = word.text if len(word) <= LONG else f"{word.text[:LONG]}..."
         warnings.warn(
@@ -208,17 +211,13 @@ def _warn_virtual(orbit: Orbit) -> None:
     )
 
 
-def _repeated(
-    model: Model, word: Word, periods: int, parameters: Mapping[str, float] | None, made: Any
-) -> Orbit | None:
+def _repeated(model: Any, word: Any, periods: int, parameters: Mapping[str, float] | None) -> Orbit | None:
     """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
     times = math.gcd(word.repetitions, periods)
     if times == 1:
         return None
     try:
-        return find(model, word.head(len(word) // times), periods // times, None, parameters, made).repeat(
-            times
-        )
+        return find(model, word.head(len(word) // times), periods // times, None, parameters).repeat(times)
     except StartError:
         return None
 
@@ -236,31 +235,28 @@ def _stuck(orbit: Orbit) -> Orbit:
 
 def _proper(orbit: Orbit) -> bool:
     """Whether time runs forward through the nodes."""
-    phases = np.append(orbit.nodes[:, 0], orbit.nodes[0, 0] + 2.0 * np.pi * orbit.periods)
-    return bool(np.all(np.diff(phases) > -1e-9))
+    return bool(np.all(orbit.durations > -1e-9))
 
 
-def _simulated(
-    model: Model, word: Word, periods: int, params: np.ndarray, made: Any
-) -> tuple[Orbit | None, str]:
+def _simulated(model: Any, word: Any, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     mirrored = model.has_mirror(params)
     target = word.canonical(mirrored)
-    values = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
+    values: dict[str, Any] = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
     nearest, distance = "", np.inf
     generator = np.random.default_rng(20)
-    for trial in range(24):
+    for trial in range(TRIALS):
         start = None if trial == 0 else model.random_start(params, generator)
-        attractor = find_attractor(
-            model, start, max_period=max(8, 2 * periods), patience=model.patience, **values
-        )
-        if attractor.kind not in ("periodic", "sliding") or not attractor.nodes.size:
+        try:
+            attractor = find_attractor(
+                model, start, max_period=max(8, 2 * periods), patience=model.patience, **values
+            )
+        except SimulationError:
+            continue  # it lies within a wall
+        if attractor.kind not in ("periodic", "sliding") or attractor.word is None:
             continue
-        if attractor.word is None:
-            continue
-        orbit = made.of(attractor.cycle)
-        if orbit.word.impact_free:  # its mean position is free: take the middle
-            orbit.nodes[:, 1] -= 0.5 * (orbit.nodes[:, 1].max() + orbit.nodes[:, 1].min())
+        orbit = attractor.found
+        centred(model, orbit.word, orbit.nodes)
         if orbit.word.canonical(mirrored) == target and orbit.periods == periods:
             polished = polish(_aligned(orbit, word))
             if polished is not None:
@@ -275,7 +271,7 @@ def _simulated(
     return None, nearest
 
 
-def _aligned(orbit: Orbit, word: Word) -> Orbit:
+def _aligned(orbit: Orbit, word: Any) -> Orbit:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
     images = (orbit, orbit.mirror()) if orbit.model.has_mirror(orbit.params) else (orbit,)
     for candidate in images:
@@ -285,9 +281,9 @@ def _aligned(orbit: Orbit, word: Word) -> Orbit:
     return orbit
 
 
-def _random(model: Model, word: Word, periods: int, params: np.ndarray, made: Any) -> Orbit | None:
+def _random(model: Any, word: Any, periods: int, params: np.ndarray) -> Orbit | None:
     """Newton's method from random nodes, where the machine has any: the first real orbit found, else the first proper one."""
-    if len(word) > LONG:
+    if len(word) > LONGEST:
         return None
     generator = np.random.default_rng(7)
     fallback = None
@@ -295,8 +291,11 @@ def _random(model: Model, word: Word, periods: int, params: np.ndarray, made: An
         nodes = model.random_nodes(word, periods, params, generator)
         if nodes is None:
             return None
-        orbit = polish(made(model, word, periods, nodes, params), limit=25)
-        if orbit is None or not _proper(orbit) or orbit.root().periods != periods:
+        orbit = polish(Orbit(model, word, periods, nodes, params), limit=25)
+        if orbit is None or not _proper(orbit):
+            continue
+        root = orbit.root()
+        if (len(root.word), root.periods) != (len(word), periods):
             continue
         if orbit.real:
             return orbit

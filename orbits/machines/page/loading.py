@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import copyreg
 import importlib.util
 import sys
 from pathlib import Path
 from typing import Any
 
 from orbits.machines.page.machine import Machine
-from orbits.machines.page.page import digest_of
+from orbits.machines.page.page import digest_of, object_name
 
 
 def load_page(path: str | Path, name: str) -> Any:
@@ -43,3 +44,11 @@ def load_page(path: str | Path, name: str) -> Any:
         known = [key for key, value in vars(module).items() if isinstance(value, Machine)]
         raise ValueError(f"{path}: it has no machine {name!r}; it declares {', '.join(known) or 'none'}")
     return machine
+
+
+def _again(machine: Machine) -> tuple[Any, tuple[str, str]]:
+    """How another process gets the machine: it runs the page itself."""
+    return load_page, (machine.page.path, object_name(machine))
+
+
+copyreg.pickle(Machine, _again)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from contvines.shared.near_arguments import hinting
 from contvines.shared.near_names import no_parameter
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.letters import HIT
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
 from orbits.doors import above
@@ -61,6 +62,8 @@ class Machine(Varying):
     """
 
     flow = "page"
+
+    patience: ClassVar[int] = 2
 
     @hinting
     def __init__(
@@ -217,6 +220,10 @@ class Machine(Varying):
         vector = self.vector() if params is None else params
         return parse(text, self.alphabet, self.absent(vector), default)
 
+    def word_of(self, events: Sequence[str], modes: Sequence[Sequence[int]], params: np.ndarray) -> PageWord:
+        """The word with these events and modes."""
+        return PageWord(tuple(events), tuple(tuple(mode) for mode in modes), self.alphabet)
+
     def rest_mode(self, params: np.ndarray, state: np.ndarray, clock: float) -> tuple[int, ...]:
         """Modes that a state suggests: free walls, signs of velocities and surfaces."""
         absent = self.absent(params)
@@ -233,6 +240,43 @@ class Machine(Varying):
             else:
                 modes.append(STUCK if value == 0.0 else (1 if value > 0.0 else -1))
         return tuple(modes)
+
+    @property
+    def node_names(self) -> tuple[str, ...]:
+        """Unknowns of an event: the phase, or the duration of the flight that follows, and the states after it."""
+        return ("phase" if self.forced else "duration", *self.states)
+
+    def start_nodes(self, word: PageWord, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+        """Nothing is known in closed form."""
+        return iter(())
+
+    def unshaken(self, params: np.ndarray) -> None:
+        """What shakes a page is not known."""
+
+    def random_nodes(
+        self, word: PageWord, periods: int, params: np.ndarray, generator: np.random.Generator
+    ) -> np.ndarray:
+        """Nodes at random, impacts such that they leave their wall."""
+        n = max(1, len(word))
+        nodes = generator.uniform(-1.0, 1.0, (n, self.size + 1))
+        if self.forced:
+            nodes[:, 0] = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, n))
+        else:
+            nodes[:, 0] = generator.uniform(0.1, 6.0, n)
+        nodes[:, 1:] *= 10.0 ** generator.uniform(-1.0, 1.0)
+        if not len(word):
+            nodes[0, 0] = 0.0
+        for i in range(len(word)):
+            letter = word.letter(i)
+            if letter.kind != HIT:
+                continue
+            clock = float(nodes[i, 0]) if self.forced else 0.0
+            numbers = self.compiled.numbers(params, word.modes[i])
+            row = self.compiled.approach(letter.contact).one(nodes[i, 1:], clock, numbers)
+            rate, slope, push = row[0], row[1 : self.size + 1], row[self.size + 1 :]
+            if rate < 0.0:
+                nodes[i, 1:] -= 2.0 * rate / float(slope @ push) * push
+        return nodes
 
     def random_start(
         self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
@@ -272,8 +316,8 @@ class Machine(Varying):
         guess: Any = None,
         **parameters: float,
     ) -> Any:
-        """Solve for the orbit with this word; see `orbits.declared.starts.find`."""
-        return above("find_on_page")(self, word, periods, guess, parameters)
+        """Solve for the orbit with this word; see `orbits.starts.find`."""
+        return above("find")(self, word, periods, guess, parameters)
 
 
 __all__ = ["Machine", "PageError"]

@@ -54,9 +54,9 @@ def test_diagrams_run_over_what_is_shown():
     plain, shown = stop(SI).attractor().found, stop(SHOWN, UNITS).attractor().found
     ours = cv.diagram(shown, over="frequency", within=(5.2, 5.8), depth=0)
     theirs = cv.diagram(plain, over="frequency", within=(2 * np.pi * 5.2, 2 * np.pi * 5.8), depth=0)
-    assert [p.kind for p in ours.points.values()] == [p.kind for p in theirs.points.values()]
-    told = [p.value / (2 * np.pi) for p in theirs.points.values()]
-    assert [p.value for p in ours.points.values()] == pytest.approx(told, rel=1e-8)
+    assert [p.kind for p in ours.special.values()] == [p.kind for p in theirs.special.values()]
+    told = [p.value / (2 * np.pi) for p in theirs.special.values()]
+    assert [p.value for p in ours.special.values()] == pytest.approx(told, rel=1e-8)
 
 
 def test_bad_units_are_refused():
