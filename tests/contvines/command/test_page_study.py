@@ -98,7 +98,7 @@ def test_limits_of_what_varies(study, parameter, within, sentence):
 
 def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     run("diagram", study, "-q")
-    from orbits.declared import stored
+    from orbits.machines.page import stored
 
     monkeypatch.setattr(stored, "loaded", lambda settings: None)  # as in another process
     assert cv.load("stop.vines")["B1"].problem is None
@@ -113,7 +113,7 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
 def test_robustness_of_a_page(study, monkeypatch):
     run("diagram", study, "-q", "--no-look")
     with monkeypatch.context() as patch:
-        patch.setattr("orbits.declared.stored.loaded", lambda settings: None)  # as in another process
+        patch.setattr("orbits.machines.page.stored.loaded", lambda settings: None)  # as in another process
         done = run("robustness", "stop.vines", "B1", "--at", "2.3")
     assert done.exit_code != 0 and "--trust" in str(done.exception)
     graph = cv.load("stop.vines", trust=True)
