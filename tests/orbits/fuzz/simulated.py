@@ -70,12 +70,15 @@ def _said(label: str, orbit: Any) -> str:
 
 
 def _unsaid(graph: Any, branch: Any, i: int) -> bool:
-    """Whether points i and i + 1 are special points at which the graph says that stable orbits between them would not show."""
-    labels = [
-        {label for k, label in branch.marks if k == place} & graph.special.keys() for place in (i, i + 1)
-    ]
-    near = abs(branch.values[i + 1] - branch.values[i]) < UNRESOLVED * max(1.0, abs(branch.values[i]))
-    return near and any(
+    """Whether points i and i + 1 lie between special points at which the graph says that stable orbits between them would not show."""
+    places = [place for place, label in branch.marks if label in graph.special]
+    before, after = ([k for k in places if k <= i], [k for k in places if k > i])
+    if not before or not after:
+        return False
+    ends = max(before), min(after)
+    labels = [{label for k, label in branch.marks if k == place} & graph.special.keys() for place in ends]
+    near = np.ptp(branch.values[ends[0] : ends[1] + 1]) < UNRESOLVED * max(1.0, abs(branch.values[i]))
+    return bool(near) and any(
         f"from {there}: solutions between" in graph[here].note
         for one, other in (labels, labels[::-1])
         for here in one
