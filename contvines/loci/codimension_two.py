@@ -69,11 +69,13 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
                 assert rough is not None
                 if _through_infinity(plane, (look, rough), places[i : i + 2], (a, b)):
                     continue
-                near = solved(plane, problem, at, look.kind, rough, guess, gap, ROUGHLY)
+                near = solved(plane, problem, at, look.kind, rough, guess, gap, ROUGHLY, rough)
                 if near is not None:
                     guess, gap = Place(near.u, *near.value), 0.1 * gap
-            close = NOISY if look in costly else CLOSE
-            point = solved(plane, problem, at, look.kind, test, guess, gap, close)
+            close, slopes = CLOSE, None
+            if look in costly:
+                close, slopes = NOISY, test_of(look, problem, at, rough=True)
+            point = solved(plane, problem, at, look.kind, test, guess, gap, close, slopes)
             if point is not None and look in costly:
                 left = _evaluated(plane, Place(point.u, *point.value), [(look, test)])[0]
                 if not abs(left) <= VANISHED * max(abs(a), abs(b)):
@@ -163,11 +165,12 @@ def solved(
     guess: Place,
     reach: float,
     close: float = CLOSE,
+    rough: Test | None = None,
 ) -> PlanePoint | None:
     """The point where a test vanishes on a locus; None if Newton's method does not find it near the guess."""
     conditions = [*own_conditions(plane, locus, at), test]
     try:
-        result = plane.refined(conditions, guess, reach, locus.unfolded, close)
+        result = plane.refined(conditions, guess, reach, locus.unfolded, close, rough)
     except (ValueError, np.linalg.LinAlgError):
         return None
     if result is None:

@@ -14,6 +14,7 @@ from .problem import LocusProblem
 
 STEP = 1e-5  # of central differences of the conditions, relative to the unknowns
 ITERATIONS, HALVINGS = 16, 4  # of Newton's method
+FAST = 0.1  # part of the last correction below which slopes of a costly condition need not be renewed
 ROUNDOFF = 1e-12  # relative size of a derivative that is none
 CLOSE = 1e-9  # corrections below this no longer shrink: roundoff of the conditions
 
@@ -110,6 +111,7 @@ class Plane:
         reach: float,
         unfolded: bool,
         close: float = CLOSE,
+        rough: Callable[[Plane], float] | None = None,
     ) -> tuple[Place, float] | None:
         """Newton's method for F = 0 and the conditions; (place, last correction), or None.
 
@@ -123,7 +125,10 @@ class Plane:
             F = 0 is asked for up to one multiple of the left null vector.
         close : float
             Corrections below this no longer shrink: roundoff of the conditions.
+        rough : callable, optional
+            The last condition is costly; this is what its slopes are taken from, and no more often than corrections ask for.
         """
+        kept: np.ndarray | None = None  # slopes of the costly condition along p, q and the null vector
         u, p, q = np.array(guess.u), guess.p, guess.q
         scale = self.locus.sizes_at(u, p, q)
         last, change, halvings = np.inf, np.zeros(len(u) + 2), 0
@@ -140,7 +145,12 @@ class Plane:
             directions += [np.append(solved[2][0], [0.0, 1.0]), np.append(v, [0.0, 0.0])]
             here = Place(u, p, q)
             values = np.array([f(self) for f in conditions])
-            slopes = np.array([self._slope(conditions, here, d, scale) for d in directions])
+            asked = conditions
+            if rough is not None:
+                asked = conditions[:-1] if kept is not None else [*conditions[:-1], rough]
+            slopes = np.array([self._slope(asked, here, d, scale) for d in directions])
+            if kept is not None:
+                slopes = np.column_stack([slopes, np.append(0.0, kept)])
             if not (np.isfinite(values).all() and np.isfinite(slopes).all()):
                 # beyond the end of what a condition can be asked for (a pair that has become real): half the way
                 halvings += 1
@@ -169,9 +179,10 @@ class Plane:
                 return None
             change[-2:] = dp, dq
             u, p, q = u + change[:-2], p + float(dp), q + float(dq)
-            if size < 1e-14 or (size < close and size > 0.3 * last):
+            if size < 1e-14 or (size < close and size > 0.3 * last and kept is None):
                 last = size
                 break
+            kept = slopes[1:, -1] if rough is not None and size < FAST * last else None
             last = size
         if last > close:
             return None
