@@ -93,9 +93,9 @@ def calibrate(
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"--confidence {confidence:g}: give a number between 0 and 1, for example 0.95.")
     read = checked_study(study)
-    if read.machine is not None:
+    if read.machine is not None and release is not None:
         raise ValueError(
-            f"{study}: [model] name = {read.name!r}: the built-in machines can be calibrated, a page cannot."
+            f"--release {release}: a page says where its motions begin: give [start] state and --impacts."
         )
     names = list(dict.fromkeys(unknown or ["restitution"]))
     if release is None:
@@ -185,11 +185,11 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
 
 def _guesses(study: Any, names: list[str]) -> tuple[Any, dict[str, float]]:
     """The machine told by the unknown parameters, and their values in the study."""
-    from contvines.command.compose import machine
+    from contvines.command.compose import loose, machine
     from orbits.machines.physical.quantities import near_quantity
 
     model = machine(study)
-    known = list(model.tables.QUANTITIES) if study.quantities else list(study.parameters)
+    known = list(model.tables.QUANTITIES) if study.quantities else list(model.amount_names)
     for name in names:
         if name not in known:
             raise ValueError(
@@ -197,8 +197,8 @@ def _guesses(study: Any, names: list[str]) -> tuple[Any, dict[str, float]]:
             )
         if study.quantities:
             model = model.told_by(name)
-    values = model.quantities if study.quantities else study.parameters
-    return model, {name: float(values[name]) for name in names}
+    values = model.quantities if study.quantities else model.parameters if study.machine else study.parameters
+    return model, {name: float({**values, **loose(study)}[name]) for name in names}
 
 
 def _limits(said: list[str], names: list[str], model: Any) -> dict[str, tuple[float, float]]:
@@ -226,7 +226,9 @@ def _limit(text: str, name: str, said: str, model: Any) -> float:
 
     try:
         value = amount("", said, name, model.units)
-        if model.units.get(name):
+        if model.flow == "page":
+            model.check_value(name, value)
+        elif model.units.get(name):
             refusal = number_of(model, name, f"{value!r} {model.units[name]}", said)[1]
             if refusal:
                 raise ValueError(refusal)
@@ -253,7 +255,7 @@ def _from_impacts(
     params = model.vector(loose(study))
     length, unit, _, second = scales(model, params)
     (times,) = measured(path, (Column("time", second),))
-    start = None
+    start = study.state if study.machine is not None else None
     if release is not None:
         displacement = length_on_line(release, "--release", unit) / length
         if "damping" not in model.parameter_names:
@@ -289,8 +291,8 @@ def _from_sweep(
     from orbits.attractors.sweep import measure_names
     from orbits.design.calibration import from_sweep
 
-    over, name = study.parameter, measure or "max_abs_q1"
     known = measure_names(model)
+    over, name = study.parameter, measure or ("max_abs_q1" if model.flow == "native" else known[0])
     if name not in known:
         raise ValueError(f"--measure {name}: a simulation tells {', '.join(known)}.")
     if over in guesses:
@@ -300,7 +302,7 @@ def _from_sweep(
     unit = model.units.get(name, "")
     own = model.units.get(over, "")
     values, heights = measured(path, (Column(over, own), Column("response", unit)))
-    if own:
+    if own and study.quantities:
         for row, value in enumerate(values, 1):
             _, refusal = number_of(
                 model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}"

@@ -106,8 +106,8 @@ def length_on_line(text: str, option: str, unit: str) -> float:
 
 def scales(model: Any, params: Any) -> tuple[float, str, float, str]:
     """What a dimensionless length and time are in the units that a study shows, and these units ("" for plain numbers)."""
-    if not model.units:
-        return 1.0, "", 1.0, ""
+    if not model.units or model.flow == "page":
+        return 1.0, "", 1.0, model.units.get("time", "")
     gauges = model.tables.GAUGES
     from orbits.machines.physical import units
 

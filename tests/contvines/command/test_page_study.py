@@ -3,6 +3,7 @@
 import json
 import re
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -173,3 +174,33 @@ def test_commands_that_know_the_built_in_machines_alone(study):
     ):
         done = run(command, study)
         assert done.exit_code == 1 and why in str(done.exception)
+
+
+def struck(restitution, count, forcing=1.0, frequency=2.3, damping=0.05, gap=0.05):
+    """Instants of the stop's impacts from rest, by DOP853 with an event."""
+    from scipy.integrate import solve_ivp
+
+    def rates(t, s):
+        return [s[1], forcing * np.cos(frequency * t) - 2 * damping * s[1] - s[0]]
+
+    def hit(t, s):
+        return gap - s[0]
+
+    hit.terminal, hit.direction = True, -1
+    times, t, s = [], 0.0, [0.0, 0.0]
+    while len(times) < count:
+        run = solve_ivp(rates, (t, t + 100.0), s, "DOP853", events=hit, rtol=1e-11, atol=1e-12)
+        t, s = run.t[-1], [gap - 1e-15, -restitution * run.y[1, -1]]
+        times.append(t)
+    return times
+
+
+def test_a_page_is_calibrated(study):
+    (study.parent / "hits.csv").write_text(
+        "time\n" + "".join(f"{t!r}\n" for t in map(float, struck(0.66, 8)))
+    )
+    done = run("calibrate", study, "--impacts", "hits.csv", "--limits", "restitution=0.4,0.9", "--json")
+    assert done.exit_code == 0, done.exception
+    assert json.loads(done.stdout)["values"]["restitution"] == pytest.approx(0.66, abs=1e-6)
+    refused = run("calibrate", study, "--impacts", "hits.csv", "--release", "1")
+    assert "a page says where its motions begin" in str(refused.exception)
