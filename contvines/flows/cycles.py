@@ -23,6 +23,7 @@ from .measures import CycleMeasures
 from .returns import ReturnMap
 from .sparse import LEADING, SparseEquations
 from .sparse import distance_to_rest as rest_of_sparse
+from .witness import Witnessed
 
 SAME = 1e-7  # points closer than this, in units of the scale, are one
 AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
@@ -36,7 +37,7 @@ ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's m
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
-class CycleProblem(CycleMeasures, ProblemDefaults):
+class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
     """Cycles of x' = f(x, p), or of x' = f(x, p, t) with a given period in t.
 
     Unknowns are the values at the nodes of each interval of the mesh, shape (N, m, d), the period (autonomous flows), and the widths
@@ -92,7 +93,7 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
         self.n_multipliers = self.node - self.free_period
         if self.sparse is not None:  # the largest ones alone
             self.kernels, self.n_multipliers = SPARSE, min(LEADING, self.n_multipliers)
-        self.n_margins = self.free_period
+        self.n_margins = 2 * self.free_period
         self.u0 = np.array(u, dtype=float)
         if len(self.u0) != self.dimension:
             raise ValueError(f"{len(self.u0)} unknowns; {self.dimension} are needed")
@@ -120,6 +121,14 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
     def period_place(self) -> int:
         """Which of the unknowns is the period."""
         return self.states
+
+    def waiting(self, u: np.ndarray, p: float, period: float) -> np.ndarray:
+        """A guess of a nearly homoclinic cycle of another period: it stays longer, or less long, where it is slowest."""
+        x, now, widths = self.parts(u, p)
+        speeds = np.linalg.norm(self.field(x[:, 0], p) / self.node_scale, axis=1)
+        slowest, times = int(np.argmin(speeds + np.roll(speeds, -1))), now * widths
+        times[slowest] = max(times[slowest] + period - now, 0.1 * times[slowest])
+        return self.joined(x, period, times / times.sum())
 
     def workspace(self) -> CycleWork:
         """Arrays for the kernels."""
@@ -304,8 +313,8 @@ class CycleProblem(CycleMeasures, ProblemDefaults):
             scaled = jacobian * (self.node_scale / self.node_scale[:, None])
             closeness = _distance_to_rest(scaled, f / self.node_scale)
         if not size > 0.0 or not np.isfinite(closeness):
-            return np.array([short])
-        return np.array([min(short, float(np.log10(max(closeness / size, 1e-300) / CLOSE)))])
+            return np.array([np.inf, short])
+        return np.array([float(np.log10(max(closeness / size, 1e-300) / CLOSE)), short])
 
     def margin_kind(self, j: int) -> str:
         """A cycle that comes near to an equilibrium ends as a homoclinic orbit."""

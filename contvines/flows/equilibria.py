@@ -11,11 +11,13 @@ from scipy.sparse import issparse
 from ..problems.algebraic import AlgebraicProblem
 from ..problems.protocol import Embedding
 from . import mesh
+from .witness import Witnessed
 
+CRITICAL = 1e-8  # real part of an eigenvalue, relative to the largest one, that is zero
 FIRST = 20  # intervals of a cycle that has just been born
 
 
-class Equilibria(AlgebraicProblem):
+class Equilibria(Witnessed, AlgebraicProblem):
     """Equilibria of x' = f(x, p).
 
     Parameters
@@ -59,7 +61,7 @@ class Equilibria(AlgebraicProblem):
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
-        """At a Hopf point: the cycles that are born there, with the direction in which their amplitude grows."""
+        """At a Hopf point: the cycles that are born there, with the direction in which their amplitude grows; of each pair where two are critical."""
         if kind != "hopf" or self.functions.structure == "free":
             return []
         matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
@@ -69,8 +71,10 @@ class Equilibria(AlgebraicProblem):
         upper = np.flatnonzero(values.imag > 0.0)
         if not len(upper):
             return []
-        k = upper[int(np.argmin(np.abs(values[upper].real)))]
-        return [cycles_at(self, u, p, float(values[k].imag), vectors[:, k])]
+        distances, size = np.abs(values[upper].real), float(np.abs(values).max())
+        order = np.argsort(distances, kind="stable")
+        critical = [upper[k] for k in order if k == order[0] or distances[k] < CRITICAL * size]
+        return [cycles_at(self, u, p, float(values[k].imag), vectors[:, k]) for k in critical]
 
     def population(self, over: str | None = None, **options: Any) -> Any:
         """Starts round the flow's start, and what they settle on."""

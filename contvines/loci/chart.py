@@ -191,10 +191,9 @@ def chart_from_entries(
         own = dict(content)
         for name in ("parameters", "value", "margins"):
             own[name] = tuple(own[name])
-        on = next((chart.loci[name] for name in own["on"] if name in chart.loci), None)
-        problem = None if on is None or on.problem is None else on.problem.at(own["value"][1])
-        if problem is not None and problem.dimension != len(own["u"]):
-            problem = None
+        on = [chart.loci[name].problem for name in own["on"] if name in chart.loci]
+        owners = [each for each in on if each is not None and each.size == len(own["u"])]
+        problem = owners[0].at(own["value"][1]) if owners else None
         chart.points[label] = PlanePoint(problem=problem, **own)
     for label, found in marks.items():
         if found is not None:

@@ -18,11 +18,12 @@ from ..graph.identity import same_form
 from ..journal import NullJournal
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
+from .born import Candidate
 from .chart import Chart
 from .codimension_two import find
 from .coefficients_at import coefficients
 from .crossings import crossings
-from .departures import Candidate, leaving
+from .departures import leaving
 from .kinds import PREFIXES, condition
 from .known_motions import KnownMotions, together
 from .layout import BRANCH, FOLD, MARGIN

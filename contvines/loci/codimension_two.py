@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from ..problems.abilities import Adaptive
 from .conditions import COEFFICIENTS, UNKNOWN, References, Test, coefficient_of, own_conditions, test_of
 from .kinds import TOUCH, Look, looks
-from .layout import FLIP, FOLD, MARGIN, PAIR
+from .layout import FLIP, FOLD, MARGIN, PAIR, PERIOD
 from .locus import Locus
 from .plane import CLOSE, Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
-from .starts import SINGULAR
+from .starts import SINGULAR, begin
 from .touching import touching_form
 
 END = 1e-8  # points closer than this part of the interval to its ends are the ends
@@ -34,7 +37,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     points, values = locus.branch.points, locus.branch.values
     places = [Place(u, float(p), float(q)) for (u, p), q in zip(map(problem.split, points), values)]
     wanted = looks(plane.problem, problem.condition)
-    if problem.condition == MARGIN and _singular(plane, places):
+    if problem.condition == PERIOD or (problem.condition == MARGIN and _singular(plane, places)):
         return []  # nothing can be told from equations that are singular all along
     found: list[tuple[int, PlanePoint]] = []
     costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in COEFFICIENTS}
@@ -84,7 +87,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
                 if look is TOUCH:
                     point.coefficients = touching_form(plane, Place(point.u, *point.value), problem.index)
                 found.append((i, point))
-    found += _at_borders(locus, plane, places)
+    found += _at_borders(locus, plane, places) + _where_born(problem, places)
     return sorted((pair for pair in found if not _at_end(locus, pair[1])), key=lambda pair: pair[0])
 
 
@@ -273,3 +276,47 @@ def same_point(one: PlanePoint, other: PlanePoint) -> bool:
     return one.kind == other.kind and all(
         abs(a - b) <= 1e-7 * (1.0 + abs(a)) for a, b in zip(one.value, other.value)
     )
+
+
+#: what is followed -> kinds of the points at which it begins beside equilibria, and beside cycles of half the period
+FIRST_OF_EQUILIBRIA = {
+    FOLD: ("generalized-hopf",),
+    PAIR: ("zero-hopf", "double-hopf"),
+    FLIP: ("double-hopf",),
+}
+FIRST_OF_CYCLES = {
+    FOLD: ("generalized-period-doubling",),
+    PAIR: ("resonance-1-2", "fold-flip", "flip-neimark-sacker"),
+}
+LOOSE = 1e-3  # relative size of what has all but become an equilibrium, or a cycle of half the period
+NEAR_END = 0.02  # distance at which its point of codimension two is sought, relative to the unknowns
+
+
+def _where_born(locus: LocusProblem, places: list[Place]) -> list[tuple[int, PlanePoint]]:
+    """The points at whose motion the cycles of a locus begin: an equilibrium, or a cycle of half the period."""
+    found: list[tuple[int, PlanePoint]] = []
+    cycles: Any = locus.base
+    if not isinstance(cycles, Adaptive):
+        return found
+    for i, place in ((0, places[0]), (len(places) - 2, places[-1])):
+        whole: Any = locus.at(place.q)
+        root = whole.root(place.u, place.p, loose=LOOSE)
+        if root is None:
+            continue
+        own, u = root
+        still = own.spectrum == "flow"
+        kinds = (FIRST_OF_EQUILIBRIA if still else FIRST_OF_CYCLES).get(locus.condition, ())
+        parent = begin(own, "hopf" if still else own.flip_kind, u, place.p, locus.over, 0, locus.bounds)
+        plane, guess = Plane(parent), Place(u, place.p, place.q)
+        if not plane.at(guess) < 1e300:
+            continue
+        at = References(plane, parent)
+        for look in looks(own, parent.condition):
+            test = test_of(look, parent, at) if look.kind in kinds else None
+            point = (
+                None if test is None else solved(plane, parent, at, look.kind, test, guess, NEAR_END, NOISY)
+            )
+            if point is not None:
+                found.append((i, point))
+                break
+    return found

@@ -28,6 +28,7 @@ native/loci.hpp has the same for compiled problems.
 import math
 
 from .layout import (
+    APART,
     BASE,
     BASE_F,
     BASE_Q,
@@ -51,6 +52,7 @@ from .layout import (
     MASKED,
     MULTIPLIERS,
     PAIR,
+    PERIOD,
     POINT,
     REFERENCE,
     RESIDUAL,
@@ -270,6 +272,8 @@ def locus_inspect(data, U, q, work, row):
     row[own] = U[n] - reference[3]
     row[own + 1] = reference[4] - U[n]
     row[own + 2] = math.inf
+    if kind == PERIOD:  # a homoclinic orbit is near as long as the cycle comes near to an equilibrium
+        row[2 * multipliers] = APART - row[2 * multipliers]
     for j in work[MASKED]:
         row[2 * multipliers + j] = math.inf
     if kind == PAIR:

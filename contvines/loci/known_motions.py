@@ -129,7 +129,7 @@ def _told(problem: Any) -> bool:
 def _key(problem: Any, label: str) -> str:
     """Equal for motions of one word; of what has no words every branch is tried."""
     about = problem.describe()
-    if "word" not in about:
+    if "word" not in about or "flow" in about:  # words of flows say "cycle" alone
         return label
     return f"{about.get('word')} {about.get('periods')} {bool(about.get('symmetric'))}"
 

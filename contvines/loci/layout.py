@@ -44,5 +44,6 @@ B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
 KNOWN, SIGN, ANGLE, SERVED = range(
     4
 )  # entries of STATE; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
+APART = 4.5  # decades that a cycle may be further from an equilibrium than a homoclinic end of a branch is: 3 % of its size
 LONGEST = 4  # points that borders serve
 TURNED = 1.02  # length of the null vector, as long as c at first, at which they do not any more

@@ -16,7 +16,7 @@ from ..problems.protocol import Problem
 from .adaptive import AdaptiveLocus
 from .borders import borders_at
 from .kinds import condition
-from .layout import MARGIN, PAIR, PERIOD
+from .layout import APART, MARGIN, PAIR, PERIOD
 from .linear import Linearisation
 from .probing import pair_of
 from .problem import LocusProblem, has_natural_units
@@ -67,7 +67,10 @@ def begin(
     line = Linearisation(problem)
     line.at(u, p)
     if wanted == PERIOD:
-        locus.masked = tuple(range(int(problem.n_margins)))  # near to the equilibrium all along
+        near = (
+            line.row()[2 * int(problem.n_multipliers)] < APART - 1.0
+        )  # not where an equilibrium is about to appear on the cycle
+        locus.masked = (1,) if near else (0, 1)
     if wanted == MARGIN:
         margins = line.row()[2 * int(problem.n_multipliers) :]
         locus.masked = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < ZERO)) or (index,)

@@ -25,8 +25,9 @@ from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
-from .layout import BRANCH, MARGIN
+from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
+from .long_period import lengthened
 from .problem import LocusProblem
 from .sides import impossible_side
 from .starts import begin, first_point, regular_side
@@ -47,13 +48,15 @@ def locus(
     virtual: bool = False,
     settings: Settings | Mapping[str, Any] | None = None,
     progress: Callable[[str, int, float], None] | None = None,
+    period: float | None = None,
 ) -> Locus:
     """Follow a special point of any kind in a second parameter.
 
     Parameters
     ----------
     point : SpecialPoint
-        Fold, symmetry breaking, branch point, period doubling, Neimark-Sacker, Hopf, or any border.
+        Fold, symmetry breaking, branch point, period doubling, Neimark-Sacker, Hopf, any border, or a homoclinic end of a branch of
+        cycles of a flow.
     over : str
         Name of the second parameter.
     within : (float, float)
@@ -65,6 +68,9 @@ def locus(
     settings : Settings or mapping, optional
     progress : callable, optional
         Called with (label, number of points, value of the second parameter).
+    period : float, optional
+        Of a homoclinic end: the period of the cycles that stand for the homoclinic orbits along the locus; the one at the end of
+        the branch if it is left out.
 
     Returns
     -------
@@ -80,6 +86,12 @@ def locus(
     if point.problem is None:
         raise ValueError(without_problem(point.label))
     within = check_interval(within)
+    if period is not None:
+        if point.kind != "homoclinic":
+            raise ValueError(
+                f"period = {period!r}: {point.label} is no homoclinic end of a branch ({point.kind})"
+            )
+        point = lengthened(point, period)
     point = regular_side(point)
     assert point.problem is not None
     known = point.problem.parameters
@@ -259,6 +271,11 @@ def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
     if border is None:
         return _becoming(problem, half) or half.status.sentence(problem.over, half.end)
     kind, p, q = problem.margin_kind(border.index), problem.split(border.point.u)[1], border.point.p
+    if problem.condition == PERIOD and kind == "homoclinic":
+        return (
+            f"a period of {problem.reference:.6g} is too short at {problem.inner} = {p:.6g}, {problem.over} = {q:.6g}: "
+            "the cycle comes no nearer to an equilibrium than 3 % of its size; give a longer period="
+        )
     place = f"{problem.inner} = {p:.10g}, {problem.over} = {q:.10g}"
     if kind == "end":
         return f"reaches the end of the interval of {problem.inner}, {place}"

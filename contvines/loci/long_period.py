@@ -1,0 +1,64 @@
+"""Homoclinic ends of branches with another, longer period."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..branches.special_point import SpecialPoint
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+
+LONGER = 1.3  # factor from one period to the next, on the way to a longer one
+
+
+def lengthened(point: SpecialPoint, period: float) -> SpecialPoint:
+    """A homoclinic end of a branch with another period.
+
+    Where it is longer the cycle waits at its slowest point.
+
+    Raises
+    ------
+    ValueError
+        If the period is not positive, or no such cycle is found.
+    """
+    problem: Any = point.problem
+    u, p = np.array(point.u), float(point.value)
+    if not period > 0.0:
+        raise ValueError(f"period = {period!r} must be positive")
+    while True:
+        now = float(u[problem.period_place])
+        if now == period:
+            return replace(point, problem=problem, u=u, value=p)
+        wanted = min(max(period, now / LONGER), now * LONGER)
+        found = _of_period(problem, problem.waiting(u, p, wanted), p, wanted)
+        if found is None:
+            raise ValueError(
+                f"{point.label}: no cycle of period {wanted:.6g} is found beyond the one of {now:.6g}"
+            )
+        problem, u, p = found
+
+
+def _of_period(problem: Any, u: np.ndarray, p: float, period: float) -> tuple[Any, np.ndarray, float] | None:
+    """The cycle of a given period near a guess, on a mesh that suits it."""
+    border = np.zeros(problem.dimension + 1)
+    border[problem.period_place] = 1.0
+    while True:
+        width = 1.0 + abs(p)
+        engine = Engine(problem, (p - width, p + width), Settings())
+        found = engine.solve(u, p, border, period)
+        if found is None:
+            return None
+        image = problem.adapted(found.u)
+        if image is not None:
+            u, p = image(found.u), found.p
+            again = engine.solve(u, p, border, period)
+            found = found if again is None else again
+        if not problem.too_coarse(found.u):
+            return problem, found.u, found.p
+        u, p = problem.halved(found.u), found.p
+        problem = problem.with_unknowns(u, p, 2 * problem.intervals, problem.copies)
+        border = np.zeros(problem.dimension + 1)
+        border[problem.period_place] = 1.0
