@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import platform
 import sysconfig
 from pathlib import Path
 from typing import Any
@@ -46,5 +47,7 @@ class CustomBuildHook(BuildHookInterface):
         root = Path(self.root)
         build_data["artifacts"] += [str(path.relative_to(root)) for path in made]
         build_data["pure_python"] = False
-        platform = os.environ.get("CONTVINES_WHEEL_PLATFORM") or sysconfig.get_platform()
-        build_data["tag"] = f"py3-none-{platform.replace('-', '_').replace('.', '_')}"
+        # one processor's code also where Python itself is universal
+        own = sysconfig.get_platform().replace("universal2", platform.machine())
+        name = os.environ.get("CONTVINES_WHEEL_PLATFORM") or own
+        build_data["tag"] = f"py3-none-{name.replace('-', '_').replace('.', '_')}"

@@ -30,7 +30,7 @@ SETTLED, AT_REST, LOST, WANDERING = 1, 2, 3, 0
 
 BLOCK = 512  # motions that one thread takes at a time
 BUFFER = 1024  # events kept between two looks
-WORK = 3e4  # events and periods of one native call: an interrupt is seen between two calls
+WORK = 8e3  # events and periods of one native call: an interrupt is seen between two calls
 RESULTS = ("periods", "impacts", "holds", "gaps", "outcome")
 
 
