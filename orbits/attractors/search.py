@@ -9,9 +9,10 @@ import numpy as np
 
 from orbits.attractors import page
 from orbits.attractors.observation import lasting
-from orbits.attractors.recurrence import left_over
+from orbits.attractors.recurrence import left_over, settle
 from orbits.flows.page.stepper import Stepper
 from orbits.flows.protocol import SimulationError
+from orbits.simulation.page import PageSimulator
 
 SAME = 1e-4  # difference of the nodes of one motion met twice
 DRAWS = 200  # starts drawn at most to find one that can be simulated
@@ -67,6 +68,16 @@ def find_attractor(
     length = 300.0 if transient is None else transient
     tries = 2 if patience is None else patience
     return lasting(left_over(model, start, length, max_period, tolerance, tries, **parameters))
+
+
+def goes_on(simulator: Any, transient: int, max_period: int) -> Any:
+    """The attractor of the motion on which a simulator is, which is moved on; it is looked for once, after the transient."""
+    if isinstance(simulator, PageSimulator):
+        return page.attracted(simulator.stepper, transient, max_period, 0)
+    state = simulator.state
+    return settle(
+        simulator.model, simulator.engine, simulator.params, state, float(transient), max_period, 1e-6, 0
+    )
 
 
 def unobserved(model: Any, start: Any = None, **parameters: Any) -> Any:

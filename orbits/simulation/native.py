@@ -80,6 +80,10 @@ class NativeSimulator:
     def begin(self, word: Any, node: np.ndarray) -> None:
         """Just after the first event of a cycle."""
         self.state = state_of(self.engine, self.params, int(word.codes[0]), int(word.mode_codes[0]), node)
+        left, right = self.engine.walls(self.params)
+        self.state[W] = min(
+            max(self.state[W], right), left
+        )  # of a cycle of other parameters it may lie within a wall
 
     def follow(self, until: float) -> None:
         """Move on; `SimulationError` if the motion is not finite or comes to rest for ever."""
