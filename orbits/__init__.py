@@ -37,9 +37,7 @@ lead(
         "OrbitProblem": "orbits.problem:OrbitProblem",
         "Population": "orbits.population:Population",
         "portrait": "orbits.plots.portrait:portrait",
-        "portrait_of_page": "orbits.plots.declared:portrait",
         "scene": "orbits.plots.scene:scene",
-        "scene_of_page": "orbits.plots.declared:scene",
         "simulate": "orbits.simulation.driver:simulate",
     }
 )

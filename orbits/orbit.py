@@ -184,11 +184,11 @@ class Orbit(Cycle):
 
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""
-        return above("portrait_of_page" if self.model.flow == "page" else "portrait")(self, **options)
+        return above("portrait")(self, **options)
 
     def scene(self, points: int = 120) -> dict[str, Any]:
         """The orbit as plain numbers for a page that draws it; see `orbits.plots.scene.scene`."""
-        return above("scene_of_page" if self.model.flow == "page" else "scene")(self, points)
+        return above("scene")(self, points)
 
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from orbits.orbit import Orbit
 
+LINE = "#0b3c6f"  # colour of an orbit
 LENGTHS, RATES = ("w", "cavity", "absorber"), ("w_rate",)
 
 
@@ -77,7 +78,7 @@ def shown(orbit: Orbit, points: int) -> Shown:
     return Shown(motion, left, right, *events, length, velocity)
 
 
-def quantities(orbit: Any, digits: int = 6) -> dict[str, str]:
+def quantities(orbit: Orbit, digits: int = 6) -> dict[str, str]:
     """Parameters of an orbit by name as text: quantities with their units, or the machine's plain numbers.
 
     Parameters
@@ -85,8 +86,7 @@ def quantities(orbit: Any, digits: int = 6) -> dict[str, str]:
     orbit : Orbit
     digits : int
     """
-    model = getattr(orbit, "model", None)
-    about = {"parameters": orbit.parameters} if model is None else model.described(orbit.params)
+    about = orbit.model.described(orbit.params)
     units = about.get("units", {})
     return {
         name: f"{value:.{digits}g} {units.get(name, '')}".rstrip()

@@ -74,7 +74,9 @@ def test_loci_of_a_declared_machine_are_their_closed_forms():
     line.at(point.u, point.value)
     matrix = point.problem.kernels.matrix
     before = matrix(point.problem.data, line.work)
-    point.problem.kernels.transpose(point.problem.data, line.work, np.zeros(point.problem.dimension), line.other)
+    point.problem.kernels.transpose(
+        point.problem.data, line.work, np.zeros(point.problem.dimension), line.other
+    )
     assert np.array_equal(matrix(point.problem.data, line.other), before.T)
     for label, kind in (("LP1", "fold"), ("SB1", "symmetry-breaking")):
         locus = cv.locus(graph[label], over="friction", within=(0.35, 0.65))
