@@ -27,7 +27,6 @@ lead(
     {
         "attractor": "orbits.attractors.search:find_attractor",
         "attractors": "orbits.attractors.search:different_attractors",
-        "deviation_of_page": "orbits.declared.deviation:deviation",
         "find": "orbits.starts.find:find",
         "of_branch": "orbits.proofs.subjects:of_branch",
         "of_orbit": "orbits.proofs.subjects:of_orbit",

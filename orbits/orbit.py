@@ -11,7 +11,7 @@ import numpy as np
 
 from contvines.shared.near_arguments import hinting
 from orbits.cycles.cycle import Cycle
-from orbits.cycles.deviation import replay_error
+from orbits.cycles.deviation import deviation
 from orbits.doors import above
 from orbits.flows.protocol import Equations
 from orbits.words.margins import Margin, approaches_of, limits_of, margin_units, named_margins
@@ -148,9 +148,7 @@ class Orbit(Cycle):
 
     def replay(self) -> float:
         """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
-        if self.model.flow == "page":
-            return above("deviation_of_page")(self)
-        return replay_error(self, lambda: (self._examined[2], self.multipliers))
+        return deviation(self, lambda: (self._examined[2], self.multipliers))
 
     # ------------------------------------------------------------------ towards continuation
     @hinting

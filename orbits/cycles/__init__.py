@@ -1,1 +1,1 @@
-"""Cycles: margins, measures, identity and sampling of periodic motions."""
+"""Cycles: identity, rounds and deviation from the simulation of periodic motions."""

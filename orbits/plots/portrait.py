@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -148,7 +149,7 @@ def key(figure: Any, panels: Sequence[Axes], own: bool, legend: bool | str) -> N
         return
     axes = panels[-1]
     pairs = [panel.get_legend_handles_labels() for panel in panels]
-    handles, labels = (sum(part, []) for part in zip(*pairs))
+    handles, labels = (list(chain.from_iterable(part)) for part in zip(*pairs))
     if isinstance(legend, str) and legend != "below":
         chosen: dict[str, Any] = {"loc": legend, "fontsize": "small"}
         axes.legend(handles, labels, **chosen)

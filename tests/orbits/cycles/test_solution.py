@@ -5,7 +5,7 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber, Cavity
-from orbits.cycles.deviation import position_error
+from orbits.cycles.following_cavity import by_positions
 from orbits.cycles.identity import is_symmetric
 from orbits.simulation.replay import one_by_one, replay
 from orbits.words import Word
@@ -71,7 +71,7 @@ def test_a_stick_whose_end_comes_before_its_beginning_by_rounding_is_compared():
     nodes = orbit.nodes.copy()
     slip = orbit.word.events.index("u")
     nodes[slip - 1] = nodes[slip] + [3e-8, 0.0]
-    assert position_error(type(orbit)(orbit.model, orbit.word, 1, nodes, orbit.params)) < 1e-2
+    assert by_positions(type(orbit)(orbit.model, orbit.word, 1, nodes, orbit.params)) < 1e-2
 
 
 def test_orbits_on_which_rounding_grows_within_a_period_are_replayed_event_by_event():

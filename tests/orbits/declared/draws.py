@@ -12,7 +12,6 @@ import numpy as np
 
 import contvines as cv
 from orbits.contacts.letters import HOLD, RELEASE
-from orbits.declared.deviation import deviation
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.simulation.page import collect, outside
 from tests.orbits.declared.pages import page
@@ -80,7 +79,7 @@ def recurrence(machine, parameters, state, phase) -> int:
 
 def stays(orbit) -> bool:
     """Whether the simulation follows a stable orbit, and comes back to it after a small kick."""
-    if not deviation(orbit) < 1e-6:
+    if not orbit.replay() < 1e-6:
         return False
     if not len(orbit.multipliers) or np.abs(orbit.multipliers[0]) > CALM or orbit.margin < 1e-3:
         return True

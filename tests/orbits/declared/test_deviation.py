@@ -3,9 +3,10 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from orbits.declared import deviation as module
+from orbits.cycles import deviation as module
 from tests.orbits.declared.pages import page
 
 
@@ -22,18 +23,19 @@ from tests.orbits.declared.pages import page
 def test_the_smaller_deviation_counts_of_events_and_states_counts(
     monkeypatch, margin, multiplier, events, states, told
 ):
-    monkeypatch.setattr(module, "by_events", lambda orbit: events)
-    monkeypatch.setattr(module, "by_states", lambda orbit: states)
-    orbit = SimpleNamespace(margins=[SimpleNamespace(value=margin)], multipliers=[multiplier])
-    assert module.deviation(orbit) == told
+    followed = module.FOLLOWED["page"]
+    monkeypatch.setattr(followed, "by_events", lambda orbit: events)
+    monkeypatch.setattr(followed, "by_positions", lambda orbit: states)
+    orbit = SimpleNamespace(word="R", model=SimpleNamespace(flow="page"))
+    assert module.deviation(orbit, lambda: (np.array([margin]), np.array([multiplier]))) == told
 
 
 @pytest.mark.parametrize("early", [1e-8, 1e-5, 1e-3])
 def test_no_simulation_follows_events_in_the_wrong_order(early):
     """A stick that begins after the slip that ends it: nothing but time that runs back leads from the one to the other."""
     orbit = page("absorber").orbit("ss", amplitude=0.35, friction=0.5, gravity=0.4)
-    assert orbit.real and module.deviation(orbit) < 1e-12
+    assert orbit.real and orbit.replay() < 1e-12
     slip = orbit.word.events.index("u")
     nodes = orbit.nodes.copy()
     nodes[slip - 1, 0] = nodes[slip, 0] + early
-    assert module.deviation(replace(orbit, nodes=nodes)) == float("inf")
+    assert replace(orbit, nodes=nodes).replay() == float("inf")
