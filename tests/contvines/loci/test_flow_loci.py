@@ -1,0 +1,124 @@
+"""Loci and charts of flows against closed forms.
+
+A limit cycle r = 1 with angular speed 1, beside which further states z obey an equation of their own, z' = g(z): cycles are then equilibria
+of g, their multipliers exp(2 pi lambda) with the eigenvalues lambda of these, or minus that where z lives on a band that is twisted once.
+"""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+def ring(x):
+    growth = 1 - x[0] ** 2 - x[1] ** 2
+    return [x[0] * growth - x[1], x[0] + x[1] * growth]
+
+
+def ring_orbit(flow, *rest):
+    t = np.linspace(0, 2 * np.pi, 101)
+    return flow.cycle(t, np.column_stack([np.cos(t), np.sin(t), *(np.full(101, value) for value in rest)]))
+
+
+def bautin(x, p):
+    """r' = r (b1 + b2 r^2 - r^4): folds of cycles at b1 = -b2^2 / 4, b2 > 0."""
+    square = x[0] ** 2 + x[1] ** 2
+    growth = p.b1 + p.b2 * square - square**2
+    return [x[0] * growth - x[1], x[0] + x[1] * growth]
+
+
+def bogdanov_takens(x, p):
+    """Kuznetsov's normal form: folds b1 = b2^2 / 4, Hopf points b1 = 0, b2 < 0, homoclinic b1 = -6 / 25 b2^2 + O(b2^(5/2))."""
+    return [x[1], p.b1 + p.b2 * x[0] + x[0] ** 2 - x[0] * x[1]]
+
+
+def resonant(x, p):
+    """The same beside a cycle: folds of cycles, Neimark-Sacker points and a resonance 1:1."""
+    return [*ring(x), *bogdanov_takens(x[2:], p)]
+
+
+def test_folds_of_cycles_end_at_a_generalized_hopf_point():
+    graph = cv.diagram(cv.FlowProblem(bautin, [0.0, 0.0], {"b1": -1.0, "b2": 0.8}), over="b1", within=(-1, 1))
+    locus = cv.locus(graph["LP1"], over="b2", within=(-1.0, 2.0))
+    p, q = locus.values.T
+    assert np.abs(p + q**2 / 4).max() < 1e-10
+    assert q.max() == 2.0
+    (point,) = locus.points.values()
+    assert point.kind == "generalized-hopf"
+    assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable():
+    graph = cv.diagram(
+        cv.FlowProblem(bautin, [0.0, 0.0], {"b1": -1.0, "b2": -0.5}), over="b1", within=(-1, 1)
+    )
+    assert not graph.of_kind("fold")
+    chart = cv.chart(graph, "b2", (-1.5, 2.0))
+    assert {locus.kind for locus in chart.loci.values()} == {"hopf", "fold"}
+    (point,) = chart.points.values()
+    assert (point.kind, len(point.on)) == ("generalized-hopf", 2)
+    assert len(chart.regions) == 3
+    for region in chart.regions:
+        b1, b2 = region.at
+        wanted = (
+            ["cycle"]
+            if b1 > 0
+            else ["cycle", "equilibrium"]
+            if b2 > 0 and 4 * b1 > -(b2**2)
+            else ["equilibrium"]
+        )
+        assert sorted(region.words) == wanted
+        assert not region.others
+
+
+@pytest.mark.slow
+def test_loci_of_cycles_meet_at_a_resonance():
+    flow = cv.FlowProblem(resonant, [1.0, 0, 0, 0], {"b1": -0.05, "b2": -0.3}, scale=1.0)
+    orbit = ring_orbit(flow, (0.3 - np.sqrt(0.29)) / 2, 0.0)
+    graph = cv.diagram(orbit, over="b1", within=(-0.2, 0.2), depth=0)
+    assert graph["NS1"].value == pytest.approx(0.0, abs=1e-11)
+    fold = cv.locus(graph["LP1"], over="b2", within=(-0.6, 0.4))
+    p, q = fold.values.T
+    assert np.abs(p - q**2 / 4).max() < 1e-10
+    pair = cv.locus(graph["NS1"], over="b2", within=(-0.6, 0.4))
+    p, q = pair.values.T
+    assert np.abs(p).max() < 1e-10
+    assert q.max() == pytest.approx(0.0, abs=1e-6)
+    (point,) = fold.points.values()
+    assert point.kind == "resonance-1-1"
+    assert point.value == pytest.approx((0.0, 0.0), abs=1e-10)
+    # the flow of w1' = w2, w2' = a w1^2 + b w1 w2 for the time 2 pi, in steps of which w2 is counted
+    assert point.coefficients["a"] == pytest.approx(-4 * np.pi**2, rel=1e-6)
+
+
+def test_homoclinic_orbits_of_a_long_period_come_from_a_bogdanov_takens_point():
+    flow = cv.FlowProblem(bogdanov_takens, [-0.03, 0.0], {"b1": -0.02, "b2": -0.5})
+    graph = cv.diagram(flow, over="b1", within=(-0.2, 0.2))
+    locus = cv.locus(graph["HC1"], over="b2", within=(-0.6, 0.0), period=120.0)
+    p, q = locus.values.T
+    assert all(locus.orbit(i).period == pytest.approx(120.0) for i in range(0, len(locus), 20))
+    ratio = p / q**2
+    near = np.abs(q) < 0.02
+    assert near.any()
+    assert ratio[near] == pytest.approx(-6 / 25, abs=0.01)
+    assert "too short" in locus.ended[1]
+    hopf = cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2))
+    assert [point.kind for point in hopf.points.values()] == ["bogdanov-takens"]
+    with pytest.raises(ValueError, match="homoclinic"):
+        cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2), period=50.0)
+
+
+@pytest.mark.slow
+def test_period_doublings_of_a_reversible_flow_meet_at_no_damping():
+    def lure(x, p):  # no damping: volume is kept, and time can be reversed
+        return [x[1], x[2], -p.alpha * x[2] - p.beta * x[1] - x[0] + x[0] ** 2]
+
+    flow = cv.FlowProblem(lure, [0.0, 0.0, 0.0], {"alpha": 1.5, "beta": 1.0})
+    graph = cv.diagram(flow, over="alpha", within=(0.6, 1.6), depth=1)
+    locus = cv.locus(graph["PD1"], over="beta", within=(0.9, 2.0), bounds=(-0.05, 2.0))
+    (point,) = [point for point in locus.points.values() if point.kind == "resonance-1-2"]
+    assert point.value[0] == pytest.approx(0.0, abs=1e-8)
+    orbit = point.orbit
+    found = orbit.simulated_multipliers()
+    assert np.abs(found + 1.0).min() < 1e-3  # double ones: square roots of the error
+    assert np.prod(found).real == pytest.approx(1.0, abs=1e-7)
