@@ -10,6 +10,7 @@ The branch is then traced again from the point before the gap, with shorter step
 
 from __future__ import annotations
 
+from .consistency import unresolved
 from .determinant_sign import certain
 from .located import Located, Role
 from .location_error import singular_within
@@ -22,7 +23,7 @@ BESIDE = 1e-3  # distance from a singular point at which signs can be trusted
 
 
 def leap(segment: Segment, found: list[Located]) -> Located | None:
-    """A mark at the start of the segment if its ends lie on different branches.
+    """A mark at the start of the segment if its ends lie on different branches; unresolved if it is too short to tell.
 
     Parameters
     ----------
@@ -30,17 +31,22 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
     found : list of Located
         What was found on it, in order; positions in [0, 1].
     """
-    if segment.length <= segment.engine.settings.resolution:
-        return None
     stop = next((i for i, e in enumerate(found) if e.ends_branch), len(found))
-    if not (any(inexact(segment, e) for e in found[: stop + 1]) or _unaccounted(segment, found, stop)):
+    short = segment.length <= segment.engine.settings.resolution
+    changed = _unaccounted(segment, found, stop)
+    if not changed and (short or not any(inexact(segment, e) for e in found[: stop + 1])):
         return None
     ends = (segment.a.p, segment.b.p)
+    if short:
+        middle = segment.at(0.5)
+        return None if middle is None else unresolved(segment, middle)
     return Located(0.0, "", 0, segment.a, ends, 0.0, Role.LEAP)
 
 
 def inexact(segment: Segment, event: Located) -> bool:
     """Whether a special point could not be located as well as those are that exist."""
+    if event.role is Role.UNRESOLVED:
+        return False
     unit = segment.engine.parameter_unit(event.point.p)
     noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
     least = max(INEXACT, NOISY * noise)

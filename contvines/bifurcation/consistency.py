@@ -15,8 +15,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..continuation.engine import Solved
 from .determinant_test import turned
-from .located import Located
+from .located import Located, Role
 from .segment import Segment
 
 #: sort of multipliers -> kinds at which one of them passes the circle
@@ -39,11 +40,19 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     side = turned(segment.a, segment.b)
     if engine.scaled and engine.signed and abs(plus) == 1 and side is False:
         plus = 0  # a count that the determinant contradicts is that of rounding
+    if max(abs(end.tangent[-1]) for end in (segment.a, segment.b)) <= engine.upright(segment.a.p):
+        plus = 0  # det(F_u) vanishes with the parameter's part of the tangent, all along an upright branch
     if not engine.scaled and engine.detection == "map" and side is not None and plus % 2 != side:
         # det(F_u) keeps its sign where one comes back from infinity, as where an event of a virtual orbit grazes
-        return True
+        return not (minus == -plus and pairs == 0 and segment.length <= 2.0 * engine.settings.resolution)
     missing = any(
         abs(change) > sum(e.kind in kinds for e in found)
         for change, kinds in zip((plus, minus, pairs), PASSED_AT)
     )
     return missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)
+
+
+def unresolved(segment: Segment, middle: Solved) -> Located:
+    """A mark in the middle of a segment that is not halved any more, though its ends say more than what is found on it."""
+    ends = (segment.a.p, segment.b.p)
+    return Located(0.5, "", 0, middle, ends, 0.5 * abs(ends[1] - ends[0]), Role.UNRESOLVED)

@@ -132,15 +132,17 @@ class Detector(SegmentSearch):
                 found += self.own_points(k, segment, values[i : i + 2].tolist(), bool(dipping[k][i]))
             found.sort(key=lambda e: e.position)
             leaping = leap(segment, found)
-            if leaping is not None:
+            if leaping is not None and leaping.role is Role.LEAP:
                 return [*events, leaping._replace(position=float(i))]
+            if leaping is not None:
+                found = sorted([*found, leaping], key=lambda e: e.position)
             found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
             found = [e._replace(error=e.rounding) if e.rounding > e.error else e for e in found]
             outside = left_between(segment, found)
             if outside is not None:
                 found = [*(e for e in found if e.position < outside.position), outside]
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
-            found = [e._replace(position=i + _inside(e.position), bracket=bracket) for e in found]
+            found = [_placed(e, i + _inside(e.position), bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
             if stop is not None:
                 # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
@@ -168,6 +170,7 @@ class Detector(SegmentSearch):
             found += self.own_points(k, segment, (own.at(start), own.at(first)))
         found.sort(key=lambda e: e.position)
         leaping = leap(segment, found)
+        leaping = leaping if leaping is not None and leaping.role is Role.LEAP else None
         # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
         flat = self.engine.settings.rounding * max(self.engine.parameter_unit(origin.p), abs(origin.p))
         found = [
@@ -182,7 +185,7 @@ class Detector(SegmentSearch):
             )
         ]
         bracket = (origin.p, first.p)
-        found = [e._replace(position=share + (1.0 - share) * e.position, bracket=bracket) for e in found]
+        found = [_placed(e, share + (1.0 - share) * e.position, bracket) for e in found]
         return before_stop(found) + ([] if leaping is None else [leaping])
 
     def _suspects(self, chunk: Chunk, i: int) -> list[int]:
@@ -317,6 +320,13 @@ class Detector(SegmentSearch):
 def _wide(chunk: Chunk) -> Chunk:
     """The chunk, with the point before it where its own are too few for a parabola."""
     return chunk.widened() if len(chunk) == 2 else chunk
+
+
+def _placed(event: Located, position: float, bracket: tuple[float, float]) -> Located:
+    """An event at its position, with the bracket in which it was seen; what is unresolved has one of its own."""
+    return event._replace(
+        position=position, bracket=event.bracket if event.role is Role.UNRESOLVED else bracket
+    )
 
 
 def before_stop(events: list[Located]) -> list[Located]:

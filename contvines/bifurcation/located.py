@@ -20,6 +20,7 @@ class Role(StrEnum):
     MEETING = "meeting"  # the branch comes back to the fixed space of a symmetry, and ends
     STOP = "stop"  # a function at whose zeros the user wants branches to end
     LEFT = "left"  # the branch leaves the interval between two points that lie in it
+    UNRESOLVED = "unresolved"  # both ends of a segment, which is not halved any more, do not agree with what was found between
     PLAIN = "plain"  # just a point between two special points
     LEAP = "leap"  # the point before a step to another branch: to be traced again with shorter ones
     LANDING = "landing"  # the same, before a step that ends next to a meeting: with another one

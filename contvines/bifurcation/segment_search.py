@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from .consistency import unaccounted
+from .consistency import unaccounted, unresolved
 from .dips import below_zero
 from .first_border import find_border, rounding
 from .kind import Kind, Test
@@ -64,11 +64,14 @@ class SegmentSearch:
         for kind in self.kinds:
             found = [*found, *self._of_kind(kind, segment, found)]
         found = _without_turnings(found)
-        if unaccounted(segment, found) and depth < self.deepest:
-            middle = segment.at(0.5)
-            if middle is not None:
-                return self.both(segment, 0.5, middle, real, depth + 1)
-        return found
+        if not unaccounted(segment, found):
+            return found
+        middle = segment.at(0.5)
+        if middle is None:
+            return found
+        if depth < self.deepest and segment.length > self.engine.settings.resolution:
+            return self.both(segment, 0.5, middle, real, depth + 1)
+        return [*found, unresolved(segment, middle)]
 
     def _of_kind(self, kind: Kind, segment: Segment, found: Sequence[Located]) -> list[Located]:
         """The special points of a kind: its own search, or the zeros of its test functions that it verifies."""

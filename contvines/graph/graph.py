@@ -14,6 +14,7 @@ from ..doors import above
 from ..hints import hinted
 from ..problems.abilities import notation_of
 from .attractor import Attractor
+from .unresolved import Unresolved
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -85,6 +86,8 @@ class Graph:
         Whether simulation has looked for motions that the finished graph does not have; they are `missing`.
     proofs : dict of dict
         By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
+    unresolved : list of Unresolved
+        Stretches of branches on which special points cannot be told apart, with what is certain on both sides.
     """
 
     parameter: str = "p"
@@ -102,6 +105,7 @@ class Graph:
     proofs: dict[str, dict[str, Any]] = field(default_factory=dict)
     attractors: list[Attractor] = field(default_factory=list)
     missing: list[Attractor] = field(default_factory=list)
+    unresolved: list[Unresolved] = field(default_factory=list)
 
     def __getitem__(self, label: str) -> Any:
         if label in self.special:
@@ -200,6 +204,7 @@ class Graph:
             "branches": [branch.to_dict() for branch in self.branches.values()],
             "special": [point.to_dict() for point in self.special.values()],
             "switches": [switch.to_dict() for switch in self.switches],
+            **({"unresolved": [u.to_dict() for u in self.unresolved]} if self.unresolved else {}),
             **({"proofs": self._claims()} if self.proofs else {}),
             **({"attractors": [a.to_dict() for a in self.attractors]} if self.attractors else {}),
             **({"missing": [a.to_dict() for a in self.missing]} if self.missing else {}),

@@ -12,6 +12,7 @@ from ..bifurcation.kind import Classified
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.located import Located, Role
 from ..bifurcation.location_error import missed, singular_within
+from ..bifurcation.multiplier_counts import counts
 from ..bifurcation.point_on_branch import PointOnBranch
 from ..bifurcation.switching import null_vectors
 from ..branches.assembly import a_sliver, stability
@@ -28,6 +29,7 @@ from .identity import same_form
 from .match_borders import is_border
 from .queue import Origin, Pending
 from .run import Run
+from .unresolved import Unresolved
 
 TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
 TURNING_KINDS = ("branch-point", "symmetry-breaking")
@@ -44,7 +46,8 @@ def mark(
     fresh: list[SpecialPoint] = []
     ends: dict[int, Ending] = {}
     last = len(branch) - 1
-    events = _without_turnings(run, engine, half.events)
+    known = [pair for pair in half.events if pair[1].role is not Role.UNRESOLVED]
+    events = _without_turnings(run, engine, known)
     if not branch.closed:
         for index, side in ((0, 0), (last, 1)):
             if branch.endings[side].reason is Reason.LEFT_INTERVAL:
@@ -95,8 +98,12 @@ def mark(
     branch.marks = tuple(sorted(marks))
     # a fold that is a branch point, or a second one that is the first, is no place at which stability changes
     places = {i for i, _ in marks} | ({origin} if origin is not None else set())
+    stretches = [(i, event) for i, event in half.events if event.role is Role.UNRESOLVED]
+    places |= {i for i, _ in stretches}
     twins = {i for i, _ in half.events} - places
     branch.stable = stability(engine, half.joined().spectrum, sorted(places), sorted(twins))
+    for index, event in stretches:
+        run.graph.unresolved.append(_stretch(engine, branch, half, index, event))
     _unresolved(run, branch)
     branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))
     return fresh
@@ -118,9 +125,20 @@ def _unresolved(run: Run, branch: Branch) -> None:
             continue
         for label, neighbour in ((one, other), (other, one)):
             run.remark(label, f"{apart:.1e} from {neighbour}: solutions between the two are not resolved")
+        low, high = sorted((here.value, there.value))
+        run.graph.unresolved.append(Unresolved(branch.label, low, high, i, "neighbours", points=(one, other)))
         beside = [k for k in (i - 1, j + 1) if 0 <= k < len(branch)]
         if branch.stable is not None and not branch.stable[beside].any():
             branch.stable[i : j + 1] = False
+
+
+def _stretch(engine: Engine, branch: Branch, half: HalfBranch, index: int, event: Located) -> Unresolved:
+    """A stretch whose ends do not agree with what was found between them; the points beside it tell what is certain."""
+    rows = half.joined().spectrum[[max(index - 1, 0), min(index + 1, len(branch) - 1)]]
+    before, after = (tuple(found) for found in counts(engine.spectrum(rows), engine.detection).tolist())
+    low, high = sorted(event.bracket)
+    reason = "determinant" if before == after else "multipliers"
+    return Unresolved(branch.label, low, high, index, reason, before, after)
 
 
 def origin_index(half: HalfBranch, pending: Pending) -> int | None:

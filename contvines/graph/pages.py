@@ -27,6 +27,7 @@ def graph_page(graph: Graph) -> str:
     parts = [about, branches_table(graph).html()]
     if graph.special:
         parts.append(special_table(graph).html())
+    parts += [f"<p>{html.escape(entry.sentence(graph.parameter))}</p>" for entry in graph.unresolved]
     if graph.attractors:
         parts += [attractors_table(graph).html(), f"<p>{html.escape(simulated(graph))}</p>"]
     return "".join(parts)

@@ -16,11 +16,12 @@ from ..problems.registry import UnknownFactory, rebuild
 from .attractor import Attractor
 from .graph import Graph, Switch
 from .old_names import renamed
+from .unresolved import Unresolved
 from .well_formed import check_graph
 
 Entry = tuple[str, str, dict[str, Any]]
 
-_MEMBERS = ("branches", "special", "switches", "proofs", "attractors", "missing")
+_MEMBERS = ("branches", "special", "switches", "proofs", "attractors", "missing", "unresolved")
 
 
 def graph_entries(graph: Graph) -> Iterator[Entry]:
@@ -35,6 +36,8 @@ def graph_entries(graph: Graph) -> Iterator[Entry]:
     for kind, entries in (("attractor", graph.attractors), ("missing", graph.missing)):
         for number, attractor in enumerate(entries):
             yield kind, str(number), attractor.to_dict()
+    for number, entry in enumerate(graph.unresolved):
+        yield "unresolved", str(number), entry.to_dict()
     for i, switch in enumerate(graph.switches):
         yield "switch", str(i), {f.name: getattr(switch, f.name) for f in fields(switch)}
 
@@ -72,6 +75,7 @@ def graph_from_entries(
     graph.switches += [Switch(**content) for content in entries.get("switch", {}).values()]
     graph.proofs.update(entries.get("proof", {}))
     graph.attractors = [Attractor(**content) for content in entries.get("attractor", {}).values()]
+    graph.unresolved = [Unresolved.from_dict(content) for content in entries.get("unresolved", {}).values()]
     graph.missing = [Attractor(**content) for content in entries.get("missing", {}).values()]
     check_graph(graph)
     return graph

@@ -41,6 +41,8 @@ def table(graph: Graph, width: int | None = None) -> str:
     ]
     if graph.special:
         lines += ["", *special_table(graph).lines(width)]
+    if graph.unresolved:
+        lines += ["", *(entry.sentence(graph.parameter) for entry in graph.unresolved)]
     if graph.attractors:
         lines += ["", *attractors_table(graph).lines(width), "", simulated(graph)]
     return "\n".join(lines)

@@ -45,6 +45,10 @@ def check_graph(graph: Graph) -> None:
         ):
             if name not in known:
                 raise ValueError(f"a switch names {name!r}, which is missing")
+    for entry in graph.unresolved:
+        check_fields("an unresolved stretch", entry)
+        if entry.branch not in graph.branches:
+            raise ValueError(f"an unresolved stretch lies on {entry.branch!r}, which is missing")
     for attractor in (*graph.attractors, *graph.missing):
         check_fields("an attractor", attractor)
         if not math.isfinite(attractor.value):

@@ -143,6 +143,7 @@ def draw_diagram(
     picture = Picture(axes, graph, x, y, color, name)
     picture.draw_branches()
     picture.draw_points(ends)
+    picture.draw_unresolved()
     frame(axes, graph, picture.curves, x, y, *limits)
     if not axes.get_xlabel():
         axes.set_xlabel(axis_label(x, unit=graph.units.get(x), notation=graph.notation))

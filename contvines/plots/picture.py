@@ -17,7 +17,7 @@ from .figures import scale
 from .insets import Region, add_inset, crowded_region, find_room, outlines
 from .labels import Label, grouped, place_labels
 from .legends import Key, hold_legend
-from .style import LINES, PROVED, STATE_COLORS, STATE_OF, STATES, WIDTHS, mark_of
+from .style import LINES, PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, WIDTHS, mark_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -135,6 +135,18 @@ class Picture:
                 self.axes.plot([px], [py], markersize=2.2 * size, **PROVED, **look)
                 self.key.proved = True
             self.spots.append((point.label, point.kind, px, py))
+
+    def draw_unresolved(self) -> None:
+        """A hollow square round each stretch on which special points cannot be told apart."""
+        for entry in self.graph.unresolved:
+            branch = self.graph.branches.get(entry.branch)
+            if branch is None or not 0 <= entry.index < len(branch):
+                continue
+            px, py = (float(measured(branch, name)[entry.index]) for name in (self.x, self.y))
+            if np.isfinite(px) and np.isfinite(py):
+                look = {"marker": UNRESOLVED.marker, "markerfacecolor": "none", "markeredgecolor": "0.4"}
+                self.axes.plot([px], [py], linestyle="none", markersize=11.0, zorder=5.8, **look)
+                self.key.marks.setdefault(UNRESOLVED.name, UNRESOLVED)
 
     def key_of_marks(self) -> None:
         """Say in the legend what the marks mean that can be seen."""

@@ -32,6 +32,7 @@ class Mark:
 
 MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in BY_NAME.values()}
 PLAIN = Mark("special point", "o")
+UNRESOLVED = Mark("unresolved", "s")
 
 
 def mark_of(kind: str, graph: Any) -> Mark:

@@ -1,0 +1,64 @@
+"""Unresolved: a stretch of a branch whose two ends do not agree with the special points found between them."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ..number_text import number_text
+
+
+@dataclass(frozen=True)
+class Unresolved:
+    """What is certain on both sides of a stretch that is too short to be halved any more.
+
+    Attributes
+    ----------
+    branch : str
+        Label of the branch.
+    low, high : float
+        Parameter values of the two sides, in increasing order.
+    index : int
+        Of the point of the branch that lies within.
+    reason : str
+        "multipliers": their numbers past the circle change by more than the points between say; "determinant": its sign changes without
+        a branch point, as where the two sides lie on different branches; "neighbours": two special points are one as far as they are known.
+    before, after : (int, int, int)
+        Numbers of multipliers past +1, past -1, and of complex pairs past the circle on the two sides, in the branch's order.
+    points : tuple of str
+        Labels of special points there.
+    """
+
+    branch: str
+    low: float
+    high: float
+    index: int
+    reason: str
+    before: tuple[int, int, int] = (0, 0, 0)
+    after: tuple[int, int, int] = (0, 0, 0)
+    points: tuple[str, ...] = ()
+
+    def sentence(self, parameter: str) -> str:
+        """For people."""
+        width = number_text(self.high - self.low, 2)
+        where = (
+            f"{self.branch} at {parameter} = {number_text(0.5 * (self.low + self.high), 12)}, {width} wide"
+        )
+        if self.reason == "neighbours":
+            return f"unresolved on {where}: {' and '.join(self.points)} cannot be told apart"
+        if self.reason == "determinant":
+            return f"unresolved on {where}: a branch point, or two branches nearer than that"
+        counts = (
+            f"{sum(numbers[:2]) + 2 * numbers[2]} multiplier{'s' if sum(numbers) != 1 else ''} past the circle"
+            for numbers in (self.before, self.after)
+        )
+        return f"unresolved on {where}: " + " before, ".join(counts) + " behind"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The entry in the JSON of a graph."""
+        return {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(self).items()}
+
+    @classmethod
+    def from_dict(cls, content: dict[str, Any]) -> Unresolved:
+        """What `to_dict` made."""
+        return cls(**{name: tuple(v) if isinstance(v, list) else v for name, v in content.items()})
