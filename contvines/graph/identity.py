@@ -1,36 +1,113 @@
-"""Identity: the same solution? the same branch? the same special point?"""
+"""Identity: is this solution, branch or special point known? One room, one distance, one tolerance.
+
+The distance of two solutions is that of their canonical forms (`Problem.canonical`): the largest difference of their entries, in units of
+the unknowns, relative to 1 + the largest entry; infinite where their keys differ. Two solutions are one up to ``Settings.same``. Where
+equations are singular (at bifurcations, at borders, where branches end) solutions are known to half their digits, so that the
+root of it counts. Values of the parameter are one up to ten times their stated errors and 1e-4 times that tolerance, in the parameter's unit, or, where no error
+is stated, up to a hundredth of it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Hashable
 from functools import cached_property
 from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 
 from ..branches.branch import Branch
+from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
+from ..continuation.settings import Settings
 from ..problems.protocol import Problem
 
-SAME = 1e-6
-EXACTLY = 1e-9  # two solutions to roundoff that differ by more are two, though they count as the same
-AT_END = 1e-5  # ends of branches are where equations may be singular, and known to half their digits
+SAME = Settings().same
+STATED = 1e-4  # of the tolerance: parameter values whose errors are stated
+UNSTATED = 1e-2  # ... and those of which none is stated
+ERRORS = 10.0  # times the stated errors
+EXACT = 1e-3  # of it: solutions to roundoff that differ by more are two, though they count as the same
 FAR = 0.1  # length along two branches after which they are one
+
+Form = tuple[Hashable, np.ndarray]
+
+
+def distance(one: np.ndarray, other: np.ndarray, scale: np.ndarray | None = None) -> float:
+    """Largest difference of two canonical vectors, in units of a scale of the entries, relative to 1 + the largest entry of the second one.
+
+    Where all units are 1 a vector may have more entries than there are unknowns: a whole cycle's.
+    """
+    if one.shape != other.shape:
+        return float("inf")
+    both = np.array([one - other, other])
+    if scale is not None and not (scale[:-1] == 1.0).all():
+        both = both / scale[: both.shape[-1]]
+    apart, size = np.abs(both).max(axis=1, initial=0.0).tolist()
+    return apart / (1.0 + size)
 
 
 def same_vector(
-    a: np.ndarray, b: np.ndarray, tolerance: float = SAME, scale: np.ndarray | None = None
+    one: np.ndarray, other: np.ndarray, tolerance: float = SAME, scale: np.ndarray | None = None
 ) -> bool:
-    """Equal up to the tolerance, relative to 1 + largest entry, in units of a scale of the entries."""
-    if a.shape != b.shape:
+    """Whether the `distance` of two canonical vectors is within a tolerance."""
+    return distance(one, other, scale) <= tolerance
+
+
+def same_form(one: Form, other: Form, scale: np.ndarray | None = None, tolerance: float = SAME) -> bool:
+    """Whether two canonical forms, as problems return them, are of one solution."""
+    return one[0] == other[0] and same_vector(one[1], other[1], tolerance, scale)
+
+
+def singular(tolerance: float = SAME) -> float:
+    """The tolerance where equations are singular."""
+    return float(np.sqrt(tolerance))
+
+
+class Place(NamedTuple):
+    """A parameter value, and how well it is known (0: not said)."""
+
+    value: float
+    error: float
+
+
+def same_value(one: Place, other: Place, unit: float, tolerance: float = SAME) -> bool:
+    """Whether two parameter values may be one, as far as they are known; see the top."""
+    stated = one.error > 0.0 and other.error > 0.0
+    reach = (
+        STATED * tolerance * unit + ERRORS * (one.error + other.error)
+        if stated
+        else UNSTATED * tolerance * unit
+    )
+    return abs(one.value - other.value) <= min(reach, tolerance * unit)
+
+
+def may_be_one(
+    problem: Problem, u: np.ndarray, p: float, point: SpecialPoint, tolerance: float = SAME
+) -> bool:
+    """Whether a solution may be a border point seen with another word: different motions do meet borders at one value.
+
+    Only problems of one kind tell: those that can compare motions, and others where their forms have as many entries.
+    """
+    if type(point.problem) is not type(problem):
+        return True
+    alike = problem.same_motion(u, p, point.problem, point.u)
+    if alike is not None:
+        return alike
+    one, other = problem.canonical(u, p)[1], point.problem.canonical(point.u, point.value)[1]
+    scales = problem.scales
+    return one.shape != other.shape or same_vector(
+        one, other, singular(tolerance), None if scales is None else scales.vector
+    )
+
+
+def turns_at(engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
+    """Whether a fold is so close to a branch point that it is that point, where a side branch only turns."""
+    if u.shape != fold.u.shape:
         return False
-    apart, size = np.abs(_in_units(np.array([a - b, b]), scale)).max(axis=1, initial=0.0).tolist()
-    return apart <= tolerance * (1.0 + size)
-
-
-def _in_units(vectors: np.ndarray, scale: np.ndarray | None) -> np.ndarray:
-    """Canonical vectors in units of the unknowns. Where all of these are 1 it may have more entries than there are unknowns: a whole cycle's."""
-    return vectors if scale is None or (scale[:-1] == 1.0).all() else vectors / scale[: vectors.shape[-1]]
+    gap = engine.join(u - fold.u, p - fold.p)
+    tolerance = engine.settings.same
+    near = abs(gap[-1]) <= UNSTATED * tolerance * engine.parameter_unit(fold.p)
+    return near and engine.norm(gap) <= singular(tolerance)
 
 
 class Known:
@@ -51,7 +128,7 @@ class Known:
 
     def reaches(self, p: float) -> bool:
         """Whether it passes a parameter value, or ends there."""
-        around = SAME * (self.unit + abs(p))
+        around = self.engine.settings.same * (self.unit + abs(p))
         return self.low - around <= p <= self.high + around
 
 
@@ -96,7 +173,7 @@ def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p
                 return True
             continue
         here, near = engine.problem.canonical(found.u, p)
-        if here == key and same_vector(near, vector, SAME, engine.scale):
+        if here == key and same_vector(near, vector, engine.settings.same, engine.scale):
             return True
     return False
 
@@ -120,8 +197,10 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
     def away(point: Solved) -> float:
         return _gap(branch, known, *engine.problem.canonical(point.u, point.p), point.p)
 
-    gap, length, point = away(first), 1e-6, first
-    while EXACTLY < gap <= SAME and 100.0 * engine.noise < EXACTLY and length < FAR:
+    same = engine.settings.same
+    gap, length, point = away(first), same, first
+    exactly = EXACT * same
+    while exactly < gap <= same and 100.0 * engine.noise < exactly and length < FAR:
         border = engine.weights * point.tangent
         guess = engine.join(point.u, point.p) + length * point.tangent
         found = engine.solve(guess[:-1], float(guess[-1]), border, float(border @ guess), point.tangent)
@@ -135,20 +214,19 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
         before, gap, point, length = gap, away(found), found, 2.0 * length
         if gap < before:
             return False
-    return SAME < gap < np.inf
+    return same < gap < np.inf
 
 
 def _gap(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> float:
-    """Distance of a canonical form from the branch at its parameter value as :func:`same_vector` has it, infinite where the branch is not near."""
+    """Distance of a canonical form from the branch at its parameter value as :func:`distance` has it, infinite where the branch is not near."""
     least, gaps = np.inf, branch.values - p
     for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
         found = engine.at_value(_at_value(branch, engine, int(i), p), p)
         if found is None:
             continue
         here, near = engine.problem.canonical(found.u, p)
-        if here == key and near.shape == vector.shape:
-            a, b = _in_units(near, engine.scale), _in_units(vector, engine.scale)
-            least = min(least, float(np.abs(a - b).max(initial=0.0)) / (1.0 + np.abs(b).max(initial=0.0)))
+        if here == key:
+            least = min(least, distance(near, vector, engine.scale))
     return least
 
 
@@ -157,7 +235,7 @@ def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, 
     if branch.closed:
         return False
     return any(
-        abs(branch.values[i] - p) <= SAME * (engine.scale[-1] + abs(p))
+        abs(branch.values[i] - p) <= engine.settings.same * (engine.scale[-1] + abs(p))
         and is_end(branch, engine, i, key, vector)
         for i in (0, -1)
     )
@@ -166,7 +244,7 @@ def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, 
 def is_end(branch: Branch, engine: Engine, i: int, key: Hashable, vector: np.ndarray) -> bool:
     """Whether a solution, in its canonical form, is point i of a branch, an end of it."""
     here, near = engine.problem.canonical(branch.points[i], float(branch.values[i]))
-    return here == key and same_vector(near, vector, AT_END, engine.scale)
+    return here == key and same_vector(near, vector, singular(engine.settings.same), engine.scale)
 
 
 def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
@@ -195,10 +273,3 @@ def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
         else:
             high = middle
     return at(0.5 * (low + high))[:-1]
-
-
-def same_form(
-    one: tuple[Hashable, np.ndarray], other: tuple[Hashable, np.ndarray], scale: np.ndarray | None = None
-) -> bool:
-    """Whether two canonical forms, as problems return them, are of one solution."""
-    return one[0] == other[0] and same_vector(one[1], other[1], SAME, scale)

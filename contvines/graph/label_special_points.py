@@ -25,17 +25,14 @@ from ..continuation.loop import MARGIN
 from ..interrupts import OPEN
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
-from .identity import same_form
+from .identity import UNSTATED, same_form, turns_at
 from .match_borders import is_border
 from .queue import Origin, Pending
 from .run import Run
 from .unresolved import Unresolved
 
-TURNING = 1e-8  # a fold this close (in the parameter) to a branch point, and ...
 TURNING_KINDS = ("branch-point", "symmetry-breaking")
-BESIDE = 3e-4  # ... this close in the metric is the branch point, where a side branch turns
 LAST_PLACES = 8  # units in the last place of the parameter by which two values may differ by rounding alone
-SAME_VALUE = 1e-8  # special points further apart than this part of the parameter's unit are different
 
 
 def mark(
@@ -207,24 +204,20 @@ def _known(
             if found is not None and found.label == branch.label:
                 other.reached = branch.real
                 return other.point
-    form, beside = None, []
+    form, beside, near = None, [], UNSTATED * run.settings.same * run.unit(point.p)
     if kind == "fold":
         turning = _turning_at(run, engine, event)
         if turning is not None:
             return turning
     for known in run.graph.special.values():
-        if (
-            known.kind != kind
-            or abs(known.value - point.p) > SAME_VALUE * run.unit(point.p)
-            or known.problem is None
-        ):
+        if known.kind != kind or abs(known.value - point.p) > near or known.problem is None:
             continue
         if kind == "user" and known.name != event.name:
             continue
         form = problem.canonical(point.u, point.p) if form is None else form
-        if same_form(form, run.form(known), engine.scale):
+        if same_form(form, run.form(known), engine.scale, run.settings.same):
             return known.label
-        if meets and abs(known.value - point.p) <= 0.1 * SAME_VALUE * run.unit(point.p):
+        if meets and abs(known.value - point.p) <= near:
             beside.append((abs(known.value - point.p), known.label))
     # one point seen in two problems, whose forms need not agree: the nearest, where others are near
     return min(beside)[1] if beside else None
@@ -239,22 +232,14 @@ def _without_turnings(
         (index, event)
         for index, event in events
         if event.kind != "fold"
-        or not any(_turns(run, engine, event.point, place.u, place.p) for place in places)
+        or not any(turns_at(engine, event.point, place.u, place.p) for place in places)
     ]
-
-
-def _turns(run: Run, engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
-    """Whether a fold is so close to a point that it is that point."""
-    if u.shape != fold.u.shape:
-        return False
-    gap = engine.join(u - fold.u, p - fold.p)
-    return abs(gap[-1]) <= TURNING * run.unit(fold.p) and engine.norm(gap) <= BESIDE
 
 
 def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
     """Label of a branch point at which a side branch only turns: the parameter is stationary there, but it is no fold."""
     for known in run.graph.special.values():
-        if known.kind in TURNING_KINDS and _turns(run, engine, event.point, known.u, known.value):
+        if known.kind in TURNING_KINDS and turns_at(engine, event.point, known.u, known.value):
             return known.label
     return None
 
