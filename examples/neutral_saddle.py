@@ -17,10 +17,16 @@ def bazykin(u, p):
     return [x - eaten - x**2 / 100.0, -y + eaten - p.delta * y**2]
 
 
+def trace(point):
+    """Of the Jacobian: zero at a neutral saddle, with a slope that is not."""
+    return np.trace(point.jacobian)
+
+
 NEUTRAL_SADDLE = cv.Kind(
     "neutral-saddle",
     "NSD",
-    test=lambda point: np.trace(point.jacobian),
+    test=trace,
+    locus=trace,
     verify=lambda point: np.linalg.det(point.jacobian) < 0.0,
     text="neutral saddle",
 )

@@ -71,6 +71,8 @@ class SpecialPoint:
         Index of the point in the arrays of its branch.
     problem : Problem or None
         None after loading a graph whose problem came from a Python callable.
+    own_kind : Kind or None
+        The kind, where it is one of the user's own; None after loading.
     """
 
     label: str
@@ -97,6 +99,7 @@ class SpecialPoint:
     margin_index: int | None = None
     index: int = -1
     problem: Any = field(default=None, repr=False)
+    own_kind: Any = field(default=None, repr=False)
 
     @property
     def note(self) -> str:

@@ -49,7 +49,8 @@ def chart(
     check(plot, target, file)
     graph, over, ends = _diagram(file, over, within, trust, fresh)
     refuse_detached(
-        graph, (label for label, point in graph.special.items() if point.kind not in ("end", "user"))
+        graph,
+        (label for label, point in graph.special.items() if point.kind not in ("end", "user")),
     )
     with held(target, quiet, fresh):
         found = _chart(graph, over, ends, virtual, target, quiet)

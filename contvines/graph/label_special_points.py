@@ -292,6 +292,7 @@ def _special(
         margin_index=int(event.index) if kind in BORDERS else None,
         index=index,
         problem=engine.problem,
+        own_kind=run.kind(kind) if run.kind(kind).test else None,
     )
     special.replay = partial(_replay, special.problem, special.u, special.value) if special.real else None
     _doubt(engine, special)

@@ -97,7 +97,7 @@ def branch_of(content: Mapping[str, Any], problem: Any) -> Branch:
 
 def content_of(thing: Any) -> dict[str, Any]:
     """A branch or special point as arrays and JSON values, its problem apart."""
-    content = {f.name: getattr(thing, f.name) for f in fields(thing) if f.name != "problem"}
+    content = {f.name: getattr(thing, f.name) for f in fields(thing) if f.name not in ("problem", "own_kind")}
     if "endings" in content:
         content["endings"] = [ending.to_dict() for ending in content["endings"]]
     return content

@@ -13,6 +13,7 @@ from ..hints import hinting
 from ..interrupts import listening
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
+from .own_test import followed
 from .tracing import locus
 
 
@@ -67,7 +68,7 @@ def chart(
     """
     within = check_interval(within)
     bounds = check_interval(graph.within if bounds is None else bounds)
-    points = [s for s in graph.special.values() if s.kind not in ("end", "user") and (s.real or virtual)]
+    points = [s for s in graph.special.values() if followed(s) and (s.real or virtual)]
     if not points:
         raise ValueError("the graph has no special points, so there is nothing to chart; widen its interval")
     run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), journal, progress)

@@ -59,6 +59,8 @@ TOUCH = Look("touch", "degenerate-border")
 
 def looks(problem: Problem, condition: int) -> list[Look]:
     """What is looked for along a locus with this condition; borders are found by the margins themselves."""
+    if getattr(problem, "own_kind", None) is not None:
+        return []  # of a user's condition nothing is known
     spectrum, m = problem.spectrum, int(problem.n_multipliers)
     half = problem.flip_kind == "symmetry-breaking"
     flow, found = spectrum == "flow", []

@@ -28,6 +28,7 @@ from ..problems.registry import without_problem
 from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
 from .long_period import lengthened
+from .own_test import of_own_kind, with_condition
 from .problem import LocusProblem
 from .sides import impossible_side
 from .starts import begin, first_point, regular_side
@@ -92,16 +93,19 @@ def locus(
                 f"period = {period!r}: {point.label} is no homoclinic end of a branch ({point.kind})"
             )
         point = lengthened(point, period)
-    point = regular_side(point)
+    if not of_own_kind(point):
+        point = regular_side(point)
     assert point.problem is not None
     known = point.problem.parameters
+    own = of_own_kind(point)
+    base: Any = with_condition(point.problem, point.own_kind, point.label) if own else point.problem
     problem = begin(
-        point.problem,
+        base,
         point.kind,
         point.u,
         point.value,
         over,
-        point.margin_index or 0,
+        int(point.problem.n_margins) if own else point.margin_index or 0,
         (-np.inf, np.inf) if bounds is None else check_interval(bounds),
     )
     q = known[over]

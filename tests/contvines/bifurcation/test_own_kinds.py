@@ -151,3 +151,25 @@ def test_studies_name_kinds_in_a_file(tmp_path, monkeypatch):
     (tmp_path / "study.toml").write_text(STUDY.format(name="SADDLE"))
     with pytest.raises(ValueError, match="has no kind 'SADDLE'; it has NEUTRAL_SADDLE"):
         checked_study(tmp_path / "study.toml")
+
+
+def test_a_kind_with_a_condition_is_followed_in_two_parameters():
+    """Along the locus trace and residual stay zero; it meets the point where the determinant vanishes, too, solved anew by mpmath."""
+    module = loaded()
+    locus = cv.locus(module.main()["NSD1"], over="delta", within=(0.05, 0.3))
+    assert locus.kind == "neutral-saddle" and not locus.points
+    values, points = locus.values, locus.branch.points
+    for (alpha, delta), (x, y, _) in zip(values[::7], points[::7]):
+        found = saddle(delta, [x, y, alpha])
+        assert [x, y, alpha] == pytest.approx(found, abs=1e-8 * max(1.0, x))
+    # both ways from the start: saddles at one end of the interval of delta, Hopf points at the other
+    assert sorted(values[[0, -1], 1]) == pytest.approx([0.05, 0.05])
+    assert values[:, 1].max() > 0.2
+
+
+def test_a_kind_without_a_condition_has_no_locus():
+    problem = cv.AlgebraicProblem(lambda u, p: u - p.a * p.b, [0.25], {"a": 0.5, "b": 0.5})
+    kind = cv.Kind("half", "HA", test=lambda point: point.u[0] - 0.3)
+    graph = cv.diagram(problem, over="a", within=(0.0, 1.0), kinds=[*cv.KINDS, kind])
+    with pytest.raises(ValueError, match="no condition to follow"):
+        cv.locus(graph["HA1"], over="b", within=(0.1, 1.0))
