@@ -16,10 +16,8 @@ from .located import Located, Role
 from .location_error import singular_within
 from .segment import Segment
 
-INEXACT = 1e-9  # special points are located far better than this wherever there is one
 EXACT = 1e-12  # residual, in units of the rows, of a point where it is known what these are: halfway between two branches it is larger
 NOISY = 2e3  # times the noise of the equations: places are no better than this
-BESIDE = 1e-3  # distance from a singular point at which signs can be trusted
 
 
 def leap(segment: Segment, found: list[Located]) -> Located | None:
@@ -49,7 +47,7 @@ def inexact(segment: Segment, event: Located) -> bool:
         return False
     unit = segment.engine.parameter_unit(event.point.p)
     noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
-    least = max(INEXACT, NOISY * noise)
+    least = max(segment.engine.settings.located, NOISY * noise)
     solved = EXACT if scaled and not noise and event.kind == "branch-point" else least
     vague = event.error > 10.0 * least * unit
     if vague and event.kind == "branch-point":
@@ -71,7 +69,8 @@ def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
         return False
     # an end may itself be singular (a stick of length zero): its sign is that of roundoff
     reach = 1.0 if stop == len(found) else found[stop].position
-    beside = segment.several([share * reach for share in (BESIDE, 1.0 - BESIDE)])
+    aside = segment.engine.settings.aside
+    beside = segment.several([share * reach for share in (aside, 1.0 - aside)])
     if beside[0] is not None and beside[1] is not None and not beside[0].sign * beside[1].sign < 0.0:
         return False
     return certain(segment.engine, segment.a) and certain(segment.engine, last)

@@ -30,16 +30,13 @@ from .segment_search import SegmentSearch
 # a virtual branch may be real in between
 USER, TWICE, PAIRS, BORN, WINDOW = 256, 512, 1024, 2048, 4096
 INSIDE = SHALLOW | DAMPED | HUMP | TWICE | PAIRS | BORN | WINDOW  # what the ends of a segment do not tell
-REACHED = 1e-4  # distance from the stability boundary at which a multiplier is on it
 NO_MARGIN = 1e-13  # something has no length or speed at all
-AT_BORDER = 1e-5  # folds closer than this to a border (in the metric) are the border, unless a multiplier says otherwise
 AT_END = 1e-7  # bifurcations closer than this to the end of a branch are the end
 REACH, EDGE = (
     1.5,
     0.9,
 )  # lengths of a segment within which the distance to a singular matrix, continued, may be zero
 BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
-NEAREST = 1e-6  # ... and at least so much of it, in the metric: nearer, signs of tangents and determinants are those of rounding
 MOST = 0.5  # ... but not more
 
 
@@ -159,7 +156,11 @@ class Detector(SegmentSearch):
         The beginning of the segment, where every solution is that of a nearly singular system, is left out.
         """
         whole = Segment(self.engine, origin, first)
-        share = min(max(BESIDE, NEAREST / whole.length), MOST) if whole.length > 0.0 else BESIDE
+        share = (
+            min(max(BESIDE, self.engine.settings.close / whole.length), MOST)
+            if whole.length > 0.0
+            else BESIDE
+        )
         start = whole.at(share)
         if start is None:
             return []
@@ -310,11 +311,15 @@ class Detector(SegmentSearch):
     def _apart(self, event: Located, stop: Located) -> bool:
         """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""
         own = event.kind not in ("fold", "branch-point") or self._at_one(event.point)
-        return self.engine.distance(event.point, stop.point) > (AT_END if own else AT_BORDER)
+        return self.engine.distance(event.point, stop.point) > (
+            AT_END if own else self.engine.settings.one_place
+        )
 
     def _at_one(self, point: Solved) -> bool:
         spectrum = self.engine.spectrum(point.row)
-        return self.engine.detection == "map" and bool(np.abs(spectrum - 1.0).min(initial=1.0) <= REACHED)
+        return self.engine.detection == "map" and bool(
+            np.abs(spectrum - 1.0).min(initial=1.0) <= self.engine.settings.critical
+        )
 
 
 def _wide(chunk: Chunk) -> Chunk:

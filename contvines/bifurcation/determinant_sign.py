@@ -14,7 +14,6 @@ from ..problems.abilities import Doubtful
 from .segment import Segment
 
 ROUNDING = 64 * 2.0**-53  # of entries
-AT_END = 1e-3  # part of a segment: so close to a branch point the determinant may well be next to zero
 
 
 def certain(engine: Engine, point: Solved) -> bool:
@@ -43,4 +42,6 @@ def certain(engine: Engine, point: Solved) -> bool:
 def passes_for_certain(segment: Segment, position: float) -> bool:
     """Whether a change of the sign within a segment, at a place in [0, 1], is none of rounding: it is known on both sides."""
     ends = ((segment.a, 0.0), (segment.b, 1.0))
-    return all(abs(position - s) <= AT_END or certain(segment.engine, end) for end, s in ends)
+    return all(
+        abs(position - s) <= segment.engine.settings.aside or certain(segment.engine, end) for end, s in ends
+    )

@@ -11,8 +11,6 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from .segment import Segment
 
-BESIDE = 1e-3  # part of a segment, either side of a zero
-
 
 class DeterminantTest:
     """A smooth function with a simple zero where [[F_u, F_p], [border]] is singular: 1 / (c . M^-1 b).
@@ -43,7 +41,8 @@ def turned(a: Solved, b: Solved) -> bool | None:
     return bool(product < 0.0) if product else None
 
 
-def passes(segment: Segment, position: float, reach: float = BESIDE) -> bool:
+def passes(segment: Segment, position: float, reach: float | None = None) -> bool:
     """Whether det(F_u) changes its sign within a reach of a place on a segment, as it does where one eigenvalue vanishes."""
+    reach = segment.engine.settings.aside if reach is None else reach
     sides = segment.several((position - reach, position + reach))
     return sides[0] is not None and sides[1] is not None and turned(sides[0], sides[1]) is not False

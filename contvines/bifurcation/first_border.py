@@ -12,12 +12,10 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from .kinds import BORDERS
 from .locate import Root, locate
-from .one_sided_limits import CLOSE
 from .segment import Segment
 
 TIED = 1e-9  # margins that differ by less vanish together
 BEHIND = (1e-3, 1e-2)  # part of a segment behind a border at which it shows which margins have passed zero
-SLOPED = CLOSE  # distance (in the metric) from which the slope of a margin can be told
 MARGIN_ROUNDING = 4e-16  # of margins, in units of the machine's own size
 TOLD = 10.0  # times that: a difference of margins which is no rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
@@ -68,7 +66,8 @@ def first_zero(segment: Segment, chosen: NDArray[np.intp], real: bool) -> Root |
     if root is None or root.position > 0.0 or not margin(root.point) < 0.0:
         return root
     # the segment begins behind the border, by what counts as rounding: where the margin is flat that may be seen in the parameter
-    ahead = segment.at(min(1.0, max(BEHIND[0], SLOPED / segment.length)))
+    settings = segment.engine.settings
+    ahead = segment.at(min(1.0, max(settings.aside, settings.close / segment.length)))
     fall = 0.0 if ahead is None else margin(root.point) - margin(ahead)
     if ahead is None or not fall > 0.0:
         return root
@@ -96,17 +95,18 @@ def rounding(segment: Segment, root: Root, index: int, before: Solved | None) ->
     """How far rounding of the margins that vanish at a border may move its parameter value.
 
     Where a margin is flat it is zero, but for rounding, far from the last bracket; of one that is that all along nobody knows where it
-    passes zero. The point `SLOPED` before the border may be known.
+    passes zero. The point close before the border may be known.
     """
     first, place, point = 2 * segment.engine.m, root.position, root.point
     margins = point.row[first:]
+    sloped = segment.engine.settings.close  # from here on the slope of a margin can be told
     flat = np.abs(margins) < TOLD * MARGIN_ROUNDING
     flat[index] = True
     flat = flat.nonzero()[0]
     here, error = _finite(margins[flat]), 0.0
-    towards = -1.0 if place * segment.length > SLOPED else 1.0
+    towards = -1.0 if place * segment.length > sloped else 1.0
     room = place if towards < 0.0 else 1.0 - place
-    reach = min(SLOPED / segment.length, room)
+    reach = min(sloped / segment.length, room)
     aside = before if towards < 0.0 else None
     while reach > 0.0 and (aside := aside or segment.at(place + towards * reach)) is not None:
         rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - point.p)

@@ -19,9 +19,7 @@ from ..continuation.solved import solved_point
 from .locate import Root
 from .segment import Segment
 
-BESIDE = 1e-3  # part of a segment before the border by which the tangent is told
 SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
-CLOSE = 1e-6  # distance of a point just before a border (in the metric)
 DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
 NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
 BEYOND = 4.0  # times what has grown at the nearest of them: what is computed at the border is not the end of that growth
@@ -47,15 +45,15 @@ UNBOUNDED = 1e15  # stands for a multiplier that does
 
 
 def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
-    """The point at a border, its tangent and multipliers replaced by their limits where they are rounding; and the point `CLOSE` to it."""
+    """The point at a border, its tangent and multipliers replaced by their limits where they are rounding; and the point close to it."""
     engine, point, position = segment.engine, root.point, root.position
-    reach = min(BESIDE, position / 3.0)
+    reach = min(engine.settings.aside, position / 3.0)
     beside = [position - k * reach for k in (1.0, 2.0) if reach > 0.0]
     tells = engine.m > 0 and engine.problem.spectrum == "map" and segment.length > 0.0
     spacings = [distance / segment.length for distance in DISTANCES] if tells else []
     widest = next((step for step in spacings if position - PLACES[-1] * step >= -1.0), None)
     before = [] if widest is None else [position - k * widest for k in PLACES]
-    short = position - CLOSE / segment.length if segment.length > 0.0 else 0.0
+    short = position - engine.settings.close / segment.length if segment.length > 0.0 else 0.0
     # all in one call; the border itself is there for where there is nothing else
     found = segment.found([*beside, *before, short if short > 0.0 else position])
     known, split = (found.numbers[:, 1] >= 0.0).tolist(), len(beside)

@@ -16,15 +16,15 @@ from .kinds import BY_NAME, KINDS
 from .locate import locate, locate_singular
 from .located import NOWHERE, Located, Role
 from .location_error import blurred
-from .one_sided_limits import CLOSE, one_sided
+from .one_sided_limits import one_sided
 from .point_on_branch import PointOnBranch
 from .segment import Segment
 from .singular import singular
 from .symmetry_test import SymmetryTest
 from .user_functions import own_tests
 
-BESIDE = 1e-3  # part of a segment before a meeting that is left out, or ...
-CLEAR = 1e-4  # ... the distance (in the metric) within which tangents and multipliers are those of its singular equations
+CLEAR = 1e-4  # distance from a meeting (in the metric) within which tangents and multipliers are those of its singular equations
+SAME = 1e-4  # part of a segment: what is closer is one
 
 
 class SegmentSearch:
@@ -117,7 +117,7 @@ class SegmentSearch:
         borders, last = self._borders(segment, real)
         if borders and depth < self.engine.settings.halvings:
             # behind a border multipliers may come back from infinity, and what they say of both ends together is nothing
-            short = borders[0].position - CLOSE / segment.length
+            short = borders[0].position - self.engine.settings.close / segment.length
             if not short > 0.0:
                 return borders, []
             if last is not None:
@@ -126,7 +126,7 @@ class SegmentSearch:
         if events:
             # behind a meeting lies the image of what is before it, so that what was passed before it is passed again
             first = min(e.position for e in events)
-            short = first - max(BESIDE * first, CLEAR / segment.length)
+            short = first - max(self.engine.settings.aside * first, CLEAR / segment.length)
             if not short > 0.0:
                 return events, []
             last = segment.at(short)
@@ -149,7 +149,9 @@ class SegmentSearch:
         events = []
         for index, test in enumerate(self.symmetries):
             ends = test.part(np.array([segment.a.u, segment.b.u]), [segment.a.p, segment.b.p])
-            if not (ends[0] @ ends[1] < 0.0 and np.abs(ends).max(axis=1).min() > 1e-6):
+            if not (
+                ends[0] @ ends[1] < 0.0 and np.abs(ends).max(axis=1).min() > self.engine.settings.symmetric
+            ):
                 continue
             scale = float(np.sqrt(ends[0] @ ends[0]))
 
@@ -208,6 +210,4 @@ class SegmentSearch:
 def _without_turnings(found: list[Located]) -> list[Located]:
     """Without folds at branch points of the segment: a side branch may turn where it meets the other one."""
     points = [e.position for e in found if e.kind == "branch-point"]
-    return [
-        e for e in found if e.kind != "fold" or not any(abs(e.position - s) <= BESIDE * 0.1 for s in points)
-    ]
+    return [e for e in found if e.kind != "fold" or not any(abs(e.position - s) <= SAME for s in points)]

@@ -9,7 +9,6 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 
 FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
-STATIONARY = 1e-6  # slopes of the parameter below this, at a located multiplier +1, may be those of a fold
 NOISY = 1e-4  # ... and times the noise of the equations, which keeps matrices from being singular
 
 
@@ -33,5 +32,5 @@ def alone(engine: Engine, point: Solved) -> bool:
 
     Of a branch point the tangent leaves a null vector over; here [[F_u, F_p], [tangent]] is far from singular.
     """
-    stationary = abs(point.tangent[-1]) <= STATIONARY * engine.parameter_unit(point.p)
+    stationary = abs(point.tangent[-1]) <= engine.settings.stationary * engine.parameter_unit(point.p)
     return stationary and not singular(engine, point)

@@ -12,11 +12,9 @@ from .branch import Branch
 from .ending import Ending
 from .half_branch import HalfBranch
 
-APART = 1e-5  # special points closer than this (in the metric) are one place: no point is put between them
 RESOLVED = 1e-8  # but between two unlike ones of those at which stability is lost, where a stable sliver may lie, down to this
 LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
 BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
-MARGINAL = 1e-9  # multipliers this close to the circle (or the imaginary axis) do not tell stability
 
 
 def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfBranch:
@@ -37,7 +35,7 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
         )
         segment = Segment(engine, *ends)
         narrow = a_sliver(kinds.get(i, BEGINNING), kinds.get(i + 1, BEGINNING))
-        if not segment.length > (RESOLVED if narrow else APART):
+        if not segment.length > (RESOLVED if narrow else engine.settings.one_place):
             continue
         middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
         if middle is not None:
@@ -77,7 +75,7 @@ def stability(
         return stable
     ordinary = np.ones(len(stable), dtype=bool)
     ordinary[special] = False
-    doubtful = np.abs(outermost) <= MARGINAL
+    doubtful = np.abs(outermost) <= engine.settings.marginal
     doubtful[list(twins)] = True
     doubtful &= ordinary
     if doubtful.any():

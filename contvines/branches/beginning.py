@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ..bifurcation.detect import AT_BORDER
 from ..bifurcation.locate import Root
 from ..bifurcation.one_sided_limits import one_sided
 from ..bifurcation.segment import Segment
@@ -20,7 +19,7 @@ def from_border(engine: Engine, half: HalfBranch, first: Solved) -> HalfBranch:
         i
         for i, e in half.events
         if e.kind in ("fold", "branch-point")
-        and engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) <= AT_BORDER
+        and engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) <= engine.settings.one_place
     ]
     half = half.without(again)
     if len(half) < 2:

@@ -20,7 +20,6 @@ from .records import pack, unpack
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 SHOWN = 1e-10  # margins of a special point that are certainly positive
 ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
-UPRIGHT = 1e-6  # parameter's part (in its unit) of the direction in which a branch leaves, where that is none
 NEARER = 4  # times that a first point is looked at nearer
 FLAT = 1e-13  # changes of the parameter (in its unit) that tell a bend, times the distance at which they are seen
 NOISY = 1e3  # ... and times the noise of the equations
@@ -98,7 +97,7 @@ def on_this_branch(engine: Engine, origin: Solved, point: Solved | None) -> Solv
     Else the point is of another branch, which turns close to where this one leaves, as in a cascade.
     """
     unit = engine.parameter_unit(origin.p)
-    if point is None or abs(origin.tangent[-1]) > UPRIGHT * unit:
+    if point is None or abs(origin.tangent[-1]) > engine.settings.stationary * unit:
         return point
     trail, bends = [point], [_bend(engine, origin, point)]
     for _ in range(NEARER):
@@ -123,7 +122,7 @@ def without_rounding(engine: Engine, origin: Solved, half: HalfBranch) -> HalfBr
     The nearer to where p = p0 + a s^2 the more singular the equations, and the less of p is known: where a s^2 is not, tangents and
     multipliers do not tell either.
     """
-    if abs(origin.tangent[-1]) > UPRIGHT * engine.parameter_unit(origin.p):
+    if abs(origin.tangent[-1]) > engine.settings.stationary * engine.parameter_unit(origin.p):
         return half
     turns = {i for i, e in half.events if e.kind in TURNING and not e.ends_branch}
     last = max((i for i in turns if _unresolved(engine, origin, half, i)), default=0)

@@ -22,6 +22,14 @@ BETWEEN = (
     "resolution",
     "upright",
     "rounding",
+    "aside",
+    "close",
+    "critical",
+    "marginal",
+    "located",
+    "stationary",
+    "one_place",
+    "symmetric",
     "same",
 )
 WHOLE = ("max_iterations", "max_points", "first_chunk", "chunk", "max_branches", "halvings")
@@ -62,6 +70,22 @@ class Settings:
         Special points: the parameter's part of a unit tangent, in its unit, below which the branch stands upright and has no folds.
     rounding : float
         Special points: changes of the parameter, in its unit, that are none.
+    aside : float
+        Special points: part of a segment, either side of a place, by which signs and tangents there are told.
+    close : float
+        Special points: distance from a border (in the metric) of the point that tells one-sided slopes and limits.
+    critical : float
+        Special points: distance from the circle (the axis) at which a located multiplier counts as being on it.
+    marginal : float
+        Special points: multipliers this close to the circle (the axis) do not tell stability.
+    located : float
+        Special points: error, in the parameter's unit, at which points are known wherever there is one.
+    stationary : float
+        Special points: the parameter's part of a unit tangent, in its unit, that may be that of a fold.
+    one_place : float
+        Special points: distance (in the metric) below which two are at one place, and a fold at a border is the border.
+    symmetric : float
+        Identity: parts that a symmetry changes below this are zero.
     same : float
         Identity: distance of two solutions, relative to 1 + the largest unknown, up to which they are one.
     step_rule : StepRule
@@ -84,6 +108,14 @@ class Settings:
     halvings: int = 16
     upright: float = 1e-9
     rounding: float = 1e-12
+    aside: float = 1e-3
+    close: float = 1e-6
+    critical: float = 1e-4
+    marginal: float = 1e-9
+    located: float = 1e-9
+    stationary: float = 1e-6
+    one_place: float = 1e-5
+    symmetric: float = 1e-6
     same: float = 1e-6
     step_rule: StepRule = BY_ANGLE
 

@@ -297,7 +297,7 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 step = run.settings.amplitude
                 margin = float(engine.smallest_margin(first.row))
                 side = margin >= MARGIN if abs(margin) > SHOWN else None
-            elif abs(first.tangent[-1]) <= 1e-6 * run.unit(first.p) or first.sign == 0.0:
+            elif abs(first.tangent[-1]) <= run.settings.stationary * run.unit(first.p) or first.sign == 0.0:
                 # off a fold or branch point, which would else lie on neither of the two halves
                 step = run.settings.first_step
             if step > 0.0:

@@ -165,7 +165,7 @@ def _kind(run: Run, engine: Engine, event: Located) -> str:
     if event.kind != "branch-point":
         return event.kind
     for test in run.engine(engine.problem)[1].symmetries:
-        if np.abs(test.part(event.point.u[None, :], [event.point.p])).max() > 1e-6:
+        if np.abs(test.part(event.point.u[None, :], [event.point.p])).max() > engine.settings.symmetric:
             continue
         for vector in null_vectors(engine, event.point.u, event.point.p, event.point.tangent):
             u = vector[:-1]

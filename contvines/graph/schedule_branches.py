@@ -28,7 +28,6 @@ from .run import Run
 DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
 CRITICAL = 1e-3  # distance from the boundary within which multipliers cross there, double ones included
 SLANTED = 0.1  # change of the parameter, in its unit and per amplitude, of a branch that goes through a point without turning there
-OWN_IMAGE = 1e-6  # parts that a symmetry changes below this are zero
 
 FAMILY = (
     "the solutions that leave here are a continuous family, moved into one another by a continuous symmetry; "
@@ -87,7 +86,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     generic = run.kind(point.kind).leaves == "branch"
     inside = (
         any(
-            test.kind == point.kind and _is_image(test.part(point.u[None, :], [point.value]))
+            test.kind == point.kind and _is_image(engine, test.part(point.u[None, :], [point.value]))
             for test in detector.symmetries
         )
         and problem.flip_kind != point.kind
@@ -218,9 +217,9 @@ def _cubic(problem: Any, u: np.ndarray, p: float, name: str, rough: float | None
     return rough if exact is None else exact
 
 
-def _is_image(part: np.ndarray) -> bool:
+def _is_image(engine: Engine, part: np.ndarray) -> bool:
     """Whether a solution is its own image: the part that the symmetry changes is rounding."""
-    return bool(np.abs(part).max() <= OWN_IMAGE)
+    return bool(np.abs(part).max() <= engine.settings.symmetric)
 
 
 def _row(run: Run, engine: Engine, point: SpecialPoint) -> np.ndarray:
@@ -248,13 +247,13 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """A side branch has come back to the more symmetric solutions before they were known."""
     if depth + 1 > run.depth:
         return
-    _, detector = run.engine(point.problem)
+    engine, detector = run.engine(point.problem)
     event = run.events.get(point.label)
     if event is None:  # of a graph that was loaded
         met = [
             t
             for t in detector.symmetries
-            if t.kind == point.kind and _is_image(t.part(point.u[None, :], [point.value]))
+            if t.kind == point.kind and _is_image(engine, t.part(point.u[None, :], [point.value]))
         ]
         if not met:
             run.remark(point.label, "the problem has no symmetry that this point has")

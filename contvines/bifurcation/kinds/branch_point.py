@@ -26,12 +26,10 @@ from ..refine_branch_point import by_elimination, by_sign
 from ..segment import Segment
 from ..singular import alone, singular
 
-REACHED = 1e-4  # distance from the stability boundary at which a located multiplier counts as being on it
 SAME = 1e-4  # part of a segment: what is closer is one
 EXACT = (
     1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
 )
-BESIDE = 1e-3  # part of a segment, either side of a place, by which signs are told
 
 
 def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
@@ -62,14 +60,14 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
     if len(tests) == 1 and engine.scaled:
         # a fold changes the sign of det(F_u) alone, a branch point that of the bordered matrix, too
         one_fold = len(folds) == 1 and segment.a.sign * segment.b.sign > 0.0
-        if one_fold or (rounded and not passes(segment, 0.5, 0.5 + BESIDE)):
+        if one_fold or (rounded and not passes(segment, 0.5, 0.5 + engine.settings.aside)):
             return []
     points = []
     for test in tests:
         root = locate(segment, test.function, jump=test.jump)
         if root is None or not root.continuous or _near(root.position, folds + met):
             continue
-        if abs(test.function(root.point)) > REACHED or _complex(segment, root.point):
+        if abs(test.function(root.point)) > engine.settings.critical or _complex(segment, root.point):
             continue  # two real multipliers met and left the axis; none of them was at the boundary
         if not passes_for_certain(segment, root.position):
             continue
@@ -88,7 +86,7 @@ def _complex(segment: Segment, point: Solved) -> bool:
     near, ends = (engine.spectrum(row) for row in (point.row, np.array([segment.a.row, segment.b.row])))
     one = near[np.argmin(np.abs(near.real))]  # the one that passes; another may be next to nothing all along
     unit = min(1.0, float(np.abs(ends).max())) if one.imag else 1.0
-    return bool(abs(one) > REACHED * unit)
+    return bool(abs(one) > engine.settings.critical * unit)
 
 
 def _sharpened(segment: Segment, points: list[Located]) -> list[Located]:
@@ -128,7 +126,9 @@ def _exchange(segment: Segment) -> Located | None:
     if rough is None:
         return None
     aim = aim_at_multiplier(engine.m, engine.detection, "plus", max(counts_of(engine, rough.point)[0], 1))
-    if abs(test(rough.point)) > REACHED or (engine.detection != "real" and abs(aim(rough.point)) > REACHED):
+    if abs(test(rough.point)) > engine.settings.critical or (
+        engine.detection != "real" and abs(aim(rough.point)) > engine.settings.critical
+    ):
         return None
     if _complex(segment, rough.point) or not passes_for_certain(segment, rough.position):
         return None
