@@ -61,4 +61,5 @@ class Unresolved:
     @classmethod
     def from_dict(cls, content: dict[str, Any]) -> Unresolved:
         """What `to_dict` made."""
-        return cls(**{name: tuple(v) if isinstance(v, list) else v for name, v in content.items()})
+        found: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in content.items()}
+        return cls(**found)

@@ -144,7 +144,11 @@ class Picture:
                 continue
             px, py = (float(measured(branch, name)[entry.index]) for name in (self.x, self.y))
             if np.isfinite(px) and np.isfinite(py):
-                look = {"marker": UNRESOLVED.marker, "markerfacecolor": "none", "markeredgecolor": "0.4"}
+                look: dict[str, Any] = {
+                    "marker": UNRESOLVED.marker,
+                    "markerfacecolor": "none",
+                    "markeredgecolor": "0.4",
+                }
                 self.axes.plot([px], [py], linestyle="none", markersize=11.0, zorder=5.8, **look)
                 self.key.marks.setdefault(UNRESOLVED.name, UNRESOLVED)
 
