@@ -70,7 +70,7 @@ def test_every_public_name_is_in_the_reference():
         ("orbits", text.split("## Machines")[1]),
     ):
         names = set(importlib.import_module(package).__all__) - rooms
-        assert names <= set(re.findall(r"\.\. auto(?:function|class):: (?:\w+\.)*(\w+)", part)), package
+        assert names <= set(re.findall(r"\.\. auto(?:function|class|data):: (?:\w+\.)*(\w+)", part)), package
 
 
 def test_the_glossary_has_the_words_of_the_readme():
