@@ -20,6 +20,7 @@ DOUBLINGS = 26
 SHRINKS, SMALL = 0.5, 0.05
 CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
 OFF = 2.0  # times `escape`, of cycles at one value of the parameter: as of families of a linear oscillator, which have all amplitudes
+ALONE = 1e-3  # ... which have a multiplier that is nearer to 1
 FAR = 1e6  # times `escape`: further away a branch has run away in any case
 ROUNDING = 1e-12  # changes of the parameter, in its unit, that are none
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
@@ -87,11 +88,16 @@ class Reach:
             bound = (
                 not self.bounded and comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
             )
-            if bound or distances[i] > (OFF if self.bounded and stands else FAR) * escape:
+            family = self.bounded and stands and self._one_of_a_family(chunk.rows[i])
+            if bound or distances[i] > (OFF if family else FAR) * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
             self.moved, self.turned = np.inf if turned else moved, False
         return None
+
+    def _one_of_a_family(self, row: np.ndarray) -> bool:
+        """Whether a multiplier is 1, as of cycles that all exist at one value of the parameter; those of a canard explosion are far from it."""
+        return bool(np.abs(self.engine.spectrum(row) - 1.0).min(initial=np.inf) < ALONE)
 
     def creeps(self, chunk: Chunk) -> bool:
         """Whether many points have come next to nowhere; of problems whose points are dear."""

@@ -226,7 +226,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
             size = core.assemble(widths, period, f, jacobian, slope)
         else:
             size = self._assemble(work, x, widths, period, f, jacobian, slope)
-        work.along = np.array(x[:, 0]), p, jacobian, f
+        work.along, work.steps = (np.array(x[:, 0]), p, jacobian, f), period * widths
         if places is not None:
             by = self.field.along(lambda q: self._moved(points, q, places, widths), p)
             work.derivative[: self.states] = -by.reshape(-1)

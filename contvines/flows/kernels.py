@@ -15,6 +15,9 @@ from .elimination import condense, multipliers_of, solve_collocation
 from .mesh import closed
 from .sparse import SparseEquations, leading_multipliers, solve_bordered
 
+LARGEST = 707.0  # logarithms of multipliers are clamped here, where floats end
+STILL = 1e-12  # speeds of a cycle that is an equilibrium
+
 
 class CycleWork:
     """What a linearisation leaves behind, in units of the scales.
@@ -32,6 +35,7 @@ class CycleWork:
         self.blocks = np.zeros((count, inner, inner + d)) if self.sparse is None else np.zeros(0)
         self.by_period, self.phase = np.zeros((2, count, inner)) if free else np.zeros((2, 0))
         self.core = CoreCycle(data, self) if native() and self.sparse is None else None
+        self.steps: np.ndarray = np.zeros(0)  # lengths of the intervals in time
         self.along: Any = None  # mesh points, parameter, Jacobians and rates at the Gauss points
         self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
         self.kept: Any = None  # by_period and phase, while the closure is turned round
@@ -161,18 +165,39 @@ def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
         speed = data.field(points[:1], p)[0] / data.node_scale if data.free_period else None
         return leading_multipliers(work.sparse, work.entries, speed)
     left, right = condensed(data, work)
+    if data.n_multipliers == 1:
+        # Liouville: stiff parts of a cycle are passed in intervals in which collocation contracts less than the flow does
+        value = complex(math.exp(min(max(growth_of_volume(data, work), -LARGEST), LARGEST)))
+        return np.array([value]), _trivial_missed(data, work, left, right)
     if not data.free_period:
         return multipliers_of(left, right), 0.0
     points, p, _, _ = work.along
     speeds = data.field(points, p) / data.node_scale
     sizes = np.linalg.norm(speeds, axis=1)
-    if not sizes.min() > 1e-12 * (1.0 + sizes.max()):
+    if not sizes.min() > STILL * (1.0 + sizes.max()):
         values = multipliers_of(
             left, right
         )  # a cycle that is an equilibrium: all motions are as slow as none
         return np.delete(values, int(np.argmin(np.abs(values - 1.0)))), 0.0
     maps, product = (planes if work.core is None else across)(left, right, speeds)
     return multipliers_of(maps, np.broadcast_to(-np.eye(maps.shape[1]), maps.shape)), abs(product - 1.0)
+
+
+def growth_of_volume(data: Any, work: CycleWork) -> float:
+    """Logarithm of the product of all multipliers: the integral of the trace of the Jacobian over the cycle (Liouville)."""
+    _, _, jacobian, _ = work.along
+    return float((work.steps[:, None] * data.rule.weights).reshape(-1) @ np.trace(jacobian, axis1=1, axis2=2))
+
+
+def _trivial_missed(data: Any, work: CycleWork, left: np.ndarray, right: np.ndarray) -> float:
+    if not data.free_period:
+        return 0.0
+    points, p, _, _ = work.along
+    speeds = data.field(points, p) / data.node_scale
+    sizes = np.linalg.norm(speeds, axis=1)
+    if not sizes.min() > STILL * (1.0 + sizes.max()):
+        return 0.0
+    return abs((planes if work.core is None else across)(left, right, speeds)[1] - 1.0)
 
 
 def planes(left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:

@@ -39,6 +39,19 @@ def onto(rule: Rule, widths: np.ndarray, x: np.ndarray, new: np.ndarray) -> np.n
     return evaluate(rule, widths, x, node_places(rule, new)).reshape(len(new), rule.degree, -1)
 
 
+def along_data(times: np.ndarray, states: np.ndarray, count: int, copies: int) -> np.ndarray:
+    """Widths of so many intervals on which time and the length of a curve through data grow alike; the mesh consists of equal copies."""
+    parts = 20 * count
+    places = np.linspace(times[0], times[-1], parts + 1)
+    curve = np.column_stack([np.interp(places, times, column) for column in states.T])
+    lengths = np.linalg.norm(np.diff(curve, axis=0), axis=1).reshape(copies, -1).max(axis=0)
+    shares = np.append(0.0, np.cumsum(lengths / (lengths.sum() or 1.0) + 1.0 / len(lengths)))
+    edges = np.interp(
+        np.linspace(0.0, shares[-1], count // copies + 1), shares, np.linspace(0.0, 1.0, len(shares))
+    )
+    return np.tile(np.diff(edges) / copies, copies)
+
+
 def density(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """|x^(m + 1)|^(1 / (m + 1)) on each interval, in units of the period and the scale, from jumps of the m-th derivative."""
     m = rule.degree

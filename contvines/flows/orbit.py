@@ -10,7 +10,7 @@ import numpy as np
 
 from ..doors import above
 from . import mesh
-from .kernels import linearise, spectrum
+from .kernels import growth_of_volume, linearise, spectrum
 from .simulation import integrated, variational
 
 SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
@@ -82,6 +82,20 @@ class CycleOrbit:
     def trivial_error(self) -> float:
         """By how much the trivial multiplier, as computed, misses 1: a measure of the error of the others."""
         return self._spectrum[1]
+
+    @property
+    def volume_error(self) -> float:
+        """By how much the logarithm of the product of all multipliers misses the integral of the trace of the Jacobian (Liouville).
+
+        It is large where a cycle is so stiff that collocation contracts less than the flow does. Zero of sparse flows, where not all are known.
+        """
+        if self._problem.sparse is not None:
+            return 0.0
+        work = self._problem.workspace()
+        linearise(self._problem, self.u, self.value, work)
+        with np.errstate(divide="ignore"):
+            found = float(np.log(np.abs(self.multipliers)).sum())
+        return abs(found - growth_of_volume(self._problem, work))
 
     @property
     def stable(self) -> bool:

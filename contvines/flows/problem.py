@@ -301,20 +301,12 @@ class FlowProblem:
         scale = np.maximum(ranges, 1e-3 * ranges.max() or 1.0) if given is None else given
         copies = 1 if field.forced and rounds % 2 else 2
         count = INTERVALS * (rounds if field.forced else 1)
-        r = rule(self.degree)
-        widths = np.full(count, 1.0 / count)
-        places = times[0] + mesh.node_places(r, widths) * (times[-1] - times[0])
-        if field.forced:
-            period = rounds * float(field.length_of_period(parameters.start))
-            places = mesh.node_places(r, widths) * period
-            places = np.where(places < times[0], places + period, places)
-        x = np.column_stack([np.interp(places, times, column) for column in states.T])
-        own = [] if field.forced else [times[-1] - times[0]]
-        guess = np.concatenate([x.reshape(-1), own, widths])
-        unit = abs(parameters.start) or 1.0
-        clock = float(times[-1] - times[0])
-        cycles = self.cycles(field, guess, count, rounds, copies, scale, clock, unit)
-        found = settled(cycles, guess, parameters.start)
+        unit, clock = abs(parameters.start) or 1.0, float(times[-1] - times[0])
+        found = None
+        for widths in (np.full(count, 1.0 / count), mesh.along_data(times, states / scale, count, copies)):
+            guess = self._guess(field, parameters.start, times, states, widths, rounds)
+            cycles = self.cycles(field, guess, count, rounds, copies, scale, clock, unit)
+            found = found or settled(cycles, guess, parameters.start)
         if found is None:
             raise ValueError(
                 "Newton's method does not converge from these states; give a longer transient=, or more exact states"
@@ -326,6 +318,21 @@ class FlowProblem:
         if shorter is not None:
             cycles, u = shorter
         return CycleOrbit(cycles, u, parameters.start)
+
+    def _guess(
+        self, field: Field, p: float, times: np.ndarray, states: np.ndarray, widths: np.ndarray, rounds: int
+    ) -> np.ndarray:
+        """Unknowns of a cycle from states at times."""
+        places = mesh.node_places(rule(self.degree), widths)
+        own = [] if field.forced else [times[-1] - times[0]]
+        if field.forced:
+            period = rounds * float(field.length_of_period(p))
+            places = places * period
+            places = np.where(places < times[0], places + period, places)
+        else:
+            places = times[0] + places * (times[-1] - times[0])
+        x = np.column_stack([np.interp(places, times, column) for column in states.T])
+        return np.concatenate([x.reshape(-1), own, widths])
 
     def cycles(
         self,

@@ -101,3 +101,41 @@ def test_cycles_spiral_into_a_shilnikov_orbit():
         assert np.abs(orbit.multipliers - 1.0).min() < 1e-6
         determinant = np.exp(-orbit.period)  # of the divergence -1 (Liouville); the trivial one is 1
         assert np.prod(orbit.multipliers).real == pytest.approx(determinant, rel=1e-5)
+
+
+def test_a_canard_explosion_is_one_stable_branch():
+    """Van der Pol with a constant force and epsilon = 0.01: Zvonkin and Shubin 1984 have the canard at
+    a = 1 - e/8 - 3 e^2/32 - 173 e^3/1024 + O(e^4); Krupa and Szmolyan 2001 show that all its cycles are stable."""
+    e = 0.01
+    flow = cv.FlowProblem(
+        lambda x, p: [x[1] - x[0] ** 3 / 3 + x[0], e * (p.a - x[0])], [1.1, 1.1**3 / 3 - 1.1], {"a": 1.1}
+    )
+    graph = cv.diagram(flow, over="a", within=(0.95, 1.1), settings={"max_branches": 2})
+    assert graph["HB1"].criticality == "supercritical"
+    branch = graph["B2"]
+    assert branch.values[-1] == 0.95
+    assert [p.kind for p in graph.special.values() if p.branch == "B2"] == ["end"]
+    assert branch.stable[1:].all()
+    high = branch.measure("max x0")
+    canards = (high > 1.4) & (high < 1.95)
+    expected = 1.0 - e / 8 - 3 * e**2 / 32 - 173 * e**3 / 1024
+    assert canards.sum() > 10
+    assert np.allclose(branch.values[canards], expected, atol=1e-8)
+    # headless canards turn at the fold, those with a head on the other side of it
+    assert branch.measure("min x0")[canards].max() > -0.5 > branch.measure("min x0").min()
+    assert branch.orbit(len(branch) - 1).replay() < 1e-4
+
+
+def test_a_planar_multiplier_is_that_of_liouville():
+    """Van der Pol at mu = 30: log of the multiplier against the trace, integrated along a simulation with scipy's Radau."""
+    mu = 30.0
+    flow = cv.FlowProblem(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], [2.0, 0.0], {"mu": mu})
+    orbit = flow.attractor()
+
+    def rate(t, y):
+        return [y[1], mu * (1 - y[0] ** 2) * y[1] - y[0], mu * (1 - y[0] ** 2)]
+
+    start = [*orbit.states[0], 0.0]
+    end = solve_ivp(rate, (0.0, orbit.period), start, method="Radau", rtol=1e-9, atol=1e-10).y[:, -1]
+    assert np.log(orbit.multipliers[0].real) == pytest.approx(max(end[2], -707.0), rel=1e-4)
+    assert orbit.volume_error < 1e-9 or end[2] < -707.0
