@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.benchmarks import case, run, scripts
+from tests.benchmarks import case, flows, run, scripts
 from tests.benchmarks.auto import Auto
 from tests.benchmarks.flights import MODELS, Flights
 from tests.benchmarks.floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
@@ -124,3 +124,18 @@ def test_tables_print(capsys):
     assert "1.23" in capsys.readouterr().out and run.machine()
     seconds, slopes = run.growth(1, (2, 4))
     assert set(seconds) == {2, 4} and len(slopes) == 1
+
+
+def test_cycles_of_flows_reach_the_same_end():
+    """Parameter and period at the end of the branch, by each that can be run here."""
+    ends = {}
+    for name, competitor in flows.competitors(40).items():
+        _, points = competitor.run()
+        if name == "AUTO":
+            ends[name] = float(points[-1][4])
+            continue
+        ends[name] = points[-1].value
+        orbit = competitor.problem.orbit(points[-1].u, points[-1].value)
+        assert orbit.replay() < 1e-4
+        assert np.allclose(points[-1].multipliers[:1], orbit.multipliers[:1], rtol=1e-6)
+    assert all(abs(end - flows.END) < 1e-4 for end in ends.values())
