@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -106,7 +107,7 @@ class AutoFlow:
 
 def competitors(intervals):
     """All that can be run here, by name."""
-    found = {"numpy": Ours(in_python(), intervals)}
+    found: dict[str, Any] = {"numpy": Ours(in_python(), intervals)}
     compiled = in_c(tempfile.mkdtemp(prefix="contvines-lorenz-"))
     if compiled is not None:
         found["compiled"] = Ours(compiled, intervals)
