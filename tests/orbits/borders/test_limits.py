@@ -144,9 +144,10 @@ def test_at_a_graze_a_multiplier_is_infinite_and_the_other_one_is_none():
 
 
 def test_where_more_impacts_graze_at_once_multipliers_are_numbers_too():
-    """In a level cavity with unlike distances LRtR begins where sliding fills the cavity: all its three impacts have no speed there."""
+    """In a level cavity with unlike walls LRtR begins where sliding fills the cavity: all its three impacts have no speed there."""
     machine = Cavity(
-        restitution=0.046107453902862604,
+        restitution_left=0.046107453902862604,
+        restitution_right=0.1,
         friction=0.9142422514851505,
         gravity=0.718742981349811,
         mass_ratio=0.05,

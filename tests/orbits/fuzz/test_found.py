@@ -191,7 +191,8 @@ def test_a_virtual_branch_comes_home_to_the_virtual_part_of_its_root():
 def test_a_branch_that_ends_right_beside_its_period_doubling_does_not_turn_back():
     """In eighty digits it is stable from the doubling to its border, 7e-12 further on: that it turns, and branches, is rounding.
 
-    Whether steps that short come to the border depends on the last bit; where they do not, the branch says so.
+    Whether steps that short come to the border depends on the last bit, and so does which of two margins, whose borders
+    are nearer to each other than the stated error, names it; where they do not come there, the branch says so.
     """
     graph = diagram("cavity", 368, 412)
     doubling = next(p for p in graph.of_kind("period-doubling") if abs(p.value - 1.24893547944555) < 1e-13)
@@ -200,7 +201,8 @@ def test_a_branch_that_ends_right_beside_its_period_doubling_does_not_turn_back(
     if branch.endings[1].reason == "step-too-small":
         assert kinds == ["period-doubling"]
     else:
-        assert kinds == ["period-doubling", "stick"]
+        assert kinds[0] == "period-doubling" and kinds[1] in ("stick", "wall-graze") and len(kinds) == 2
+        assert graph[branch.marks[1][1]].location_error > 0.0
     assert doubling.value < branch.values[-1] < doubling.value + 1e-11
     assert len(branch) > 2 and (np.diff(branch.values) > 0.0).all() and branch.stable.all()
     for i in range(1, len(branch) - 1):
