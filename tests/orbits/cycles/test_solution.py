@@ -36,7 +36,10 @@ def test_unlike_walls_leave_unlike_room():
     reach = np.sqrt(0.25 - H**2)
     about_the_origin = type(orbit)(machine, orbit.word, 1, orbit.nodes - [0.0, 0.4], orbit.params)
     for moved, rooms in (
-        (orbit, [1.0 - reach]),  # symmetric about the middle between the walls, at 0.4: half of it is looked at
+        (
+            orbit,
+            [1.0 - reach],
+        ),  # symmetric about the middle between the walls, at 0.4: half of it is looked at
         (about_the_origin, [0.6 - reach, min(1.4 - reach, 0.6 + reach)]),
     ):
         found = sorted(margin.value for margin in moved.margins if margin.kind == "wall")
