@@ -49,7 +49,7 @@ def atlas(
     settings: Settings | Mapping[str, Any] | None = None,
     kinds: Sequence[Kind] | None = None,
 ) -> Graph:
-    """One graph with every attractor that many simulated starts find, and all that hangs together with them.
+    """One graph with every attractor that many simulated starts find, and all that is connected to them.
 
     At each value starts are drawn, simulated, and what they settle on is solved: it is then a point of a known branch,
     exactly, or the root of a new one, which is traced with everything that leaves it. The search begins with the motions that most starts reach:

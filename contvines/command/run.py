@@ -207,7 +207,7 @@ def _run(
     if command == "diagram" and graph.missing:
         from contvines.coexistence.missing import told
 
-        say(told(graph, f"contvines atlas {path} adds what hangs together with it"), quiet)
+        say(told(graph, f"contvines atlas {path} adds what is connected to it"), quiet)
     if plot is not None:
         _draw(graph, x, y, plot, compare)
         say(f"drawn in {plot}", quiet)
