@@ -10,6 +10,7 @@ from pathlib import Path
 
 from contvines.bifurcation.kinds import BY_NAME
 
+from ...flows.demos.page import cycles
 from . import listed, maps
 from .make_table import TABLE
 from .units import SETS, UNITS
@@ -82,6 +83,7 @@ def render() -> str:
             )
             lines.append("| " + " | ".join(cells) + " |")
         lines.append("")
+    lines += cycles()
     return "\n".join(lines).rstrip() + "\n"
 
 

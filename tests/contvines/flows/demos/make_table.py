@@ -1,0 +1,122 @@
+"""Writes table.json: the special points of every demo with cycles, ours and as the witness has them.
+
+python -m tests.contvines.flows.demos.make_table [NAME...]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import witness
+from .listed import DEMOS, CycleDemo
+
+TABLE = Path(__file__).with_name("table.json")
+CYCLE = ("fold", "period-doubling", "neimark-sacker", "branch-point", "symmetry-breaking")
+
+
+def points_of(graph: Any) -> list[Any]:
+    """The special points, ends of the interval left out, those of equilibria that are no Hopf points as well."""
+    found = []
+    for point in graph.special.values():
+        rest = graph.branches[point.branch].description["word"] == "equilibrium"
+        if point.kind != "end" and (not rest or point.kind == "hopf"):
+            found.append(point)
+    return sorted(found, key=lambda point: (point.kind, point.value))
+
+
+def shooting_of(demo: CycleDemo, point: Any) -> witness.Shooting:
+    """The witness's equations, begun with states of our cycle."""
+    orbit = point.orbit
+    growth = float(np.abs(orbit.multipliers).max(initial=1.0))
+    parts = 1 if point.kind == "branch-point" else min(1 + int(np.log10(growth)) // 2, 12)
+    turn, period = None, orbit.period
+    if point.kind == "symmetry-breaking":
+        mirror = np.asarray(demo.mirror, dtype=float)
+        later = mirror @ orbit(0.5 * period)
+        if np.abs(later - orbit(0.0)).max() < 1e-3 * np.ptp(orbit.states, axis=0).max():
+            turn, parts = mirror, max(1, parts // 2)
+    length = period / (1.0 if turn is None else 2.0)
+    states = orbit(np.arange(parts) * length / parts)
+    rounds = point.problem.rounds if demo.period else 1
+    unit = np.ptp(orbit.states, axis=0)
+    return witness.Shooting(demo.rates, demo.period, states, unit, period, point.value, rounds, turn)
+
+
+def solved(demo: CycleDemo, point: Any) -> float:
+    """The witness's value of a special point."""
+    p = float(point.value)
+    exact = [value for kind, value in demo.exact if kind == point.kind]
+    if exact:
+        return exact[0]
+    if point.kind == "hopf":
+        u = np.asarray(point.u, dtype=float) if len(point.u) == len(demo.u) else point.orbit.states[0]
+        return witness.hopf(demo.rates, u, p)[1]
+    if point.kind == "homoclinic":
+        orbit = point.orbit
+        states = orbit(np.linspace(0.0, orbit.period, 4001)[:-1])
+        speed = np.linalg.norm(np.array([demo.rates(x, p) for x in states]) / np.ptp(states, axis=0), axis=1)
+        states = np.roll(states, -int(np.argmin(speed)), axis=0)
+        if "saddle-node" in point.note:
+            return witness.fold_of_equilibria(demo.rates, states[0], p)[1]
+        width = max(3.0 * point.location_error, 1e-7 * (demo.within[1] - demo.within[0]))
+        return witness.Homoclinic(demo.rates, states).solve(p, width)
+    shooting = shooting_of(demo, point)
+    multiplier: complex = -1.0
+    if point.kind == "neimark-sacker":
+        values = point.orbit.multipliers
+        pairs = values[values.imag > 1e-9]
+        multiplier = complex(pairs[int(np.argmin(np.abs(np.abs(pairs) - 1.0)))])
+    elif point.kind == "symmetry-breaking" and shooting.turn is None:
+        multiplier = 1.0
+    return float(witness.solve(point.kind, shooting, multiplier)[-1])
+
+
+def rows_of(demo: CycleDemo, ours: bool) -> list[dict[str, Any]]:
+    """A row for each special point."""
+    rows = []
+    for point in points_of(demo.graph()):
+        try:
+            value = None if ours else solved(demo, point)
+        except (ValueError, ArithmeticError, np.linalg.LinAlgError) as failure:
+            print(demo.name, point.kind, point.value, "not solved:", failure, file=sys.stderr)
+            value = None
+        period = None if point.kind == "hopf" else float(point.orbit.period)
+        rows.append(
+            {
+                "kind": point.kind,
+                "value": value,
+                "ours": float(point.value),
+                "stated": float(point.location_error),
+                "period": period,
+            }
+        )
+        away = abs((value or 0.0) - point.value) / (demo.within[1] - demo.within[0])
+        print(
+            f"{demo.name}: {point.kind} {value!r} ours {point.value!r} away {away:.1e} stated {point.location_error:.1e}",
+            flush=True,
+        )
+    return rows
+
+
+def main(names: list[str]) -> None:
+    """Make the table anew, or the rows of some demos."""
+    ours, names = "--ours" in names, [name for name in names if name != "--ours"]
+    for demo in DEMOS:
+        if names and demo.name not in names:
+            continue
+        rows = rows_of(demo, ours)
+        table = json.loads(TABLE.read_text(encoding="utf-8")) if TABLE.exists() else {}
+        table[demo.name] = rows
+        table = {d.name: table[d.name] for d in DEMOS if d.name in table}
+        TABLE.write_text(
+            json.dumps(table).replace("], ", "],\n").replace("}, {", "},\n {") + "\n", encoding="utf-8"
+        )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,74 @@
+"""The part of docs/demos.md on cycles."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from contvines.events.kinds import KINDS
+
+from .listed import DEMOS, PRINTED
+from .make_table import TABLE
+
+HEAD = """## Cycles
+
+Demos whose flows have cycles, begun at an equilibrium or at the cycle on which a motion settles (`cv.FlowProblem`, plain settings, `mirror=` where the equations have one). All special points within the
+interval are listed that `cv.diagram` finds to the stated depth, Hopf points and those of cycles. *Own solve*: shooting with scipy's DOP853 at 1e-12 and Newton's method on an extended system
+(`tests/contvines/flows/demos/witness.py`, nothing of the package's); homoclinic orbits by bisection along the unstable manifold, saddle-nodes on cycles by the fold of the equilibrium. A dash: not solved anew.
+Printed values of AUTO-07p are those of its own run of the demo; they are on coarse meshes (its Hopf point of `chu` is 1e-4 off).
+Values of MatCont's `torBPC` are not printed here, as the constants to which they belong are not known to us; the demo is run with the manual's a3, b3 and epsilon = 0.001.
+
+LP fold, BP branch point, SB symmetry breaking, PD period doubling, NS Neimark-Sacker, all of cycles; HB Hopf; HC homoclinic orbit.
+
+| demo | comes with | parameter | point | found | own solve | differ by | printed |
+|---|---|---|---|---|---|---|---|"""
+
+
+def cycles() -> list[str]:
+    """Its lines."""
+    table = json.loads(TABLE.read_text(encoding="utf-8"))
+    lines = [HEAD]
+    for demo in DEMOS:
+        texts = {kind: list(values) for kind, values in PRINTED.get(demo.name, {}).items()}
+        low, high = demo.within
+        name, source = demo.name, demo.source
+        parameter = f"{demo.parameter} in {low:.6g} to {high:.6g}"
+        rows = table.get(demo.name, [])
+        nearest = _nearest(texts, rows)
+        for k, row in enumerate(rows):
+            value = row["value"]
+            own, away = ("-", "-") if value is None else (f"{_zero(value):.11g}", _difference(row))
+            cells = (
+                name,
+                source,
+                parameter,
+                KINDS[row["kind"]].label,
+                f"{_zero(row['ours']):.11g}",
+                own,
+                away,
+                nearest.get(k, ""),
+            )
+            lines.append("| " + " | ".join(cells) + " |")
+            name = source = parameter = ""
+        if not rows:
+            lines.append(f"| {name} | {source} | {parameter} | none | | | | |")
+    return [*lines, ""]
+
+
+def _zero(value: float) -> float:
+    return 0.0 if abs(value) < 1e-14 else value
+
+
+def _difference(row: dict[str, Any]) -> str:
+    away = abs(row["ours"] - row["value"])
+    return "0" if away == 0.0 else f"{away:.0e}"
+
+
+def _nearest(texts: dict[str, list[str]], rows: list[dict[str, Any]]) -> dict[int, str]:
+    found: dict[int, str] = {}
+    for kind, values in texts.items():
+        for text in values:
+            of_kind = [k for k, row in enumerate(rows) if row["kind"] == kind]
+            if of_kind:
+                found[min(of_kind, key=lambda k: abs(rows[k]["ours"] - float(text)))] = text
+    return found

@@ -1,0 +1,303 @@
+"""Special points of cycles solved anew: multiple shooting with DOP853 at 1e-12, Newton's method on an extended system.
+
+    every cycle          x_(i+1) = flow over a part of the period from x_i, closed after the last part, a phase condition
+    fold                 the parameter's share of the null vector of the derivative of these equations vanishes
+    branch point         F(y) + b w = 0, A(y)^T w = 0, w.w = 1, A with one column more than rows (Moore 1980; b = 0 in the end)
+    period doubling      an eigenvalue of the monodromy matrix is -1;  Neimark-Sacker: a pair has modulus 1
+    symmetry breaking    half a period later the cycle is its mirror image: an eigenvalue of mirror times half the matrix is -1
+                         (+1 where the cycle is its own mirror image at every instant)
+    Hopf                 an equilibrium with a pair of eigenvalues of real part zero
+    homoclinic           the unstable manifold of the saddle comes back to it
+
+Nothing of the package's is used: Jacobians by the complex step, Newton's derivatives by differences.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+NEARS = (0.1, 0.5)  # of the size of an orbit: neighbourhoods of the saddle that it leaves and comes back to
+LONG = 3e3  # times in which it is left, or come back to
+TOLERANCE = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
+
+
+class Shooting:
+    """Cycles of a demo by multiple shooting.
+
+    Parameters
+    ----------
+    rates : callable
+        (x, p) or (x, p, t) -> d numbers.
+    period : callable or None
+        Of the forcing, of p.
+    states : ndarray, shape (m, d)
+        Guesses at the beginnings of m equal parts of the period; the first fixes the phase.
+    unit : ndarray, shape (d,)
+        Sizes of the states' motions.
+    clock : float
+        Period.
+    p : float
+    rounds : int
+        Periods of the forcing.
+    turn : ndarray, shape (d, d), optional
+        The cycle is closed after half a period, by this mirror.
+    """
+
+    def __init__(
+        self,
+        rates: Any,
+        period: Any,
+        states: np.ndarray,
+        unit: np.ndarray,
+        clock: float,
+        p: float,
+        rounds: int = 1,
+        turn: Any = None,
+    ) -> None:
+        self.rates, self.period, self.rounds, self.turn = rates, period, rounds, turn
+        self.parts, self.d = states.shape
+        self.free = period is None
+        self.first = states[0].copy()
+        self.normal = np.asarray(rates(states[0], p), dtype=float) if self.free else np.zeros(self.d)
+        self.unit = np.maximum(unit, 1e-3 * unit.max())
+        own = [clock] if self.free else []
+        self.start = np.concatenate([states.reshape(-1), own, [p]])
+
+    def jacobian(self, x: np.ndarray, p: float, *t: float) -> np.ndarray:
+        """df/dx by the complex step."""
+        steps = x + 1e-30j * np.eye(self.d)
+        return np.array([np.imag(self.rates(s, p, *t)) for s in steps]).T / 1e-30
+
+    def part(self, x: np.ndarray, p: float, start: float, stop: float) -> tuple[np.ndarray, np.ndarray]:
+        """State and its derivative after a part."""
+        d = self.d
+
+        def rate(t: float, y: np.ndarray) -> np.ndarray:
+            at = () if self.free else (t,)
+            matrix = self.jacobian(y[:d], p, *at) @ y[d:].reshape(d, d)
+            return np.concatenate([self.rates(y[:d], p, *at), matrix.reshape(-1)])
+
+        found = solve_ivp(rate, (start, stop), np.concatenate([x, np.eye(d).reshape(-1)]), **TOLERANCE).y[
+            :, -1
+        ]
+        return found[:d], found[d:].reshape(d, d)
+
+    def cycle(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+        """Equations of a cycle, their derivative without the parameter's column, and the parts' matrices."""
+        m, d = self.parts, self.d
+        states, p = y[: m * d].reshape(m, d), float(y[-1])
+        length = float(y[m * d]) if self.free else self.rounds * self.period(p)
+        h = length / m / (1.0 if self.turn is None else 2.0)
+        n = m * d + self.free
+        values, matrix, parts = np.zeros(n), np.zeros((n, n)), []
+        for i in range(m):
+            end, jacobian = self.part(states[i], p, i * h, (i + 1) * h)
+            rows, closes = slice(i * d, (i + 1) * d), i == m - 1
+            turn = np.eye(d) if self.turn is None or not closes else self.turn
+            j = 0 if closes else i + 1
+            values[rows] = (turn @ end - states[j]) / self.unit
+            matrix[rows, i * d : (i + 1) * d] += turn @ jacobian / self.unit[:, None]
+            matrix[rows, j * d : (j + 1) * d] -= np.diag(1.0 / self.unit)
+            if self.free:
+                matrix[rows, -1] = turn @ np.asarray(self.rates(end, p)) / self.unit * h / length
+            parts.append(turn @ jacobian)
+        if self.free:
+            size = np.linalg.norm(self.normal * self.unit)
+            values[-1] = self.normal @ (states[0] - self.first) / size
+            matrix[-1, :d] = self.normal / size
+        return values, matrix, parts
+
+    def whole(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Equations of a cycle, and their derivative with the parameter's column, by central differences."""
+        values, matrix, _ = self.cycle(y)
+        step = 1e-6 * max(abs(y[-1]), 1e-3)
+        ahead, behind = y.copy(), y.copy()
+        ahead[-1] += step
+        behind[-1] -= step
+        column = (self.cycle(ahead)[0] - self.cycle(behind)[0]) / (2.0 * step)
+        return values, np.column_stack([matrix, column])
+
+    def monodromy(self, y: np.ndarray) -> np.ndarray:
+        """Matrix of the full period (with ``turn``, of half of it and the mirror)."""
+        product = np.eye(self.d)
+        for part in self.cycle(y)[2]:
+            product = part @ product
+        return product
+
+    def multipliers(self, y: np.ndarray) -> np.ndarray:
+        """Eigenvalues of it."""
+        return np.linalg.eigvals(self.monodromy(y))
+
+
+def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
+    """What vanishes: an eigenvalue next to ``at`` minus it, or its modulus minus one."""
+
+    def condition(y: np.ndarray) -> float:
+        values = shooting.multipliers(y)
+        nearest = values[int(np.argmin(np.abs(values - at)))]
+        return abs(nearest) - 1.0 if kind == "neimark-sacker" else float(np.real(nearest - at))
+
+    return condition
+
+
+def newton(residual: Any, y: np.ndarray, scale: np.ndarray, known: Any = None) -> np.ndarray:
+    """A root, with derivatives by central differences (the rows that ``known`` gives are not differenced); the chord method at the end."""
+    matrix: Any = None
+    for step in range(14):
+        value = residual(y)
+        if step < 3 or step % 3 == 0:
+            columns = []
+            for j in range(len(y)):
+                e = np.zeros(len(y))
+                e[j] = 1e-6 * scale[j]
+                columns.append((residual(y + e) - residual(y - e)) / (2.0 * e[j]))
+            matrix = np.column_stack(columns)
+        change = np.linalg.lstsq(matrix * scale, -value, rcond=1e-14)[0] * scale
+        y = y + change
+        if np.abs(change / scale).max() < 1e-11:
+            break
+    return y
+
+
+def solve(kind: str, shooting: Shooting, multiplier: complex = -1.0) -> np.ndarray:
+    """Unknowns of a special point: states, period, parameter."""
+    y = shooting.start.copy()
+    m, d = shooting.parts, shooting.d
+    scale = np.concatenate([np.tile(shooting.unit, m), np.abs(y[m * d :]) + 1e-3])
+    if kind in ("fold", "branch-point"):
+        n = len(y) - 1
+        if kind == "fold":
+
+            def residual(z: np.ndarray) -> np.ndarray:
+                values, matrix = shooting.whole(z)
+                null = np.linalg.svd(matrix * scale)[2][-1]
+                return np.append(values, null[-1] * np.sign(null @ reference))
+
+            reference = np.linalg.svd(shooting.whole(y)[1] * scale)[2][-1]
+            return newton(residual, y, scale)
+        left = np.linalg.svd(shooting.whole(y)[1] * scale)[0][:, -1]
+
+        def moore(z: np.ndarray) -> np.ndarray:
+            point, w, b = z[: n + 1], z[n + 1 : -1], z[-1]
+            values, matrix = shooting.whole(point)
+            return np.concatenate([values + b * w, (matrix * scale).T @ w, [w @ w - 1.0]])
+
+        full = newton(moore, np.concatenate([y, left, [0.0]]), np.concatenate([scale, np.ones(n), [1.0]]))
+        return full[: n + 1]
+    condition = eigenvalue_condition(shooting, kind, multiplier)
+
+    def both(z: np.ndarray) -> np.ndarray:
+        return np.append(shooting.cycle(z)[0], condition(z))
+
+    return newton(both, y, scale)
+
+
+def hopf(rates: Any, u: np.ndarray, p: float) -> tuple[np.ndarray, float]:
+    """An equilibrium with eigenvalues of real part zero."""
+    d = len(u)
+
+    def residual(z: np.ndarray) -> np.ndarray:
+        steps = z[:d] + 1e-30j * np.eye(d)
+        matrix = np.array([np.imag(rates(s, z[d])) for s in steps]).T / 1e-30
+        values = np.linalg.eigvals(matrix)
+        pair = values[np.abs(values.imag) > 1e-9]
+        return np.append(rates(z[:d], z[d]), pair[int(np.argmin(np.abs(pair.real)))].real)
+
+    z = newton(residual, np.append(u, p), np.append(np.abs(u) + 1e-3, abs(p) + 1e-3))
+    return z[:d], float(z[d])
+
+
+def fold_of_equilibria(rates: Any, u: np.ndarray, p: float) -> tuple[np.ndarray, float]:
+    """An equilibrium with a singular Jacobian."""
+    d = len(u)
+
+    def residual(z: np.ndarray) -> np.ndarray:
+        steps = z[:d] + 1e-30j * np.eye(d)
+        return np.append(
+            rates(z[:d], z[d]), np.linalg.det(np.array([np.imag(rates(s, z[d])) for s in steps])) / 1e-30**d
+        )
+
+    z = newton(residual, np.append(u, p), np.append(np.abs(u) + 1e-3, abs(p) + 1e-3))
+    return z[:d], float(z[d])
+
+
+class Homoclinic:
+    """The one-dimensional manifold of a saddle that comes back to it, forwards or, where the stable one is the line, backwards.
+
+    Parameters
+    ----------
+    rates : callable
+    states : ndarray, shape (n, d)
+        Of a cycle next to it, in order of time; the first is the slowest.
+    """
+
+    def __init__(self, rates: Any, states: np.ndarray) -> None:
+        self.rates, self.states = rates, states
+        self.size = float(np.ptp(states, axis=0).max())
+
+    def saddle(self, p: float, sign: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+        """Place, direction of the line that leaves, normal of what comes back, number of unstable eigenvalues."""
+        x, d = self.states[0], self.states.shape[1]
+        for _ in range(30):
+            steps = x + 1e-30j * np.eye(d)
+            matrix = np.array([np.imag(self.rates(s, p)) for s in steps]).T / 1e-30
+            change = np.linalg.solve(matrix, -np.asarray(self.rates(x, p), dtype=float))
+            x = x + change
+            if np.abs(change).max() < 1e-14 * self.size:
+                break
+        values, vectors = np.linalg.eig(sign * matrix)
+        k = int(np.argmax(values.real))
+        left = np.linalg.eig(sign * matrix.T)
+        normal = np.real(left[1][:, int(np.argmax(left[0].real))])
+        return x, np.real(vectors[:, k]), normal, int((values.real > 0.0).sum())
+
+    def passes(self, p: float, sign: float, near: float) -> float:
+        """The side of the returning manifold on which the line passes the saddle when it is back, forwards (1) or backwards (-1) in time; 0 where it does not come."""
+        x, direction, normal, _ = self.saddle(p, sign)
+        states = self.states if sign > 0.0 else np.roll(self.states[::-1], 1, axis=0)
+        gone = states[int(np.argmax(np.linalg.norm(states - x, axis=1) > near * self.size))] - x
+        lead = direction * np.sign((normal @ direction) * (normal @ gone))
+        start = x + 1e-7 * self.size * lead / np.linalg.norm(lead)
+
+        def rate(t: float, y: np.ndarray) -> Any:
+            return sign * np.asarray(self.rates(y, p), dtype=float)
+
+        def leaves(t: float, y: np.ndarray) -> float:
+            return float(np.linalg.norm(y - x)) - near * self.size
+
+        def comes(t: float, y: np.ndarray) -> float:
+            return leaves(t, y)
+
+        leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
+        comes.terminal, comes.direction = True, -1.0  # type: ignore[attr-defined]
+        y = start
+        for event in (leaves, comes, leaves):
+            found = solve_ivp(rate, (0.0, LONG), y, events=event, **TOLERANCE)
+            if not found.t_events[0].size:
+                return 0.0
+            y = found.y[:, -1]
+        return float(np.sign((normal @ lead) * (normal @ (y - x))))
+
+    def solve(self, p: float, width: float) -> float:
+        """The parameter, by bisection on the side on which the line passes the saddle."""
+        _, _, _, unstable = self.saddle(p, 1.0)
+        sign = 1.0 if unstable == 1 else -1.0
+        for near in NEARS:
+            low, high = p - width, p + width
+            first = self.passes(low, sign, near)
+            if first != self.passes(high, sign, near):
+                break
+        else:
+            raise ValueError("no homoclinic orbit between these values")
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if middle in (low, high):
+                break
+            if self.passes(middle, sign, near) == first:
+                low = middle
+            else:
+                high = middle
+        return 0.5 * (low + high)

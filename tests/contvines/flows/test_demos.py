@@ -1,0 +1,65 @@
+"""Demos of other packages with cycles: all special points of the table, no others, each against a solve of its own.
+
+The values of the table are the witness's (`demos/witness.py`): shooting with DOP853 and Newton's method on an extended system.
+"""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.contvines.flows.demos.listed import DEMOS, PRINTED
+from tests.contvines.flows.demos.make_table import TABLE, points_of, shooting_of, solved
+
+EXPECTED = json.loads(TABLE.read_text(encoding="utf-8"))
+BY_NAME = {demo.name: demo for demo in DEMOS}
+QUICK = ["hopf", "langford", "adaptx", "bistable", "frc", "kpr", "pneta", "morris-lecar", "ops", "torBPC"]
+AWAY = {"homoclinic": 3e-6}  # parts of the interval; else of the location of an equilibrium or a cycle
+CLOSE = 1e-8
+
+
+def compared(name):
+    demo = BY_NAME[name]
+    found, expected = points_of(demo.graph()), EXPECTED[name]
+    assert [point.kind for point in found] == [row["kind"] for row in expected]
+    width = demo.within[1] - demo.within[0]
+    for point, row in zip(found, expected):
+        if row["value"] is not None:
+            away = abs(point.value - row["value"])
+            assert away <= AWAY.get(point.kind, CLOSE) * width, (point.label, row["value"])
+            assert away <= 30.0 * point.location_error + 3e-12 * width, "the stated error is too small"
+    return demo, found
+
+
+def test_every_demo_is_in_the_table():
+    assert set(EXPECTED) == set(BY_NAME)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_quick_demo(name):
+    compared(name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in BY_NAME if name not in QUICK])
+def test_demo(name):
+    compared(name)
+
+
+@pytest.mark.parametrize("name", ["adaptx"])
+def test_the_table_is_what_the_witness_finds(name):
+    demo, found = compared(name)
+    for point, row in zip(found, EXPECTED[name]):
+        assert solved(demo, point) == pytest.approx(row["value"], rel=1e-10)
+    start = shooting_of(demo, found[-1])
+    assert np.abs(start.cycle(start.start)[0]).max() < 1e-6  # our cycle solves the witness's equations
+
+
+@pytest.mark.parametrize("name", sorted(PRINTED))
+def test_what_others_print(name):
+    """To a part in 10^4: AUTO's demos have coarse meshes (chu's Hopf point, exactly 6.80434, is printed as 6.80443)."""
+    for kind, texts in PRINTED[name].items():
+        values = [row["value"] for row in EXPECTED[name] if row["kind"] == kind and row["value"] is not None]
+        for text in texts:
+            nearest = min(values, key=lambda value: abs(value - float(text)))
+            assert nearest == pytest.approx(float(text), rel=2e-4, abs=1e-9), (kind, text)
