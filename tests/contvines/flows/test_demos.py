@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from tests.contvines.flows.demos.listed import DEMOS, PRINTED
+from tests.contvines.flows.demos.listed import DEMOS, PRINTED, UNFINISHED
 from tests.contvines.flows.demos.make_table import TABLE, points_of, shooting_of, solved
 
 EXPECTED = json.loads(TABLE.read_text(encoding="utf-8"))
@@ -33,6 +33,7 @@ def compared(name):
 
 def test_every_demo_is_in_the_table():
     assert set(EXPECTED) == set(BY_NAME)
+    assert not set(EXPECTED) & {demo.name for demo in UNFINISHED}
 
 
 @pytest.mark.parametrize("name", QUICK)
@@ -55,11 +56,12 @@ def test_the_table_is_what_the_witness_finds(name):
     assert np.abs(start.cycle(start.start)[0]).max() < 1e-6  # our cycle solves the witness's equations
 
 
-@pytest.mark.parametrize("name", sorted(PRINTED))
+@pytest.mark.parametrize("name", sorted(set(PRINTED) & set(BY_NAME)))
 def test_what_others_print(name):
     """To a part in 10^4: AUTO's demos have coarse meshes (chu's Hopf point, exactly 6.80434, is printed as 6.80443)."""
     for kind, texts in PRINTED[name].items():
-        values = [row["value"] for row in EXPECTED[name] if row["kind"] == kind and row["value"] is not None]
+        rows = [row for row in EXPECTED[name] if row["kind"] == kind]
+        values = [row["ours"] if row["value"] is None else row["value"] for row in rows]
         for text in texts:
             nearest = min(values, key=lambda value: abs(value - float(text)))
             assert nearest == pytest.approx(float(text), rel=2e-4, abs=1e-9), (kind, text)

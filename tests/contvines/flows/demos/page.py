@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from contvines.events.kinds import KINDS
+from contvines.bifurcation.kinds import KINDS
 
 from .listed import DEMOS, PRINTED
 from .make_table import TABLE
 
+LABELS = {kind.name: kind.label for kind in KINDS}
 HEAD = """## Cycles
 
 Demos whose flows have cycles, begun at an equilibrium or at the cycle on which a motion settles (`cv.FlowProblem`, plain settings, `mirror=` where the equations have one). All special points within the
@@ -19,6 +20,8 @@ Printed values of AUTO-07p are those of its own run of the demo; they are on coa
 Values of MatCont's `torBPC` are not printed here, as the constants to which they belong are not known to us; the demo is run with the manual's a3, b3 and epsilon = 0.001.
 
 LP fold, BP branch point, SB symmetry breaking, PD period doubling, NS Neimark-Sacker, all of cycles; HB Hopf; HC homoclinic orbit.
+
+Not in the table: AUTO-07p's `brc`, `tor` and `pen`, COCO's `canard`, the forced predator and prey. They take long, or end before the points that are printed.
 
 | demo | comes with | parameter | point | found | own solve | differ by | printed |
 |---|---|---|---|---|---|---|---|"""
@@ -42,7 +45,7 @@ def cycles() -> list[str]:
                 name,
                 source,
                 parameter,
-                KINDS[row["kind"]].label,
+                LABELS[row["kind"]],
                 f"{_zero(row['ours']):.11g}",
                 own,
                 away,
