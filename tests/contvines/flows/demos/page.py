@@ -17,7 +17,7 @@ Demos whose flows have cycles, begun at an equilibrium or at the cycle on which 
 interval are listed that `cv.diagram` finds to the stated depth, Hopf points and those of cycles. *Own solve*: shooting with scipy's DOP853 at 1e-12 and Newton's method on an extended system
 (`tests/contvines/flows/demos/witness.py`, nothing of the package's); homoclinic orbits by bisection along the unstable manifold, saddle-nodes on cycles by the fold of the equilibrium. A dash: not solved anew.
 Printed values of AUTO-07p are those of its own run of the demo; they are on coarse meshes (its Hopf point of `chu` is 1e-4 off).
-Values of MatCont's `torBPC` are not printed here, as the constants to which they belong are not known to us; the demo is run with the manual's a3, b3 and epsilon = 0.001.
+Values of MatCont's `torBPC` are not printed here, as the constants to which they belong are not known to us; the demo is run with a3 = 0.32858, b3 = 0.93358 and epsilon = 0.001.
 
 LP fold, BP branch point, SB symmetry breaking, PD period doubling, NS Neimark-Sacker, all of cycles; HB Hopf; HC homoclinic orbit.
 
