@@ -134,6 +134,8 @@ def __getattr__(name: str) -> Any:
         value = getattr(import_module(_HOME[name], __name__), name)
         globals()[name] = value
         return value
+    if name == "flows":  # the sub-package with read_ode and CompiledRates
+        return import_module(".flows", __name__)
     from contvines.shared.near_names import did_you_mean
 
     raise AttributeError(

@@ -5,6 +5,7 @@ own: F = 0 with J q = 0 at folds and branch points, F = 0 with J (a + i b) = i o
 """
 
 import re
+from contextlib import chdir
 from pathlib import Path
 
 import mpmath as mp
@@ -86,11 +87,12 @@ def hopf(f, u, p):
 
 
 @pytest.fixture(scope="module")
-def page():
-    """The names of the page after all its cells have run."""
+def page(tmp_path_factory):
+    """The names of the page after all its cells have run, in a folder of their own."""
     cells = re.findall(r"```\{code-cell\} ipython3\n(.*?)```", PAGE, re.DOTALL)
     names: dict = {}
-    exec(compile("\n".join(cells), "coming_from.md", "exec"), names)
+    with chdir(tmp_path_factory.mktemp("page")):
+        exec(compile("\n".join(cells), "coming_from.md", "exec"), names)
     return names
 
 
