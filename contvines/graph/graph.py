@@ -253,7 +253,8 @@ class Graph:
             ) from None
         network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)
         network.add_nodes_from(self.nodes())
-        network.add_edges_from((a, b, data["point"], data) for a, b, data in self.edges())
+        for a, b, data in self.edges():
+            network.add_edge(a, b, data["point"], **data)
         return network
 
     def merge(self, other: Graph) -> dict[str, str]:

@@ -7,15 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from orbits.orbit import Orbit
-
 TWO_PI = 2.0 * np.pi
 SAME = 2e-6  # difference of phases and velocities of impacts
 
 
 def impacts_of(orbit: Any) -> np.ndarray:
     """Wall (1 left, -1 right), phase and B (velocity of the cavity less that of the mass in it) of every impact, shape (n, 3)."""
-    if isinstance(orbit, Orbit):  # the absorber as a page: its states are w and w'
+    if orbit.model.flow == "page":  # the absorber as a page: its states are w and w'
         of = dict(zip(orbit.model.parameter_names, orbit.params, strict=True))
         letters = [orbit.word.letter(i).text for i in range(len(orbit.word))]
         rows = [
