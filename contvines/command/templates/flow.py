@@ -1,10 +1,11 @@
-"""Van der Pol's oscillator: x'' - mu (1 - x^2) x' + x = 0."""
+"""The Brusselator, a chemical oscillator: x' = a - (b + 1) x + x^2 y, y' = b x - x^2 y."""
 
 import contvines as cv
 
 
 def rates(x, p):
-    return [x[1], p.mu * (1.0 - x[0] ** 2) * x[1] - x[0]]
+    reaction = x[0] ** 2 * x[1]
+    return [p.a - (p.b + 1.0) * x[0] + reaction, p.b * x[0] - reaction]
 
 
-flow = cv.FlowProblem(rates, [0.0, 0.0], {"mu": -0.5})
+flow = cv.FlowProblem(rates, [1.0, 1.0], {"b": 1.0, "a": 1.0})
