@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from copy import copy
 from typing import Any
 
 import numpy as np
 
 from ..problems.functions import NotEvaluable
-from ..problems.images import in_order, linear_part
+from ..problems.images import in_order
 from ..problems.protocol import Embedding, ProblemDefaults, Seed, Symmetry
 from ..problems.scales import Scales
 from . import mesh
@@ -438,10 +438,6 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         v[: self.states] = np.array([self.flow.mirror(y) for y in x]).reshape(-1)
         return v
 
-    def _mirrored_direction(self, x: np.ndarray) -> np.ndarray:
-        image = linear_part(self.flow.mirror, self.node)
-        return np.array([image(y) for y in x])
-
     def _root(self, u: np.ndarray) -> tuple[Any, np.ndarray]:
         return self.root(u, self.p0, loose=1e-3) or (self, u)
 
@@ -583,10 +579,6 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
             return self.trouble
         error = self.estimated_error(u)
         return f"with {self.intervals} intervals the error of the cycle is about {error:.1g} of its size"
-
-    def measures_of_start(self) -> Sequence[str]:
-        """Names of what is drawn of it by default."""
-        return (self.default_measure,)
 
 
 def _distance_to_rest(matrices: np.ndarray, rates: np.ndarray) -> float:

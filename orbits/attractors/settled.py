@@ -18,7 +18,7 @@ class Settled:
     @property
     def found(self) -> Any:
         """The orbit; `ValueError` if it is none that can be continued."""
-        raise NotImplementedError
+        raise TypeError(f"{type(self).__name__} does not say which orbit it is")
 
     def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
         """The attractor as a continuation problem, so that it can be handed to `contvines.diagram`.
