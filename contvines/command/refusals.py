@@ -76,7 +76,10 @@ def _bad_value(error: Any, message: str, words: list[str]) -> str:
     """An option's value that cannot be."""
     names = sorted(getattr(getattr(error, "param", None), "opts", ()), key=len)
     if not names or not names[-1].startswith("-"):
-        return ""
+        value, found, choices = message.rpartition(" is not one of ")
+        given = re.search(r"'([^']*)'$", value)
+        quoted = ", ".join(re.findall(r"'([^']*)'", choices))
+        return f"{given[1]}: there is no such choice; choose one of {quoted}." if found and given else ""
     typed = next((n for n in names if any(w == n or w.startswith(f"{n}=") for w in words)), names[-1])
     typed = typed if typed.startswith("--") else names[-1]
     given = [w.split("=", 1)[1] for w in words if w.startswith(f"{typed}=")]

@@ -48,6 +48,12 @@ def test_a_file_that_is_there_is_kept(tmp_path, monkeypatch, capsys):
     assert not (tmp_path / "flow.toml").exists()
 
 
+def test_a_kind_that_is_none_is_refused_with_those_there_are(capsys):
+    assert call("new", "foo") == 2
+    said = capsys.readouterr().err
+    assert said.startswith("contvines: foo: ") and all(kind.value in said for kind in Kind)
+
+
 def test_templates_are_toml_of_the_kinds_that_are_offered(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for kind in Kind:
