@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.orbits.fuzz.many_digits import exact
+from tools.fuzz.many_digits import exact
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SCRIPTS = {"pitchfork", "henon", "absorber", "neutral_saddle"}

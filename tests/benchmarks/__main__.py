@@ -1,5 +1,5 @@
-"""`python -m tests.benchmarks`."""
+"""`python -m tests.benchmarks` is `python -m tools.benchmarks`."""
 
-from .run import main
+from tools.benchmarks.run import main
 
 main()

@@ -11,8 +11,8 @@ from typing import Any
 import contvines as cv
 import orbits
 from orbits.machines.page.loading import load_page
-from tests.contvines.problems.demos import listed, maps
-from tests.contvines.problems.demos.make_table import graph_of
+from tools.demos import listed, maps
+from tools.demos.make_table import graph_of
 
 from .compact import of_chart, of_graph
 
@@ -22,7 +22,7 @@ PAGES = HERE.parents[1] / "examples" / "machines"
 
 
 def starts() -> dict[str, Any]:
-    """Machines with the nodes of a first orbit and the options of a diagram, by name; see `make_starts.py`."""
+    """Machines with the nodes of a first orbit and the options of a diagram, by name; see `tools/golden_starts.py`."""
     return json.loads((HERE / "starts.json").read_text())
 
 

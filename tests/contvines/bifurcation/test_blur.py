@@ -9,7 +9,7 @@ from contvines.bifurcation.location_error import ENTRY, blurred, missed, singula
 from contvines.bifurcation.segment import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
-from tests.contvines.problems.brusselator import brusselator
+from tools.brusselator import brusselator
 
 
 @pytest.mark.parametrize("growth", [5.0, 10.0, 20.0, 30.0])

@@ -5,7 +5,7 @@ import numpy as np
 import contvines as cv
 from contvines.bifurcation.kinds import BY_NAME
 from orbits import Coupled
-from tests.orbits.fuzz.between import Between
+from tools.fuzz.between import Between
 
 
 def test_rounding_is_no_fold():

@@ -7,7 +7,7 @@ import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractor
 from orbits.starts.find import polish
-from tests.orbits.fuzz.between import Between
+from tools.fuzz.between import Between
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ import json
 import numpy as np
 import pytest
 
-from tests.contvines.flows.demos.listed import DEMOS, PRINTED, UNFINISHED
-from tests.contvines.flows.demos.make_table import TABLE, points_of, shooting_of, solved
+from tools.flow_demos.listed import DEMOS, PRINTED, UNFINISHED
+from tools.flow_demos.make_table import TABLE, points_of, shooting_of, solved
 
 EXPECTED = json.loads(TABLE.read_text(encoding="utf-8"))
 BY_NAME = {demo.name: demo for demo in DEMOS}

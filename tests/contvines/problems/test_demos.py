@@ -2,16 +2,16 @@
 
 The table says which points there are; :mod:`.demos.witness` solves for each of them in many digits, by its defining equations
 and nothing of the package's. That there are no more was asked by Newton's method for these equations from many random starts
-(``python -m tests.contvines.problems.demos.search``).
+(``python -m tools.demos.search``).
 """
 
 import json
 
 import pytest
 
-from tests.contvines.problems.demos import listed, maps
-from tests.contvines.problems.demos.make_page import PAGE, render
-from tests.contvines.problems.demos.make_table import TABLE, graph_of, points_of, solved
+from tools.demos import listed, maps
+from tools.demos.make_page import PAGE, render
+from tools.demos.make_table import TABLE, graph_of, points_of, solved
 
 DEMOS = [*listed.DEMOS, *maps.DEMOS]
 EXPECTED = json.loads(TABLE.read_text(encoding="utf-8"))

@@ -1,11 +1,11 @@
-"""Random polynomial systems against resultants; ``python -m tests.contvines.problems.fuzz 500`` asks for more."""
+"""Random polynomial systems against resultants; ``python -m tools.fuzz.systems 500`` asks for more."""
 
 from itertools import islice
 
 import pytest
 
 import contvines as cv
-from tests.contvines.problems.fuzz import System, suitable
+from tools.fuzz.systems import System, suitable
 
 
 @pytest.mark.parametrize(("seed", "system"), list(islice(suitable(0), 12)), ids=lambda value: str(value)[:6])

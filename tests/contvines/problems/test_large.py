@@ -11,8 +11,8 @@ from scipy.sparse.linalg import LinearOperator, splu
 import contvines as cv
 from contvines.problems.factors import BandFactors, Method, SuperLUFactors
 from contvines.problems.sparse import SparseWork, bordered
-from tests.benchmarks.large import bratu as bratu_2d
-from tests.contvines.problems.brusselator import brusselator
+from tools.benchmarks.large import bratu as bratu_2d
+from tools.brusselator import brusselator
 
 
 def second_difference(m):

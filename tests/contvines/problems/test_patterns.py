@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import contvines as cv
-from tests.contvines.problems.brusselator import brusselator
+from tools.brusselator import brusselator
 
 
 def neumann(n, h):

@@ -8,10 +8,10 @@ import pytest
 import contvines as cv
 from contvines.problems.extents import of_rounding, weighed
 from contvines.problems.scales import in_fields
-from tests.contvines.problems.demos import equilibria as eq
-from tests.contvines.problems.demos import listed, maps
-from tests.contvines.problems.demos.demo import NUMBERS
-from tests.contvines.problems.demos.make_table import TABLE
+from tools.demos import equilibria as eq
+from tools.demos import listed, maps
+from tools.demos.demo import NUMBERS
+from tools.demos.make_table import TABLE
 
 CASES = {
     "bazykin": (eq.bazykin, [1.5, 1.2], 0.2, (0.05, 1.2)),

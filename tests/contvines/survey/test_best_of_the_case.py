@@ -1,8 +1,8 @@
-"""The best clearance of the worked case is that of a brute-force scan, here a small one; `tests/benchmarks/best.py` has the large one."""
+"""The best clearance of the worked case is that of a brute-force scan, here a small one; `tools/benchmarks/best.py` has the large one."""
 
 import numpy as np
 
-from tests.benchmarks.best import chosen, scanned
+from tools.benchmarks.best import chosen, scanned
 
 
 def test_the_best_clearance_is_that_of_a_scan():

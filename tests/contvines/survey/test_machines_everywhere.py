@@ -1,9 +1,9 @@
 """A survey of coupled machines in one process, in two, and on a cluster that loses a worker half way: the same file; the large one is
-`tests/benchmarks/survey.py`."""
+`tools/benchmarks/survey.py`."""
 
 import pytest
 
-from tests.benchmarks.survey import made, on_a_cluster, same
+from tools.benchmarks.survey import made, on_a_cluster, same
 
 MACHINES = 6
 

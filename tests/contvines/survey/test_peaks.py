@@ -9,8 +9,8 @@ import contvines as cv
 from contvines.survey import PlanError, survey
 from orbits.design import Family
 from orbits.machines.physical import physical
-from tests.benchmarks.peaks import judged
 from tests.contvines.survey.circles import Circles
+from tools.benchmarks.peaks import judged
 
 M, HERTZ, ZETA, BASE, FRICTION, G = 3.2, 8.0, 0.01, 2e-3, 0.1553939, 9.81
 SMALL = 0.032

@@ -9,9 +9,9 @@ from orbits.cycles.following_cavity import by_positions
 from orbits.cycles.identity import is_symmetric
 from orbits.simulation.replay import one_by_one, replay
 from orbits.words import Word
-from tests.orbits.fuzz.drawing import draw
-from tests.orbits.fuzz.many_digits import exact
-from tests.orbits.fuzz.searching import LIMITS
+from tools.fuzz.drawing import draw
+from tools.fuzz.many_digits import exact
+from tools.fuzz.searching import LIMITS
 
 MACHINE = Absorber(restitution=0.76, friction=0.2, gravity=0.211, mass_ratio=0.006)
 H = 0.5 * np.pi * 1.006 * 0.2 * 0.211

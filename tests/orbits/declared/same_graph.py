@@ -4,7 +4,7 @@
 both and compares them: branches by word, periods and ends; special points by kind, value, whether they are real, and multipliers
 (but at borders, where they depend on the side); and which branches meet at which point.
 
-`python -m tests.orbits.declared.same_graph drawn absorber 50 SALT` does so with machines that :mod:`tests.orbits.fuzz.drawing` draws.
+`python -m tests.orbits.declared.same_graph drawn absorber 50 SALT` does so with machines that :mod:`tools.fuzz.drawing` draws.
 """
 
 import sys
@@ -20,7 +20,7 @@ import contvines as cv
 from contvines.bifurcation.kinds import BORDERS
 from orbits import Absorber, Coupled
 from tests.orbits.declared.pages import page
-from tests.orbits.fuzz.drawing import draw
+from tools.fuzz.drawing import draw
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 BUILT_IN = {"absorber": Absorber, "coupled": Coupled}

@@ -10,14 +10,14 @@ import contvines as cv
 from contvines.bifurcation.kinds import BORDERS
 from orbits.attractors import find_attractor
 from orbits.simulation import replay
-from tests.orbits.fuzz import neighbours, structure
-from tests.orbits.fuzz.approached import comes_to, grow_without_bound
-from tests.orbits.fuzz.between import Between
-from tests.orbits.fuzz.drawing import draw
-from tests.orbits.fuzz.many_digits import exact, rounds_apart
-from tests.orbits.fuzz.motion import apart
-from tests.orbits.fuzz.searching import LIMITS
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz import neighbours, structure
+from tools.fuzz.approached import comes_to, grow_without_bound
+from tools.fuzz.between import Between
+from tools.fuzz.drawing import draw
+from tools.fuzz.many_digits import exact, rounds_apart
+from tools.fuzz.motion import apart
+from tools.fuzz.searching import LIMITS
+from tools.fuzz.tally import Tally
 
 SALT = 404
 CHECKS = {"link", "jump", "doubled", "repeated", "limit", "stability", "margin", "no reason"}

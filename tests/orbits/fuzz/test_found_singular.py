@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from tests.orbits.fuzz.approached import comes_to, grow_without_bound
-from tests.orbits.fuzz.between import Between
-from tests.orbits.fuzz.many_digits import exact, rounds_apart
 from tests.orbits.fuzz.test_found import diagram
+from tools.fuzz.approached import comes_to, grow_without_bound
+from tools.fuzz.between import Between
+from tools.fuzz.many_digits import exact, rounds_apart
 
 STEPPED_OVER = (
     "the first step of the doubled branch passes 1e-8 of it that are stable, and its next period doubling"

@@ -1,4 +1,4 @@
-"""A short search, and forged graphs that every check must notice; ``python -m tests.orbits.fuzz absorber 150 1`` asks for more."""
+"""A short search, and forged graphs that every check must notice; ``python -m tools.fuzz absorber 150 1`` asks for more."""
 
 from dataclasses import replace
 
@@ -7,13 +7,13 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber, Coupled
-from tests.orbits.fuzz import finer, neighbours, simulated, structure
-from tests.orbits.fuzz.approached import comes_to, grow_without_bound
-from tests.orbits.fuzz.drawing import draw
-from tests.orbits.fuzz.many_digits import exact
-from tests.orbits.fuzz.motion import alike, apart, shortest
-from tests.orbits.fuzz.searching import search
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz import finer, neighbours, simulated, structure
+from tools.fuzz.approached import comes_to, grow_without_bound
+from tools.fuzz.drawing import draw
+from tools.fuzz.many_digits import exact
+from tools.fuzz.motion import alike, apart, shortest
+from tools.fuzz.searching import search
+from tools.fuzz.tally import Tally
 
 
 @pytest.mark.parametrize(("kind", "seed"), [("absorber", 0), ("absorber", 3), ("cavity", 8), ("coupled", 1)])

@@ -9,8 +9,8 @@ from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor, find_attractors, sweep, sweeps
 from orbits.simulation import simulate
 from orbits.starts.find import polish
-from tests.orbits.fuzz.drawing import draw
-from tests.orbits.fuzz.many_digits import exact
+from tools.fuzz.drawing import draw
+from tools.fuzz.many_digits import exact
 
 EPS, MU, G, R = 0.006, 0.5, 0.211, 0.76
 A = (1 + EPS) * MU * G

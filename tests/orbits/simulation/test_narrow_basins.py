@@ -10,7 +10,7 @@ from orbits.simulation.driver import machine as stepped
 from orbits.simulation.replay import _returns
 from orbits.simulation.return_map import go_round
 from orbits.words import Word
-from tests.orbits.fuzz.many_digits import exact
+from tools.fuzz.many_digits import exact
 
 R, AMPLITUDE, PERIODS = 0.6134455719320618, 1.249753219146763, 8
 WORD = "LRRLRRLRRLRRLRLRRLRRLRR"

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 import sympy
 
 import contvines as cv
-from tests.contvines.problems.brusselator import brusselator
+from tools.brusselator import brusselator
 
 
 def in_the_plane(rates, place, q, omega):

@@ -11,10 +11,10 @@ from orbits.simulation import replay
 from orbits.simulation.driver import SimulationError, machine
 from orbits.simulation.return_map import monodromy
 from orbits.starts.find import polish
-from tests.orbits.fuzz.between import Between
-from tests.orbits.fuzz.many_digits import exact
-from tests.orbits.fuzz.motion import alike, apart
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz.between import Between
+from tools.fuzz.many_digits import exact
+from tools.fuzz.motion import alike, apart
+from tools.fuzz.tally import Tally
 
 EACH = 3  # orbits of each branch
 STARTS = 3  # of each machine

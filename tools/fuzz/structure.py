@@ -10,9 +10,9 @@ from contvines.bifurcation.kinds import BORDERS
 from orbits.borders.distance import PER_PERIOD
 from orbits.orbit import REAL
 from orbits.starts.find import polish
-from tests.orbits.fuzz.many_digits import exact, rounds_apart
-from tests.orbits.fuzz.motion import apart, shortest
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz.many_digits import exact, rounds_apart
+from tools.fuzz.motion import apart, shortest
+from tools.fuzz.tally import Tally
 
 ONE = 1e-9  # motions this near are one
 CRITICAL = 1e-2  # multipliers as near to 1: beside a branch point two branches do share an orbit

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from contvines.bifurcation.kinds import BORDERS
-from tests.orbits.fuzz.approached import comes_to, grow_without_bound
-from tests.orbits.fuzz.between import Between
-from tests.orbits.fuzz.many_digits import exact
-from tests.orbits.fuzz.motion import alike, apart, shortest
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz.approached import comes_to, grow_without_bound
+from tools.fuzz.between import Between
+from tools.fuzz.many_digits import exact
+from tools.fuzz.motion import alike, apart, shortest
+from tools.fuzz.tally import Tally
 
 PARTS = (1.0, 1e-1, 1e-2, 1e-3)  # of the distance at which motions are compared with that of the point
 CLOSER = (1e-4, 1e-5)  # the same, where times of virtual orbits further away run backwards

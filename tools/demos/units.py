@@ -1,6 +1,6 @@
 """Writes units.json: the demos in other units, u, p and the rows of F times 1e-9 to 1e9.
 
-    python -m tests.contvines.problems.demos.units [NAME...]
+    python -m tools.demos.units [NAME...]
 
 Prints what differs from table.json: a special point too many or too few, or a value by more than 1e-10 of itself (1e-12 of the interval
 next to zero). Nothing is said to the problem about its units. A map has rows in the units of its unknowns.

@@ -1,20 +1,18 @@
-"""``python -m tests.orbits.fuzz KIND COUNT SALT [--finer] [--first SEED]``: prints findings as they come, then totals."""
+"""``python -m tools.fuzz KIND COUNT SALT [--finer] [--first SEED]``: prints findings as they come, then totals."""
 
 from __future__ import annotations
 
 import argparse
 import time
 
-from tests.orbits.fuzz.drawing import KINDS
-from tests.orbits.fuzz.searching import search
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz.drawing import KINDS
+from tools.fuzz.searching import search
+from tools.fuzz.tally import Tally
 
 
 def main() -> int:
     """Search; 1 if something was found."""
-    parser = argparse.ArgumentParser(
-        prog="python -m tests.orbits.fuzz", description="Search for false results."
-    )
+    parser = argparse.ArgumentParser(prog="python -m tools.fuzz", description="Search for false results.")
     parser.add_argument("kind", choices=KINDS)
     parser.add_argument("count", type=int, help="machines")
     parser.add_argument("salt", type=int, help="another salt draws other machines")

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 import contvines as cv
-from tests.orbits.fuzz import finer, neighbours, simulated, structure
-from tests.orbits.fuzz.drawing import Draw, draw
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz import finer, neighbours, simulated, structure
+from tools.fuzz.drawing import Draw, draw
+from tools.fuzz.tally import Tally
 
 SECONDS = 150.0  # of processor time for each part
 LIMITS = {"max_branches": 80}

@@ -1,6 +1,6 @@
 """A declared machine beside the same mathematics written with solve_ivp: a continuation point, and an event of a simulation.
 
-`python -m tests.benchmarks.declared` prints ratios; times are medians of interleaved rounds in one process.
+`python -m tools.benchmarks.declared` prints ratios; times are medians of interleaved rounds in one process.
 """
 
 import time

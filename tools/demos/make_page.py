@@ -1,6 +1,6 @@
 """Writes docs/demos.md from the table.
 
-python -m tests.contvines.problems.demos.make_page
+python -m tools.demos.make_page
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from pathlib import Path
 
 from contvines.bifurcation.kinds import BY_NAME
 
-from ...flows.demos.page import cycles
+from ..flow_demos.page import cycles
 from . import listed, maps
 from .make_table import TABLE
 from .units import SETS, UNITS
 
-PAGE = Path(__file__).parents[4] / "docs" / "demos.md"
+PAGE = Path(__file__).parents[2] / "docs" / "demos.md"
 HEAD = """# Demos of other packages
 
 {demos} problems of equilibria and maps that come with AUTO-07p, MatCont, MatContM, BifurcationKit, PyDSTool, COCO and XPPAUT, or stand in
@@ -33,7 +33,7 @@ and as rendered), MatContM and cl_matcontL, and nothing was found. These demos s
 The manuals and tutorials of MatCont, MatContM and COCO are no repositories, and were not to be had whole.
 
 In other units: the same demos with u, p and the rows of F times 1e9 or 1e-9, in {sets} sets of units that nothing is said about
-(`python -m tests.contvines.problems.demos.units`); the column counts those in which the special points are the same to 1e-10: {alike} of {all} in all.
+(`python -m tools.demos.units`); the column counts those in which the special points are the same to 1e-10: {alike} of {all} in all.
 
 LP fold, BP branch point, SB symmetry breaking, HB Hopf, PD period doubling, NS Neimark-Sacker; ^2 a cycle of length two.
 """

@@ -1,4 +1,4 @@
-"""Write starts.json: a first orbit of every golden machine, found once. `python -m tests.golden.make_starts`."""
+"""Write starts.json: a first orbit of every golden machine, found once. `python -m tools.golden_starts`."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from typing import Any
 from examples.machines.draw import RUNS
 from orbits import Absorber, Cavity, Coupled
 from orbits.machines.page.loading import load_page
-from tests.orbits.fuzz.drawing import draw
-
-from .studies import HERE
+from tests.golden.studies import HERE
+from tools.fuzz.drawing import draw
 
 EXAMPLES = HERE.parents[1] / "examples"
 MACHINES = {"absorber": Absorber, "cavity": Cavity, "coupled": Coupled}

@@ -15,7 +15,7 @@ HEAD = """## Cycles
 
 Demos whose flows have cycles, begun at an equilibrium or at the cycle on which a motion settles (`cv.FlowProblem`, plain settings, `mirror=` where the equations have one). All special points within the
 interval are listed that `cv.diagram` finds to the stated depth, Hopf points and those of cycles. *Own solve*: shooting with scipy's DOP853 at 1e-12 and Newton's method on an extended system
-(`tests/contvines/flows/demos/witness.py`, nothing of the package's); homoclinic orbits by bisection along the unstable manifold, saddle-nodes on cycles by the fold of the equilibrium. A dash: not solved anew.
+(`tools/flow_demos/witness.py`, nothing of the package's); homoclinic orbits by bisection along the unstable manifold, saddle-nodes on cycles by the fold of the equilibrium. A dash: not solved anew.
 Printed values of AUTO-07p are those of its own run of the demo; they are on coarse meshes (its Hopf point of `chu` is 1e-4 off).
 Values of MatCont's `torBPC` are not printed here, as the constants to which they belong are not known to us; the demo is run with a3 = 0.32858, b3 = 0.93358 and epsilon = 0.001.
 

@@ -1,6 +1,6 @@
 """Random polynomial systems whose branches are known exactly, from resultants by sympy.
 
-    python -m tests.contvines.problems.fuzz 500 [FIRST_SEED]
+    python -m tools.fuzz.systems 500 [FIRST_SEED]
 
 A plane curve g(x, p) = 0, often reducible, is hidden in two or three unknowns: y = q(x, p), z = s(x, y, p), then unknowns and rows
 are mixed by unimodular matrices. The witness: parameter values at which real roots of g(., p) meet or go to infinity are the

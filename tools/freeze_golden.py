@@ -1,4 +1,4 @@
-"""Write the golden files of some studies, or of all that have none yet: `python -m tests.golden.freeze [NAME ...]`.
+"""Write the golden files of some studies, or of all that have none yet: `python -m tools.freeze_golden [NAME ...]`.
 
 A golden file changes only where an independent proof says that it was wrong; the reason stands in `changes.md`.
 """
@@ -9,7 +9,7 @@ import json
 import sys
 import time
 
-from .studies import file_of, studies
+from tests.golden.studies import file_of, studies
 
 
 def main(names: list[str]) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import contvines as cv
-from tests.orbits.fuzz.drawing import Draw
-from tests.orbits.fuzz.tally import Tally
+from tools.fuzz.drawing import Draw
+from tools.fuzz.tally import Tally
 
 SETTINGS = {"max_step": 0.007, "angle": 0.04}
 NEAR = 1e-7  # values of one special point

@@ -1,6 +1,6 @@
 """Overhead of the package a point: thirty unknowns, F and its Jacobian plain Python with numpy.
 
-    python -m tests.benchmarks.small
+    python -m tools.benchmarks.small
 
 Processor time a point, less that of the user's functions, beside that of numpy's own linear algebra: as many solutions of the
 bordered system of 31 as there are evaluations of the Jacobian.

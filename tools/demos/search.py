@@ -1,6 +1,6 @@
 """Asks whether the table lacks special points: Newton's method for their equations from many random starts.
 
-    python -m tests.contvines.problems.demos.search [NAME...]
+    python -m tools.demos.search [NAME...]
 
 Prints what it finds that is not in the table. What is left belongs to branches that do not hang together with the start
 (adaptx, lorenz 84 and two patches have some); of cycles only those of length one are looked for.

@@ -1,4 +1,4 @@
-"""`python -m tests.benchmarks`: ratio tables, growth with the length of the word, simulation, start-up.
+"""`python -m tools.benchmarks`: ratio tables, growth with the length of the word, simulation, start-up.
 
 Medians of interleaved rounds, so that whatever else the machine does hits all competitors alike. Ratios mean
 something, times belong to the machine that is named. Nothing here passes or fails by time.
@@ -260,7 +260,7 @@ def number(value, scale=1.0):
 
 def main(arguments=None):
     """Print the tables."""
-    parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tools.benchmarks", description=__doc__)
     parser.add_argument("--rounds", type=int, default=9, help="interleaved rounds; medians are shown")
     parser.add_argument("--quick", action="store_true", help="three rounds, short words, no start-up")
     options = parser.parse_args(arguments)

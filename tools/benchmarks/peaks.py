@@ -1,6 +1,6 @@
 """Peaks of drawn surveys beside brute force: simulations up, down and from random states, refined about the largest response.
 
-    python -m tests.benchmarks.peaks [--surveys 20] [--machines 2] [--first 0] [--depth 1] [--values 121]
+    python -m tools.benchmarks.peaks [--surveys 20] [--machines 2] [--first 0] [--depth 1] [--values 121]
 
 Each machine of a survey must have the peak of the simulations to 1 %, or say in its note that it is not known in the whole interval. A peak
 above that of all simulations is confirmed by a simulation from the survey's own motion.

@@ -10,9 +10,9 @@ import numpy as np
 
 import contvines as cv
 
-from ...problems.demos import equilibria as eq
-from ...problems.demos import more_equilibria as more
-from ...problems.demos.demo import NUMBERS
+from ..demos import equilibria as eq
+from ..demos import more_equilibria as more
+from ..demos.demo import NUMBERS
 from . import fields
 
 

@@ -1,8 +1,8 @@
 """Sparse problems against a straight script with scipy.sparse: two-dimensional Bratu on n by n inner points.
 
-    python -m tests.benchmarks.large [n]
-    python -m tests.benchmarks.large 316 whole
-    python -m tests.benchmarks.large 5000 line
+    python -m tools.benchmarks.large [n]
+    python -m tools.benchmarks.large 316 whole
+    python -m tools.benchmarks.large 5000 line
 
 The script does what a point takes: two factorisations of Newton's method in a bordered system by block elimination, no
 location of anything, no stability. Printed are processor seconds a point, their ratios, and the largest memory.
@@ -20,7 +20,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import contvines as cv
-from tests.contvines.problems.brusselator import brusselator
+from tools.brusselator import brusselator
 
 
 def bratu(n: int) -> tuple[Any, Any, Any]:

@@ -1,7 +1,7 @@
 """500 response diagrams of the coupled machine over clearance and restitution: the same file from one process, from two, and from a dask
 cluster of two worker processes of which one is killed half way; how much faster two are, and what a machine costs beside one warm diagram.
 
-    python -m tests.benchmarks.survey [--machines 500] [--skip-cluster]
+    python -m tools.benchmarks.survey [--machines 500] [--skip-cluster]
 
 Times mean something on a quiet machine only; processor times are printed beside them.
 """

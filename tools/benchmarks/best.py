@@ -1,6 +1,6 @@
 """The best clearance of the worked case beside a brute-force scan of a thousand: they must agree within the scan's grid.
 
-python -m tests.benchmarks.best [--values 1000] [--depth 2] [--within 8 20] [--workers 2]
+python -m tools.benchmarks.best [--values 1000] [--depth 2] [--within 8 20] [--workers 2]
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from contvines.survey import survey
 from contvines.survey.survey import outcome_named
 from contvines.survey.work import Job, work
 from orbits.design import best
-from tests.benchmarks.survey import family
+from tools.benchmarks.survey import family
 
 OVER, WITHIN = "frequency", (7.0, 9.0)
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from tests.benchmarks import case, flows, run, scripts
-from tests.benchmarks.auto import Auto
-from tests.benchmarks.flights import MODELS, Flights
-from tests.benchmarks.floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
-from tests.benchmarks.loci import WITHIN, Loci
-from tests.benchmarks.ours import Core, PublicAPI
-from tests.benchmarks.starts import Starts, places
+from tools.benchmarks import case, flows, run, scripts
+from tools.benchmarks.auto import Auto
+from tools.benchmarks.flights import MODELS, Flights
+from tools.benchmarks.floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
+from tools.benchmarks.loci import WITHIN, Loci
+from tools.benchmarks.ours import Core, PublicAPI
+from tools.benchmarks.starts import Starts, places
 
 needs_compiler = pytest.mark.skipif(library() is None, reason="no C compiler")
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from mpmath import mp
 
-from tests.orbits.fuzz.many_digits import DIGITS, Exact, Motion, solved
+from tools.fuzz.many_digits import DIGITS, Exact, Motion, solved
 
 LARGE = 1e14
 FASTER = 100.0  # the border is approached in steps after which multipliers are so many times as large ...

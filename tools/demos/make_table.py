@@ -1,6 +1,6 @@
 """Writes table.json: the special points of every demo as the witness has them.
 
-    python -m tests.contvines.problems.demos.make_table [NAME...]
+    python -m tools.demos.make_table [NAME...]
 
 The guesses come from this package's own graphs; whether there are more is asked by `search.py`.
 """

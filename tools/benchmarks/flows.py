@@ -1,7 +1,7 @@
 """Cycles of Lorenz's equations from r = 280 down to 100, contvines beside AUTO-07p where it is installed (AUTO_DIR, and a Fortran compiler).
 
 Same start, same number of intervals of degree 4, multipliers at each point; each chooses its steps by its own rule. Printed is processor time a
-point. `python -m tests.benchmarks.flows [INTERVALS ...]`
+point. `python -m tools.benchmarks.flows [INTERVALS ...]`
 """
 
 import importlib.util

@@ -1,6 +1,6 @@
 """Writes table.json: the special points of every demo with cycles, ours and as the witness has them.
 
-python -m tests.contvines.flows.demos.make_table [NAME...]
+python -m tools.flow_demos.make_table [NAME...]
 """
 
 from __future__ import annotations
