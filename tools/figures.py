@@ -109,10 +109,11 @@ print(len(own), file=sys.stderr)
 
 def figures(run: bool = True) -> dict[str, int]:
     """All figures, by what they count."""
-    source, tests = list(files(*SOURCE)), list(files("tests"))
+    source, tests, tools = list(files(*SOURCE)), list(files("tests")), list(files("tools"))
     found = {
         "tokens of the source": sum(map(count_tokens, source)),
         "tokens of the tests": sum(map(count_tokens, tests)),
+        "tokens of the tools": sum(map(count_tokens, tools)),
         "lines of native/": sum(len(path.read_text().splitlines()) for path in files("native")),
         "files of the source": len(source),
         "Any alone as a type": sum(map(any_types, source)),

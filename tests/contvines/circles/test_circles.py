@@ -95,7 +95,7 @@ def bodies(machine):
 def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
     pytest.importorskip("heyoka")
     from orbits.simulation.section import section_of_page
-    from tests.orbits.declared.pages import page
+    from tools.pages.pages import page
 
     found = coupled["NS1"].circles(to=1.0245)
     assert found.coefficient > 0.0 and not any(c.stable for c in found.circles)
@@ -119,7 +119,7 @@ def test_the_modulated_response_of_the_coupled_absorber_attracts():
     """With little forcing the pair leaves the unit circle supercritically: another simulator settles on the circle, which beats slowly."""
     pytest.importorskip("heyoka")
     from orbits.simulation.section import section_of_page
-    from tests.orbits.declared.pages import page
+    from tools.pages.pages import page
 
     settings = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
     orbit = Coupled(forcing=1.05, **settings).orbit("LR", frequency=0.9995)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.contvines.coexistence.isolas import ISOLAS
+from tools.attractors.isolas import ISOLAS
 
 
 @pytest.mark.parametrize("isola", [isola for isola in ISOLAS if isola.quick], ids=lambda isola: isola.name)

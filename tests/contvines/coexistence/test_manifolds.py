@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 import contvines as cv
 from contvines.coexistence.manifolds import stable_manifolds
 from orbits import Absorber
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 PLANE = np.array([[-3.0, 3.0], [-2.0, 2.0]])
 

@@ -6,8 +6,8 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber, Cavity, Coupled
-from tests.contvines.coexistence.drawn import drawn
-from tests.contvines.coexistence.truth import listed_twice, on_atlas, shares, witness
+from tools.attractors.drawn import drawn
+from tools.attractors.truth import listed_twice, on_atlas, shares, witness
 
 pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is needed")
 

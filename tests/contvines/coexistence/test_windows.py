@@ -8,8 +8,8 @@ from contvines.graph.persistence import same_graph
 from contvines.journal import MemoryJournal
 from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor
-from tests.contvines.coexistence.drawn import drawn
-from tests.contvines.coexistence.isolas import window
+from tools.attractors.drawn import drawn
+from tools.attractors.isolas import window
 
 LOGISTIC = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 3.5)
 

@@ -64,7 +64,7 @@ def test_loci_of_a_declared_machine_are_their_closed_forms():
     pytest.importorskip("heyoka")
     from contvines.loci.linear import Linearisation
     from tests.contvines.loci.test_absorber_loci import closed_form
-    from tests.orbits.declared.pages import page
+    from tools.pages.pages import page
 
     graph = cv.diagram(
         page("absorber").orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 0.8), depth=0

@@ -9,7 +9,7 @@ from orbits.machines.parameters import ParameterError
 from orbits.proofs.obstacles import ProofError
 from orbits.symbols import cos
 from orbits.words import WordError
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 
 def motion(state, phase, p, contact):

@@ -8,8 +8,8 @@ import contvines as cv
 import orbits
 from orbits.borders.crossing import escapes
 from orbits.borders.neighbours import margins_of, placed, turned
-from tests.orbits.declared.pages import page
-from tests.orbits.declared.same_graph import both, compared, drawn
+from tools.pages.pages import page
+from tools.pages.same_graph import both, compared, drawn
 
 COUPLED = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 SCRIPT = """
 import json, sys
 import contvines as cv
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 found = {}
 for name in ("impact_oscillator", "belt_slider", "den_hartog"):
     orbit = page(name).attractor().found

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 
 def specials(graph, kind):

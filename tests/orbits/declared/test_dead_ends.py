@@ -3,7 +3,7 @@
 import pytest
 
 import contvines as cv
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 
 def test_a_dead_end_names_the_contact_and_what_simulation_does():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from orbits.cycles import deviation as module
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,14 @@
 """The gallery's special orbits against an independent integrator, and drawn machines against simulation; a few of each.
 
-All of them: `python -m tests.orbits.declared.gallery` and `python -m tests.orbits.declared.draws`.
+All of them: `python -m tools.pages.gallery` and `python -m tools.pages.draws`.
 """
 
 import numpy as np
 import pytest
 
-from tests.orbits.declared.draws import RANGES, drawn, examined
-from tests.orbits.declared.gallery import deviations, gallery
-from tests.orbits.declared.pages import PAGES
+from tools.pages.draws import RANGES, drawn, examined
+from tools.pages.gallery import deviations, gallery
+from tools.pages.pages import PAGES
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.orbits.declared.pages import PAGES, page
+from tools.pages.pages import PAGES, page
 
 STARTS = {
     "bouncing_ball": ({"y": 0.1, "v": 0.33, "phase": -0.8}, {"amplitude": 0.05}),

@@ -6,7 +6,7 @@ import pytest
 from orbits import Absorber, Machine, Wall, Word
 from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import Stepper
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 
 def spelled(text):

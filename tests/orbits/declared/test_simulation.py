@@ -6,8 +6,8 @@ import pytest
 from orbits import DryFriction, Machine, Wall
 from orbits.flows.page.stepper import Stepper
 from orbits.symbols import sin
-from tests.orbits.declared.independent import deviation
-from tests.orbits.declared.pages import page
+from tools.pages.independent import deviation
+from tools.pages.pages import page
 
 
 def test_a_dropped_ball_comes_to_rest_when_its_chatter_ends():

@@ -8,7 +8,7 @@ side, and between the two crossings of a side the motion turns. Two blocks on a 
 import contvines as cv
 from orbits import DryFriction, Machine, Switch, Wall
 from orbits.symbols import cos
-from tests.orbits.declared.independent import deviation
+from tools.pages.independent import deviation
 
 
 def gear_pair():

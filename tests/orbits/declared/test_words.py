@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from orbits.words import Word as BuiltIn
 from orbits.words.of_pages import PageWord
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,7 @@ from orbits import Absorber, Coupled
 from orbits.proofs.checker import Refused, check
 from orbits.proofs.obstacles import Obstacle, ProofError, Remedy
 from orbits.proofs.subjects import of_orbit
-
-from . import fifty_digits, tampering
+from tools.proofs import fifty_digits, tampering
 
 KNOWN = json.loads(fifty_digits.FILE.read_text())
 ABSORBER = tampering.ABSORBER

@@ -1,10 +1,10 @@
 """Is every attractor that brute force finds on the atlas? The brute force is `witness.c`, which shares nothing with the package.
 
-``python -m tests.contvines.coexistence.truth paper``          friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
-``python -m tests.contvines.coexistence.truth frequency 200``  the coupled machine, 40 frequencies, two forcings, so many starts at each (2000)
-``python -m tests.contvines.coexistence.truth frequency 2000 3.3``  one forcing alone
-``python -m tests.contvines.coexistence.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``, ``declared``)
-``python -m tests.contvines.coexistence.truth absorber 5 10``  five of them, from the tenth on; the sum so far is told after each
+``python -m tools.attractors.truth paper``          friction 0.5 and 0.05, 60 amplitudes, 2000 starts each
+``python -m tools.attractors.truth frequency 200``  the coupled machine, 40 frequencies, two forcings, so many starts at each (2000)
+``python -m tools.attractors.truth frequency 2000 3.3``  one forcing alone
+``python -m tools.attractors.truth absorber 20``    so many machines drawn at random (or ``cavity``, ``coupled``, ``declared``)
+``python -m tools.attractors.truth absorber 5 10``  five of them, from the tenth on; the sum so far is told after each
 
 What the witness tells is kept in the directory that the environment variable ``CONTVINES_WITNESS`` names: a run that was stopped goes on there,
 and after a change of the package its time is not spent again.
@@ -33,14 +33,14 @@ from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
 from orbits.machines.page.loading import load_page
-from tests.contvines.coexistence.drawn import OPTIONS, STARTS, drawn
-from tests.contvines.coexistence.impacts import impacts_of, kind_of, same
+from tools.attractors.drawn import OPTIONS, STARTS, drawn
+from tools.attractors.impacts import impacts_of, kind_of, same
 
 SIGMAS = 3.0
 ENOUGH = 1000  # starts of our own for shares
 FEW_OF_A_PAGE = 100  # starts for shares: those of a page are followed one by one
 SOURCE = Path(__file__).with_name("witness.c")
-PAGE = Path(__file__).resolve().parents[3] / "examples" / "machines" / "absorber.py"
+PAGE = Path(__file__).resolve().parents[2] / "examples" / "machines" / "absorber.py"
 NAMED = {"chaotic", "quasi-periodic", "slow", "chatter"}  # what is told of motions that do not recur
 PILED = 1000  # events of a recurrence in which impacts pile up, as the witness counts them
 NEAR = 0.01  # of the interval: so near an attractor of the atlas must be named that does not recur

@@ -1,6 +1,6 @@
 """A mass with dry friction between two stops, for very long: it never leaves them.
 
-`python -m tests.orbits.declared.stops [IMPACTS]` simulates a million impacts by default and prints how far the mass was ever beyond a
+`python -m tools.pages.stops [IMPACTS]` simulates a million impacts by default and prints how far the mass was ever beyond a
 stop: at every event, and at the largest and smallest displacement inside every flight, found as roots of the velocity in the steps.
 """
 

@@ -1,10 +1,10 @@
 """The built-in absorbers declared on a page, against themselves: the same words, the same special points, the same graph.
 
-`python -m tests.orbits.declared.same_graph [friction] [friction_low] [frequency]` makes the diagrams of these example studies with
+`python -m tools.pages.same_graph [friction] [friction_low] [frequency]` makes the diagrams of these example studies with
 both and compares them: branches by word, periods and ends; special points by kind, value, whether they are real, and multipliers
 (but at borders, where they depend on the side); and which branches meet at which point.
 
-`python -m tests.orbits.declared.same_graph drawn absorber 50 SALT` does so with machines that :mod:`tools.fuzz.drawing` draws.
+`python -m tools.pages.same_graph drawn absorber 50 SALT` does so with machines that :mod:`tools.fuzz.drawing` draws.
 """
 
 import sys
@@ -19,10 +19,10 @@ import numpy as np
 import contvines as cv
 from contvines.bifurcation.kinds import BORDERS
 from orbits import Absorber, Coupled
-from tests.orbits.declared.pages import page
 from tools.fuzz.drawing import draw
+from tools.pages.pages import page
 
-EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 BUILT_IN = {"absorber": Absorber, "coupled": Coupled}
 STUDIES = ("friction", "friction_low", "frequency")
 EXACT = "exact"  # the excitation that the page has

@@ -1,6 +1,6 @@
 """Commands that write, killed and interrupted at random moments, and two of them at once: a tool, not a test.
 
-Usage: python -m tests.contvines.command.stopping KILLS INTERRUPTS PAIRS [SALT] [VERB ...]
+Usage: python -m tools.stopping KILLS INTERRUPTS PAIRS [SALT] [VERB ...]
 
 KILLS and INTERRUPTS are counted over all verbs, PAIRS for each. After each blow the same command is run again; the result must be that of
 an undisturbed run, and no other file may be left. Two commands on one file, the second one begun at a random moment, must both end well.
@@ -53,7 +53,7 @@ vary = { friction = { values = [0.48, 0.5, 0.52, 0.54] } }
 gaps = 0
 """
 WIDE = STUDY.replace("within = [0.5, 0.62]", "within = [0.2, 1.2]")
-HOUSE = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3]), "MPLBACKEND": "Agg"}
+HOUSE = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1]), "MPLBACKEND": "Agg"}
 SWITCHED = ("SB1", "WG1")
 
 Word = str | Path

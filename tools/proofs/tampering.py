@@ -1,6 +1,6 @@
 """Proved orbits, special points and stretches with something wrong put into them: no wrong one may be proved, no wrong certificate verified.
 
-Run by itself for a large count: ``python -m tests.orbits.proofs.tampering 100000``.
+Run by itself for a large count: ``python -m tools.proofs.tampering 100000``.
 """
 
 import copy

@@ -1,6 +1,6 @@
 """Drawn machines: every example page with drawn parameters, from drawn starts, simulated and solved for.
 
-`python -m tests.orbits.declared.draws [COUNT] [NAME ...]` counts, page by page, what must not be: an orbit called real and
+`python -m tools.pages.draws [COUNT] [NAME ...]` counts, page by page, what must not be: an orbit called real and
 stable that simulation leaves, and a simulated periodic attractor of up to four periods whose word does not solve. That a motion
 recurs is told here from its states once per forcing period (of a self-excited machine: after each event), without words.
 """
@@ -14,7 +14,7 @@ import contvines as cv
 from orbits.contacts.letters import HOLD, RELEASE
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
 from orbits.simulation.page import collect, outside
-from tests.orbits.declared.pages import page
+from tools.pages.pages import page
 
 # parameters that are drawn, uniformly; the others stay as the page has them
 RANGES = {

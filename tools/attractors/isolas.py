@@ -1,4 +1,4 @@
-"""Twenty-five branches that hang together with no other one: `python -m tests.contvines.coexistence.isolas` looks for all of them."""
+"""Twenty-five branches that hang together with no other one: `python -m tools.attractors.isolas` looks for all of them."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from orbits.machines.page.loading import load_page
 
-PAGES = Path(__file__).resolve().parents[3] / "examples" / "machines"
+PAGES = Path(__file__).resolve().parents[2] / "examples" / "machines"
 
 
 @cache

@@ -1,6 +1,6 @@
 """Every special orbit of the gallery's pages against an integrator that shares nothing with the engine.
 
-`python -m tests.orbits.declared.gallery [NAME ...]` makes the diagrams of `examples/machines/draw.py` and prints, for each, the
+`python -m tools.pages.gallery [NAME ...]` makes the diagrams of `examples/machines/draw.py` and prints, for each, the
 largest difference between a special orbit's nodes and DOP853 at 1e-12 with events, from node to node. Infinite: something else happens.
 """
 
@@ -8,8 +8,8 @@ import importlib.util
 import sys
 import time
 
-from tests.orbits.declared.independent import deviation
-from tests.orbits.declared.pages import PAGES
+from tools.pages.independent import deviation
+from tools.pages.pages import PAGES
 
 
 def gallery():
