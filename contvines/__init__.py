@@ -12,8 +12,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from .doors import lead
-
 __version__ = "0.2.0"
 
 _HOME = {
@@ -52,45 +50,6 @@ _HOME = {
     "switch": ".graph.automatic",
     "trace": ".continuation.trace",
 }
-
-lead(
-    {
-        "Settings": "contvines.continuation.settings:Settings",
-        "MapPopulation": "contvines.coexistence.maps:MapPopulation",
-        "branch_dataset": "contvines.export.frames:branch_dataset",
-        "branch_frame": "contvines.export.frames:branch_frame",
-        "branch_page": "contvines.graph.pages:branch_page",
-        "basins_table": "contvines.coexistence.table:table",
-        "basins_page": "contvines.coexistence.table:page",
-        "chart_dataset": "contvines.export.frames:chart_dataset",
-        "chart_frame": "contvines.export.frames:chart_frame",
-        "chart_page": "contvines.loci.table:page",
-        "chart_table": "contvines.loci.table:shown",
-        "cycle_at": "contvines.graph.cycle_at:cycle_at",
-        "circles": "contvines.circles.follow:circles",
-        "export": "contvines.export:export",
-        "export_chart": "contvines.export.charts:export_chart",
-        "graph_dataset": "contvines.export.frames:graph_dataset",
-        "graph_frame": "contvines.export.frames:graph_frame",
-        "graph_page": "contvines.graph.pages:graph_page",
-        "learn": "contvines.continuation.learning:learn",
-        "load": "contvines.store:load",
-        "mark_locus": "contvines.loci.marking:mark_locus",
-        "merge": "contvines.coexistence.merging:merge",
-        "plot_basins": "contvines.plots.basins:plot_basins",
-        "plot_erosion": "contvines.plots.erosion:plot_erosion",
-        "plot_chart": "contvines.plots.chart:plot_chart",
-        "plot_circles": "contvines.plots.circles:plot_circles",
-        "plot_cycle": "contvines.plots.cycles:plot_cycle",
-        "plot_diagram": "contvines.plots.diagram:plot_diagram",
-        "plot_portrait": "contvines.plots.portrait:plot_portrait",
-        "plot_survey": "contvines.plots.survey:plot_survey",
-        "point_page": "contvines.graph.pages:point_page",
-        "prove": "contvines.graph.proving:prove",
-        "save": "contvines.store:save",
-        "table": "contvines.graph.table:shown",
-    }
-)
 
 __all__ = [
     "KINDS",

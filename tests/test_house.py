@@ -6,6 +6,20 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("contvines", "orbits")
+HELD = {
+    "contvines.branches.branch",
+    "contvines.branches.special_point",
+    "contvines.circles.circle",
+    "contvines.coexistence.basins",
+    "contvines.coexistence.erosion",
+    "contvines.flows.orbit",
+    "contvines.graph.graph",
+    "contvines.loci.chart",
+    "contvines.loci.locus",
+    "contvines.problems.maps",
+    "contvines.survey.results",
+}
+"""Files of the classes that users hold. Their methods for comfort (``graph.plot()``) import what stands above, inside the method; nothing else does."""
 
 
 def module_of(path):
@@ -18,11 +32,23 @@ def parsed(path):
     return ast.parse(path.read_text())
 
 
+def of_methods(tree):
+    """All parts of the methods of a file's classes."""
+    for thing in tree.body:
+        if isinstance(thing, ast.ClassDef):
+            for method in thing.body:
+                if isinstance(method, ast.FunctionDef):
+                    yield from ast.walk(method)
+
+
 def imports(path, known):
-    """Files of both packages that a file imports, at its top, inside functions, or for types only."""
+    """Files of both packages that a file imports, at its top, inside functions (methods of `HELD` aside), or for types only."""
     own = module_of(path)
     package = own if path.name == "__init__.py" else own.rpartition(".")[0]
+    comfort = set(of_methods(parsed(path))) if own in HELD else set()
     for node in ast.walk(parsed(path)):
+        if node in comfort:
+            continue
         if isinstance(node, ast.Import):
             wanted = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):

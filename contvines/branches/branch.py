@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS
-from ..doors import above
-from ..hints import hinted
+from ..continuation.hints import hinted
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
 from .ending import Ending
@@ -77,15 +76,21 @@ class Branch:
         return f"Branch({self.label}: {len(self)} points, {self.parameter} in [{lo:.6g}, {hi:.6g}])"
 
     def _repr_html_(self) -> str:
-        return above("branch_page")(self)
+        from ..graph.pages import branch_page
+
+        return branch_page(self)
 
     def to_pandas(self) -> Any:
         """The points as a data frame; see :func:`contvines.export.frames.branch_frame`."""
-        return above("branch_frame")(self)
+        from ..export.frames import branch_frame
+
+        return branch_frame(self)
 
     def to_xarray(self) -> Any:
         """The branch as a data set; see :func:`contvines.export.frames.branch_dataset`."""
-        return above("branch_dataset")(self)
+        from ..export.frames import branch_dataset
+
+        return branch_dataset(self)
 
     @property
     def range(self) -> tuple[float, float]:

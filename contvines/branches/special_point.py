@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS
-from ..doors import above
-from ..hints import hinted
+from ..continuation.hints import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
 from .lazy_field import Later
@@ -148,11 +147,15 @@ class SpecialPoint:
 
     def plot(self, **options: Any) -> Any:
         """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
-        return above("plot_portrait")(self.orbit, **options)
+        from ..plots.portrait import plot_portrait
+
+        return plot_portrait(self.orbit, **options)
 
     def circles(self, to: float | None = None, **options: Any) -> Any:
         """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
-        return above("circles")(self, to, **options)
+        from ..circles.follow import circles
+
+        return circles(self, to, **options)
 
     def cycles(self) -> Any:
         """One of the small cycles that are born at a Hopf point: a seed for ``contvines.diagram``.
@@ -166,7 +169,9 @@ class SpecialPoint:
             raise ValueError(f"{self.label} is a {self.kind} point; cycles are born at Hopf points")
         if self.problem is None:
             raise ValueError(without_problem(self.label))
-        return above("cycle_at")(self)
+        from ..graph.cycle_at import cycle_at
+
+        return cycle_at(self)
 
     def __repr__(self) -> str:
         virtual = "" if self.real else "virtual "
@@ -175,7 +180,9 @@ class SpecialPoint:
         return f"SpecialPoint({self.label}: {virtual}{self.kind} on {self.branch} at {where}{side})"
 
     def _repr_html_(self) -> str:
-        return above("point_page")(self)
+        from ..graph.pages import point_page
+
+        return point_page(self)
 
     def prove(self, **options: Any) -> Any:
         """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.

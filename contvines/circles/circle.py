@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..doors import above
-from ..hints import hinted
+from ..continuation.hints import hinted
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
 
@@ -189,4 +188,6 @@ class Circles:
 
     def plot(self, **options: Any) -> Any:
         """Section picture with radius and rotation number; see :func:`contvines.plots.circles.plot_circles`."""
-        return above("plot_circles")(self, **options)
+        from ..plots.circles import plot_circles
+
+        return plot_circles(self, **options)

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..doors import above
+from ..continuation.hints import hinted, hinting
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..graph.shortening import short_word
-from ..hints import hinted, hinting
 from ..problems.abilities import Gauged, notation_of
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
@@ -79,10 +78,14 @@ class Basins:
         return values * self.gauges.get(name, (1.0, ""))[0]
 
     def __str__(self) -> str:
-        return above("basins_table")(self)
+        from .table import table
+
+        return table(self)
 
     def _repr_html_(self) -> str:
-        return above("basins_page")(self)
+        from .table import page
+
+        return page(self)
 
     def __repr__(self) -> str:
         rows, columns = self.index.shape
@@ -147,7 +150,9 @@ class Basins:
 
     def plot(self, **options: Any) -> Figure:
         """The plane in colours; see :func:`contvines.plots.basins.plot_basins`."""
-        return above("plot_basins")(self, **options)
+        from ..plots.basins import plot_basins
+
+        return plot_basins(self, **options)
 
 
 def wilson(share: float, n: int) -> tuple[float, float]:

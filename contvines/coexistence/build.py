@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from ..bifurcation.kind import Kind
+from ..continuation.hints import hinting
 from ..continuation.settings import Settings
 from ..graph.automatic import new_run
 from ..graph.builder import finish
 from ..graph.graph import Graph
 from ..graph.run import Progress, Run
-from ..hints import hinting
 from ..interrupts import listening
 from .census import Counted, census, locate
 from .effort import BUDGET, Effort

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..branches.branch import Branch
-from ..doors import above
+from ..continuation.hints import hinted, hinting
 from ..graph.shortening import short_word
 from ..graph.table import with_unit
-from ..hints import hinted, hinting
 from ..problems.abilities import notation_of
 from ..text_table import Table, terminal_width
 from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
@@ -86,7 +85,9 @@ class Erosion:
 
     def plot(self, **options: Any) -> Figure:
         """Smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""
-        return above("plot_erosion")(self, **options)
+        from ..plots.erosion import plot_erosion
+
+        return plot_erosion(self, **options)
 
 
 @hinting

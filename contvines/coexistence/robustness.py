@@ -10,8 +10,8 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..circles.section import section_of
+from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from ..hints import hinting
 from ..problems.abilities import Gauged
 from ..text_table import fitted
 from .basins import wilson

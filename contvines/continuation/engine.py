@@ -9,11 +9,11 @@ import numpy as np
 
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Adaptive, Rough
+from ..problems.approach import approach
 from ..problems.protocol import Problem
 from . import bracketing, corrector
 from . import loop as source
 from .aims import NO_COLUMNS, NOTHING, Aim
-from .approach import approach
 from .arrays import Metric
 from .interpreted import InterpretedLoop
 from .rows import Rows

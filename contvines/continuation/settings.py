@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from contvines.shared.near_arguments import hinted
 from contvines.shared.near_names import did_you_mean
 
-from ..hints import hinted
 from .step_rule import BY_ANGLE, StepRule
 
 #: settings that are numbers between 0 and 1, and whole ones of at least 1

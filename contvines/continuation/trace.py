@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.abilities import Adaptive
@@ -17,6 +16,7 @@ from . import loop as source
 from .chunk import Chunk
 from .closing import Closing
 from .engine import Engine, Solved
+from .hints import hinting
 from .reach import Reach
 from .settings import Settings
 from .status import Status

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ..doors import above
 from . import mesh
 from .kernels import growth_of_volume, linearise, spectrum
 from .simulation import integrated, variational
@@ -138,4 +137,6 @@ class CycleOrbit:
     # ------------------------------------------------------------------ pictures
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time series; see :func:`contvines.plots.cycles.plot_cycle`."""
-        return above("plot_cycle")(self, **options)
+        from ..plots.cycles import plot_cycle
+
+        return plot_cycle(self, **options)

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..hints import hinting
+from contvines.shared.near_arguments import hinting
+
 from ..problems.images import image_map
 from ..problems.parameters import ParameterSet
 from ..problems.registry import addresses

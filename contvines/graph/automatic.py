@@ -8,9 +8,9 @@ from typing import Any
 
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import checked
+from ..continuation.hints import hinting
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval, problem_and_start
-from ..hints import hinting
 from ..journal import NullJournal
 from ..problems.registry import without_problem
 from .builder import adopt, begin, finish, work

@@ -10,8 +10,7 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import LABELS, RENAMED, kind_named
-from ..doors import above
-from ..hints import hinted
+from ..continuation.hints import hinted
 from ..problems.abilities import notation_of
 from .attractor import Attractor
 from .unresolved import Unresolved
@@ -125,7 +124,9 @@ class Graph:
         return len(self.branches)
 
     def __str__(self) -> str:
-        text = above("table")(self)
+        from .table import shown
+
+        text = shown(self)
         return f"{text}\n\n{self.message}" if self._cut else text
 
     @property
@@ -133,7 +134,9 @@ class Graph:
         return not self.complete and self.settings.get("max_branches") != 1
 
     def _repr_html_(self) -> str:
-        return above("graph_page")(self) + (f"<p>{self.message}</p>" if self._cut else "")
+        from .pages import graph_page
+
+        return graph_page(self) + (f"<p>{self.message}</p>" if self._cut else "")
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -180,7 +183,9 @@ class Graph:
 
     def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
         """Prove special points, orbits (``B1:12``) or branches; see :func:`contvines.graph.proving.prove`."""
-        return above("prove")(self, labels, **options)
+        from .proving import prove
+
+        return prove(self, labels, **options)
 
     def attach(self, problem: Any) -> None:
         """Give all branches and special points without a problem this one (after loading a callable's graph)."""
@@ -259,15 +264,21 @@ class Graph:
 
     def merge(self, other: Graph) -> dict[str, str]:
         """Add what another graph of the same problem has beside it; see :func:`contvines.coexistence.merging.merge`."""
-        return above("merge")(self, other)
+        from ..coexistence.merging import merge
+
+        return merge(self, other)
 
     def to_pandas(self) -> Any:
         """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
-        return above("graph_frame")(self)
+        from ..export.frames import graph_frame
+
+        return graph_frame(self)
 
     def to_xarray(self) -> Any:
         """All points of all branches as a data set; see :func:`contvines.export.frames.graph_dataset`."""
-        return above("graph_dataset")(self)
+        from ..export.frames import graph_dataset
+
+        return graph_dataset(self)
 
     def export(self, path: str | Path, to: str | None = None) -> Path:
         """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat") is read off the name by default.
@@ -277,11 +288,15 @@ class Graph:
         ValueError
             If there is no such format, or the place cannot be written.
         """
-        return above("export")(self, to, path)
+        from ..export import export
+
+        return export(self, to, path)
 
     def plot(self, x: str | None = None, y: str | None = None, **options: Any) -> Any:
         """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""
-        return above("plot_diagram")(self, x=x, y=y, **options)
+        from ..plots.diagram import plot_diagram
+
+        return plot_diagram(self, x=x, y=y, **options)
 
     def save(self, path: str | Path) -> None:
         """Write the graph to a .vines file; see :mod:`contvines.store`.
@@ -300,9 +315,13 @@ class Graph:
             raise ValueError(
                 f"{place}: there is no folder {str(place.parent)!r}; make it first, or choose another place."
             )
-        above("save")(self, path)
+        from ..store import save
+
+        save(self, path)
 
     @classmethod
     def load(cls, path: str | Path, *, trust: bool = False) -> Graph:
         """Read a graph from a .vines file; see :func:`contvines.load`."""
-        return above("load")(path, trust=trust)
+        from ..store import load
+
+        return load(path, trust=trust)

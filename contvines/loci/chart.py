@@ -10,11 +10,10 @@ from typing import Any
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import CODIMENSION_TWO
-from ..doors import above
+from ..continuation.hints import hinted
 from ..graph.old_names import renamed
 from ..graph.persistence import branch_of, content_of
 from ..graph.well_formed import check_branch, check_fields, fits
-from ..hints import hinted
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
@@ -71,10 +70,14 @@ class Chart:
         return label in self.loci or label in self.points
 
     def __str__(self) -> str:
-        return above("chart_table")(self)
+        from .table import shown
+
+        return shown(self)
 
     def _repr_html_(self) -> str:
-        return above("chart_page")(self)
+        from .table import page
+
+        return page(self)
 
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
@@ -119,15 +122,21 @@ class Chart:
 
     def plot(self, **options: Any) -> Any:
         """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
-        return above("plot_chart")(self, **options)
+        from ..plots.chart import plot_chart
+
+        return plot_chart(self, **options)
 
     def to_pandas(self) -> Any:
         """All points of all loci as a data frame; see :func:`contvines.export.frames.chart_frame`."""
-        return above("chart_frame")(self)
+        from ..export.frames import chart_frame
+
+        return chart_frame(self)
 
     def to_xarray(self) -> Any:
         """All points of all loci as a data set; see :func:`contvines.export.frames.chart_dataset`."""
-        return above("chart_dataset")(self)
+        from ..export.frames import chart_dataset
+
+        return chart_dataset(self)
 
     def export(self, path: str | Path, to: str | None = None) -> Path:
         """Write the chart for other programs; `to` ("csv", "json") is read off the name by default.
@@ -138,11 +147,15 @@ class Chart:
             If there is no such format, or the place cannot be written.
         """
         place = Path(path)
-        return above("export_chart")(self, to or place.suffix.lstrip(".").lower(), place)
+        from ..export.charts import export_chart
+
+        return export_chart(self, to or place.suffix.lstrip(".").lower(), place)
 
     def save(self, path: str | Path) -> None:
         """Write the chart to a .vines file, as graphs are; ``contvines.load`` reads both."""
-        above("save")(self, path)
+        from ..store import save
+
+        save(self, path)
 
     # ------------------------------------------------------------------ to and from a file
     def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..branches.special_point import SpecialPoint
+from ..continuation.hints import hinting
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
-from ..hints import hinting
 from ..interrupts import listening
 from .chart import Chart
 from .charting_run import Charting, ChartProgress

@@ -9,9 +9,8 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
+from ..continuation.hints import hinted
 from ..continuation.settings import Settings
-from ..doors import above
-from ..hints import hinted
 from .plane_point import PlanePoint
 
 
@@ -106,7 +105,9 @@ class Locus:
                 raise ValueError(
                     f"{self.label} was loaded without its problem; its points of codimension two cannot be sought"
                 )
-            self.marked = marked = tuple(above("mark_locus")(self))
+            from .marking import mark_locus
+
+            self.marked = marked = tuple(mark_locus(self))
         return marked
 
     @property

@@ -17,10 +17,10 @@ from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..branches.tracing import trace_half
 from ..continuation.engine import Solved
+from ..continuation.hints import hinting
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..continuation.status import Status
-from ..hints import hinting
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from ..hints import hinting
 from .basins import COLORS
 from .diagram import draw_diagram
 from .figures import freeze, new_figure, settle, styled, thin_ticks

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from ..hints import hinting
 from .figures import freeze, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, grouped, place_labels
 from .legends import hold_legend, place_legend

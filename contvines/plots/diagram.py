@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from contvines.shared.near_names import did_you_mean
 
+from ..continuation.hints import hinting
 from ..graph.measures import default_measure
-from ..hints import hinting
 from .figures import freeze, lay_out, new_axes, settle, styled, thin_ticks
 from .insets import Region
 from .legends import draw_legend, hold_legend

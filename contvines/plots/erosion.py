@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from ..hints import hinting
 from .figures import new_axes, settle, styled, thin_ticks
 from .legends import place_legend
 from .style import axis_label

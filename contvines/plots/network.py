@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from ..hints import hinting
 from .figures import freeze, new_axes, settle, styled
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..hints import hinting
+from ..continuation.hints import hinting
 from .figures import new_axes, new_figure, settle, styled, thin_ticks
 from .legends import NARROW, place_legend
 from .style import axis_label

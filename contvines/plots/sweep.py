@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..hints import hinting
+from ..continuation.hints import hinting
 from .diagram import LOW, draw_diagram
 from .figures import new_axes, settle, styled, thin_ticks
 from .legends import NARROW, Key, draw_legend

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..hints import hinting
+from contvines.shared.near_arguments import hinting
+
 from . import sparse
 from .callables import CallableProblem
 from .colouring import Colouring

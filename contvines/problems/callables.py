@@ -11,7 +11,6 @@ from scipy.sparse import csc_array, diags_array, hstack
 
 from contvines.shared.near_names import did_you_mean
 
-from ..doors import above
 from . import dense, sparse
 from .breaks import find_break
 from .checks import disagreement, empty_row, refuse_derivatives
@@ -181,7 +180,9 @@ class CallableProblem(ProblemDefaults):
         scales = self.scales
         refuse_asymmetry(self)
         if scales is None:
-            scales = self.scales = above("learn")(self, within, self.given_scale)
+            from .learn_scales import learn
+
+            scales = self.scales = learn(self, within, self.given_scale)
         return scales.vector
 
     def sizes(self) -> tuple[np.ndarray, np.ndarray]:

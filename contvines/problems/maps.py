@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..doors import above
-from ..hints import hinting
+from contvines.shared.near_arguments import hinting
+
 from .callables import CallableProblem
 from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
@@ -308,7 +308,9 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
         problem = self if over in (None, self.parameter) else self.against(str(over))
-        return above("MapPopulation")(problem, box)
+        from ..coexistence.maps import MapPopulation
+
+        return MapPopulation(problem, box)
 
     def describe(self) -> dict[str, Any]:
         """Name, cycle, start, and how to build the problem again if f can be imported."""

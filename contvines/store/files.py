@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from ..hints import hinting
+from ..continuation.hints import hinting
 from .database import Store
 from .header import TAILS, check_header
 from .publishing import draft_of

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..doors import above
+from ..continuation.hints import hinted
 from ..graph.table import with_unit
-from ..hints import hinted
 from ..text_table import Table, fitted, terminal_width
 from .files import read, write
 from .outcomes import OF_ALL
@@ -160,7 +159,9 @@ class Survey:
 
     def plot(self, outcome: str | None = None, **options: Any) -> Figure:
         """A curve over one axis, with bands where there are samples, or a map over two; see `contvines.plots.survey`."""
-        return above("plot_survey")(self, outcome, **options)
+        from ..plots.survey import plot_survey
+
+        return plot_survey(self, outcome, **options)
 
     def best(
         self, outcome: str, largest: bool = False, quantile: float | None = None

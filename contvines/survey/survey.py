@@ -13,7 +13,7 @@ from typing import Any
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
-from ..hints import hinting
+from ..continuation.hints import hinting
 from ..problems.abilities import notation_of
 from . import pools
 from .journal import Rows

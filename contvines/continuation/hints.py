@@ -8,7 +8,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from contvines.shared import near_arguments
 
-from .doors import above
+from .settings import Settings
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -29,6 +29,6 @@ def hinted(thing: type[T]) -> type[T]:
 
 
 def _setting(name: str, value: Any, known: Sequence[str]) -> str:
-    if "settings" not in known or name not in [field.name for field in fields(above("Settings"))]:
+    if "settings" not in known or name not in [field.name for field in fields(Settings)]:
         return ""
     return f"it is a setting: settings={{{name!r}: {value!r}}} would do"

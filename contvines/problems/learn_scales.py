@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ..problems.extents import of_parameter, of_rounding
-from ..problems.scales import Scales, in_fields
 from .approach import approach
+from .extents import of_parameter, of_rounding
+from .scales import Scales, in_fields
 
 STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
 FEW = 6
