@@ -11,7 +11,6 @@ from orbits.flows.native.cycle_equations import unit_nodes
 from orbits.flows.protocol import SimulationError
 from orbits.simulation.native import NativeSimulator
 from orbits.simulation.section import Section, VariedSection, section_of_page
-from orbits.words import Word
 
 
 class Simulated:
@@ -80,4 +79,4 @@ class Simulated:
 
 def _told(word: Any) -> str:
     """One spelling for one motion, mirror images apart."""
-    return word.spelled() if isinstance(word, Word) else word.canonical().text
+    return word.canonical().spelled()

@@ -27,7 +27,6 @@ from orbits.protocol import Answers
 from orbits.relatives import Relatives
 from orbits.words import Word
 from orbits.words.margins import border_kind
-from orbits.words.of_pages import PageWord
 
 
 class OrbitProblem(Simulated, Relatives, Answers):
@@ -36,7 +35,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
     Parameters
     ----------
     model : Model or Machine
-    word : Word or PageWord
+    word : Word
         The word of the whole cycle.
     periods : int
         Forcing periods k of the whole cycle; 1 for a self-excited machine, whose period is unknown.
@@ -342,22 +341,15 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
         model: Any = machine_again(settings, trust)
         if model is None:
             return None
-        modes = tuple(map(tuple, description["modes"]))
-        word: Any = PageWord(tuple(description["events"]), modes, model.alphabet)
     else:
         model = build(settings)
-        word = Word(
-            tuple(description.get("events", "")),  # files of version 0.1 keep none for the absorber at rest
-            tuple(description.get("modes", ())),
-            bool(description.get("frictionless", False)),
-        )
     if params.shape != (len(model.parameter_names),):
         raise ValueError(
             f"{params.size} parameters are described, the machine has {len(model.parameter_names)}"
         )
     return OrbitProblem(
         model,
-        word,
+        Word.described(description, getattr(model, "alphabet", None)),
         description["periods"],
         description["parameter"],
         params,

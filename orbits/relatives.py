@@ -12,7 +12,7 @@ from typing import Any, Self
 import numpy as np
 
 from orbits.protocol import Embedding, Symmetry
-from orbits.words.cyclic import CyclicWord
+from orbits.words.word import Word
 
 
 class Relatives:
@@ -50,9 +50,7 @@ class Relatives:
         """Unknowns, from the nodes of the whole cycle."""
         raise TypeError("a problem says how unknowns and nodes go together")
 
-    def sibling(
-        self, word: CyclicWord, periods: int, symmetric: bool, params: np.ndarray | None = None
-    ) -> Self:
+    def sibling(self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Self:
         """The problem of another word of the same machine against the same parameter."""
         raise TypeError("a problem says how it is made for another word")
 
@@ -75,7 +73,7 @@ class Relatives:
         return tuple(found)
 
     def _root(
-        self, word: CyclicWord, periods: int, symmetric: bool
+        self, word: Word, periods: int, symmetric: bool
     ) -> Callable[[np.ndarray], tuple[Self, np.ndarray]]:
         """Takes a solution that is its own image to the problem of a shorter word, made when it is first asked for, and there."""
         made = cache(lambda: self.sibling(word, periods, symmetric))

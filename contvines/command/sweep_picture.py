@@ -117,7 +117,7 @@ def _lines(graph: Any) -> list[tuple[Any, Any, Any]]:
     for branch in graph.branches.values():
         about = branch.description
         if about.get("events") and len(branch) > 1:
-            word = Word(tuple(about["events"]), tuple(about["modes"]), about["frictionless"])
+            word = Word.described(about)
             if word.impacts:
                 found.append((word, branch.values, measured(branch, "B")))
     return found

@@ -15,6 +15,7 @@ from orbits.simulation.driver import follow
 from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import LETTERS, Trajectory
 from orbits.words import Word
+from orbits.words.alphabet import shaken
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +93,8 @@ class Attractor(Settled):
         """
         if not self.recurrent or np.any(self.codes > 4) or (self.kind == "sliding" and not len(self.codes)):
             return None
-        frictionless = self.model.frictionless(self.params)
-        return Word(tuple(LETTERS[c] for c in self.codes), tuple(int(m) for m in self.modes), frictionless)
+        alphabet = shaken(self.model.frictionless(self.params))
+        return Word(tuple(LETTERS[c] for c in self.codes), tuple(int(m) for m in self.modes), alphabet)
 
     @property
     def text(self) -> str:

@@ -17,7 +17,7 @@ from orbits.flows.protocol import Record
 from orbits.machines.page.machine import Machine
 from orbits.orbit import Orbit
 from orbits.simulation.page import PageTrajectory, collect, first_state, outside
-from orbits.words.of_pages import PageWord
+from orbits.words import Word
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
@@ -62,7 +62,7 @@ class PageAttractor(Settled):
         return self.model
 
     @property
-    def word(self) -> PageWord | None:
+    def word(self) -> Word | None:
         """The periodic orbit's word."""
         return None if self.orbit is None else self.orbit.word
 
@@ -263,7 +263,7 @@ def returning(run: PageTrajectory, max_period: int, near: float) -> Orbit | None
 def solved(run: PageTrajectory, length: int, periods: int, far: float = 0.1) -> Orbit | None:
     """The last `length` events of a run as an orbit, if its equations have a solution within `far` of them; see `polished`."""
     machine = run.machine
-    word = PageWord(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
+    word = Word(tuple(run.letters[-length:]), tuple(run.modes[-length:]), machine.alphabet)
     clocks = run.clocks[-length:]
     if machine.forced:
         first = clocks - TWO_PI * np.floor(clocks[0] / TWO_PI)
@@ -325,7 +325,7 @@ def _eventless(run: PageTrajectory, max_period: int, near: float) -> Orbit | Non
     held = any(isinstance(c, Wall) and m == HELD for c, m in zip(machine.contacts, mode))
     if not machine.forced or held:
         return None
-    word = PageWord((), (mode,), machine.alphabet)
+    word = Word((), (mode,), machine.alphabet)
     first, last = (
         int(turn(clock / TWO_PI)) for turn, clock in ((np.ceil, run.clocks[0]), (np.floor, run.end))
     )

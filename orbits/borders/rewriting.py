@@ -10,9 +10,9 @@ import numpy as np
 from orbits.contacts.changes import Spot
 from orbits.flows.protocol import FIRST
 from orbits.orbit import Orbit
-from orbits.words.cyclic import CyclicWord
 from orbits.words.edit import Edit
 from orbits.words.rewriting import applied, changes_at, spliced
+from orbits.words.word import Word
 
 LEAST = 1e-6  # duration of a flight of a guess
 
@@ -37,7 +37,7 @@ def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
     return [Edit(change, orbit.flow.placed(orbit, found, place, change)) for change in changes]
 
 
-def rewritten(word: CyclicWord, nodes: np.ndarray, edits: list[Edit]) -> tuple[CyclicWord, np.ndarray, int]:
+def rewritten(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
     """The word and nodes after the edits (of disjoint places), and where the first edit's new events stand."""
     changes = [edit.change for edit in edits]
     new, first = applied(word, changes)

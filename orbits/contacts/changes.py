@@ -95,7 +95,7 @@ class Site(NamedTuple):
 
     Attributes
     ----------
-    word : orbits.words.cyclic.CyclicWord
+    word : orbits.words.Word
         Of the whole cycle.
     place : int
         The event; a flight is counted with the event before it.

@@ -24,7 +24,7 @@ class Cycle:
     ----------
     model : Model or Machine
         The machine.
-    word : Word or PageWord
+    word : Word
         Its events over the whole period; the empty word is a motion without events: of a built-in machine the absorber at rest.
     periods : int
         Forcing periods k; 1 for a self-excited machine.

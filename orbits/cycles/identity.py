@@ -8,15 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from functools import cache
-from typing import TypeVar
 
 import numpy as np
 
-from orbits.words.cyclic import CyclicWord
+from orbits.words.word import Word
 
 SAME = 1e-7  # nodes closer than this are one node, unless the caller knows the size of the machine better
-
-AnyWord = TypeVar("AnyWord", bound=CyclicWord)
 
 
 def size_of_one(nodes: np.ndarray) -> float:
@@ -25,8 +22,8 @@ def size_of_one(nodes: np.ndarray) -> float:
 
 
 def root_orbit(
-    word: AnyWord, periods: int, nodes: np.ndarray, *, forced: bool = True, same: float = SAME
-) -> tuple[AnyWord, int, np.ndarray]:
+    word: Word, periods: int, nodes: np.ndarray, *, forced: bool = True, same: float = SAME
+) -> tuple[Word, int, np.ndarray]:
     """The shortest orbit of which this one is a repetition: its word, periods and nodes (l, n)."""
     most = min(word.repetitions, periods) if forced else word.repetitions
     for times in range(most, 1, -1):
@@ -42,7 +39,7 @@ def root_orbit(
 
 
 def is_symmetric(
-    word: CyclicWord,
+    word: Word,
     periods: int,
     nodes: np.ndarray,
     same: float = SAME,
@@ -71,7 +68,7 @@ def _direction(size: int) -> np.ndarray:
 
 
 def canonical(
-    word: CyclicWord,
+    word: Word,
     periods: int,
     nodes: np.ndarray,
     mirror: bool = True,

@@ -34,6 +34,7 @@ from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest
 from orbits.machines.varying import Varying
 from orbits.words import Word
+from orbits.words.alphabet import shaken
 
 ONE = np.float64(1.0)
 
@@ -302,7 +303,7 @@ class Model(Varying):
         """The word with these events and modes; None if the machine has none such at these parameters."""
         if self.frictionless(params) and not {"L", "R"}.issuperset(events):
             return None
-        return Word(tuple(events), tuple(modes), self.frictionless(params))
+        return Word(tuple(events), tuple(modes), shaken(self.frictionless(params)))
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
         """Nodes to start from in closed form, where there are any."""

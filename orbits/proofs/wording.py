@@ -6,6 +6,7 @@ from typing import Any
 
 from orbits.proofs.checks import SIDED
 from orbits.words import Word
+from orbits.words.alphabet import shaken
 
 SAYS = {
     "real": {
@@ -20,14 +21,10 @@ SAYS = {
 def spelling(proof: Any) -> str:
     """The word of what is proved, as tables and pictures have it: one spelling for one motion."""
     motif = proof.motif
-    word = Word(tuple(motif.events), tuple(motif.modes), motif.frictionless)
+    word = Word(tuple(motif.events), tuple(motif.modes), shaken(motif.frictionless))
     if not motif.half:
         return word.spelled(_mirrored(proof))
-    image = word.mirror()
-    return (
-        "symmetric "
-        + Word(word.events + image.events, word.modes + image.modes, motif.frictionless).spelled()
-    )
+    return f"symmetric {word.with_image().spelled()}"
 
 
 def _mirrored(proof: Any) -> bool:

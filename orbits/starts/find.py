@@ -16,7 +16,6 @@ from orbits.flows.protocol import SimulationError
 from orbits.flows.solving import solved_at
 from orbits.orbit import Orbit
 from orbits.starts.reading import DirectionError, directed, readings
-from orbits.words import Word
 
 NEARBY = 0.1  # residual of a guess that may be read from another event than its word
 BETTER = 0.1  # part of the residual with which another reading is believed
@@ -86,7 +85,7 @@ def find(
     Parameters
     ----------
     model : Model or Machine
-    word : str or Word or PageWord
+    word : str or Word
         Events, or of a built-in machine the paper's maps.
     periods : int
         Forcing periods k >= 1; of a self-excited machine 1.
@@ -116,7 +115,7 @@ def find(
     if guess is not None:
         nodes = check_guess(reading, model.node_names, guess)
         centred(model, reading, nodes)
-        if isinstance(reading, Word):
+        if reading.alphabet.alone is not None:
             try:
                 reading = directed(word, reading, nodes)
             except DirectionError as error:

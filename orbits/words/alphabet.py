@@ -86,6 +86,11 @@ class Alphabet:
             letter.text: letter for j, contact in enumerate(self.contacts) for letter in contact.events(j)
         }
 
+    @cached_property
+    def codes(self) -> dict[str, int]:
+        """Numbers of the letters, in kernels and in rows of events."""
+        return {letter: code for code, letter in enumerate(self.letters)}
+
     def text_of(self, contact: int, kind: int, sign: int = 0) -> str:
         """The letter's text."""
         for letter in self.letters.values():
@@ -111,6 +116,10 @@ class Alphabet:
     def absent(self, mode: Any, contact: int) -> bool:
         """Whether a friction's limit is zero in a mode."""
         return contact in self.without or self.entry(mode, contact) == ABSENT
+
+    def absent_in(self, mode: Any) -> frozenset[int]:
+        """Frictions whose limit is zero in a mode."""
+        return frozenset(j for j in range(len(self.contacts)) if self.entry(mode, j) == ABSENT)
 
     def after_impact(self, mode: Any, wall: int) -> Any:
         """The mode after an impact in a flight with this mode, where it turns nothing that has events of its own."""
@@ -176,6 +185,9 @@ FRICTIONLESS = Alphabet(
 )
 """The same without friction: flights may reverse freely, and only impacts are events."""
 
-LETTERS = "".join(SHAKEN.letters)
-CODES = {letter: code for code, letter in enumerate(LETTERS)}
-"""Numbers of the letters in compiled kernels and in rows of events."""
+LETTERS, CODES = "".join(SHAKEN.letters), SHAKEN.codes
+
+
+def shaken(frictionless: bool) -> Alphabet:
+    """The alphabet of a machine with a shaken cavity."""
+    return FRICTIONLESS if frictionless else SHAKEN

@@ -12,7 +12,7 @@ import numpy as np
 
 from orbits.contacts.letters import BORDERS, HIT, STRENGTH, STROBE
 from orbits.words.alphabet import Watch
-from orbits.words.cyclic import CyclicWord
+from orbits.words.word import Word
 
 
 @dataclass(frozen=True)
@@ -37,19 +37,19 @@ class Margin:
     value: float
 
 
-def place_of(word: CyclicWord, index: int) -> tuple[int, int]:
+def place_of(word: Word, index: int) -> tuple[int, int]:
     """The event to which margin `index` belongs, and what it watches: a contact, or one of `Watch`."""
     place, column = divmod(index, len(word.alphabet.columns))
     return place, word.alphabet.columns[column]
 
 
-def index_of(word: CyclicWord, place: int, watch: int) -> int:
+def index_of(word: Word, place: int, watch: int) -> int:
     """The margin of an event that watches this."""
     columns = word.alphabet.columns
     return place * len(columns) + columns.index(watch)
 
 
-def margin_name(word: CyclicWord, index: int) -> str:
+def margin_name(word: Word, index: int) -> str:
     """What margin `index` of an orbit with this word watches; see `Margin`."""
     if not word.modes:
         return "stick"  # at rest: the reserve of friction
@@ -61,7 +61,7 @@ def margin_name(word: CyclicWord, index: int) -> str:
     return word.alphabet.contacts[watch].watched(word.alphabet.entry(word.mode(place), watch))
 
 
-def border_kind(word: CyclicWord, index: int) -> str:
+def border_kind(word: Word, index: int) -> str:
     """The kind of border that is met where margin `index` vanishes."""
     name = margin_name(word, index)
     if name != "duration":
@@ -72,14 +72,14 @@ def border_kind(word: CyclicWord, index: int) -> str:
     return word.alphabet.together(word.letter(place), word.letter(place + 1))
 
 
-def approaches_of(word: CyclicWord, margins: np.ndarray) -> np.ndarray:
+def approaches_of(word: Word, margins: np.ndarray) -> np.ndarray:
     """The margins of the impacts, their speeds, from those of all events of a cycle, or of half of them."""
     columns = word.alphabet.columns
     own = margins[columns.index(Watch.STRENGTH) :: len(columns)] if len(word) else margins[:0]
     return own[[word.letter(i).kind == HIT for i in range(own.size)]]
 
 
-def margin_units(word: CyclicWord, units: tuple[float, float]) -> np.ndarray:
+def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
     """What margins of one are in a length and a rate, an entry per margin."""
     length, rate = units
     sizes = {
@@ -98,7 +98,7 @@ def margin_units(word: CyclicWord, units: tuple[float, float]) -> np.ndarray:
     return np.array([sizes[margin_name(word, index)] for index in range(count)])
 
 
-def named_margins(word: CyclicWord, values: np.ndarray) -> list[Margin]:
+def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
     """The finite margins among `values` with their names."""
     return [
         Margin(margin_name(word, index), index // len(word.alphabet.columns), float(value))

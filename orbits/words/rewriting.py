@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, STICK, SWITCH
 from orbits.words.alphabet import Watch
-from orbits.words.cyclic import CyclicWord
-
-W = TypeVar("W", bound=CyclicWord)
+from orbits.words.word import Word
 
 
 def changes_at(site: Site, watched: int) -> list[Change]:
@@ -64,7 +62,7 @@ def _swapped(site: Site) -> Change:
     return Change(place, place + 2, (there, here), modes, spots, Grows.MARGIN, What.ORDER_CHANGES)
 
 
-def applied(word: W, changes: Sequence[Change]) -> tuple[W, int]:
+def applied(word: Word, changes: Sequence[Change]) -> tuple[Word, int]:
     """The word after some changes of disjoint places, and where the first one's new events stand."""
     events, modes = list(word.events), list(word.modes) if len(word) else []
     for change in sorted(changes, key=lambda c: c.start, reverse=True):

@@ -1,65 +1,54 @@
-"""Words of the machines with a shaken cavity: periodic motions as cyclic lists of events.
+"""Words: periodic motions as cyclic lists of events, over the alphabet of any machine.
 
 A periodic orbit P_l^k is a cyclic list of events, l of them impacts, over k forcing periods. That list is its word.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
-from orbits.contacts.dry_friction import STUCK, Beat, CannotFollow
-from orbits.contacts.letters import HIT, SLIP, STICK, TURN
-from orbits.words.alphabet import CODES, FLOOR, FRICTIONLESS, LEFT, SHAKEN, Alphabet
-from orbits.words.cyclic import CyclicWord, WordError
+from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
+from orbits.words.alphabet import SHAKEN, Alphabet, shaken
+from orbits.words.cyclic import least_rotation, power
+from orbits.words.reading import WordError, bracket, read
 
 
 @dataclass(frozen=True)
-class Word(CyclicWord):
+class Word:
     """A cyclic list of events with the mode that follows each of them.
 
-    Build one with `Word.parse`; the constructor trusts its arguments.
+    Build one with `Word.parse` or a machine's `word`; the constructor trusts its arguments.
 
     Attributes
     ----------
     events : tuple of str
-        Letters ``L R t s u``, one per event; every ``s`` is followed by its ``u``.
-    modes : tuple of int
-        The mode (-1, 0 or +1) of the segment that follows each event.
-    frictionless : bool
-        True for words of the machine without friction, where flights may reverse freely and only impacts are events.
+        Letters of the alphabet; of the shaken machines ``L R t s u``, where every ``s`` is followed by its ``u``.
+    modes : tuple
+        What is in contact, and how it slides, after each event: an int of the shaken machines (-1, 0 or +1), a tuple with an
+        entry per contact of others. A word without events may have one mode.
+    alphabet : Alphabet
     """
 
     events: tuple[str, ...]
-    modes: tuple[int, ...]
-    frictionless: bool = False
-
-    @property
-    def alphabet(self) -> Alphabet:
-        """Two walls and the cavity's floor."""
-        return FRICTIONLESS if self.frictionless else SHAKEN
-
-    def like(self, events: Sequence[str], modes: Sequence[int]) -> Word:
-        """A word of the same machine."""
-        return _word(tuple(events), tuple(modes), self.frictionless)
+    modes: tuple[Any, ...]
+    alphabet: Alphabet = field(default=SHAKEN, compare=False, repr=False)
 
     # ------------------------------------------------------------------ making
     @classmethod
     def parse(cls, text: str | Sequence[str] | Word, frictionless: bool = False) -> Word:
-        """Read a word from events (``"LR"``, ``"RLtL"``, ``"ss"``) or from the impact maps (``"LR RL"``).
+        """Read a word of the machines with a shaken cavity; see `orbits.words.reading.read`.
 
         Parameters
         ----------
         text : str, sequence of str or Word
-            Events, with or without blanks; or the maps G_LR, G_RL, G_LL, G_RR as blank-separated pairs, each starting
-            at the wall where the one before ended. ``s`` stands for ``s`` and the slip ``u`` after it; where the
-            direction of a slip does not follow from the next impact or turn, write ``s+`` or ``s-``.
+            Events, with or without blanks (``"LR"``, ``"RLtL"``, ``"ss"``), or the impact maps G_LR, G_RL, G_LL, G_RR as
+            blank-separated pairs (``"LR RL"``), each starting at the wall where the one before ended.
         frictionless : bool
             Read the word for a machine without friction: ``LL`` needs no turn then.
 
@@ -68,168 +57,241 @@ class Word(CyclicWord):
         WordError
             If the letters are unknown or the events cannot follow one another.
         """
-        if isinstance(text, Word):
-            if text.frictionless == frictionless:
-                return text
-            text = text.text
-        if not isinstance(text, str | Sequence):
-            raise WordError(f"word = {text!r} is no word: give the events of a period as text, such as 'LR'")
-        tokens = text.replace(",", " ").split() if isinstance(text, str) else [str(part) for part in text]
-        tokens = [token.removeprefix("G_") for token in tokens]
-        if len(tokens) > 1 and _are_chained_maps(tokens):
-            joint = "" if frictionless else "t"
-            letters = [token[0] + (joint if token[0] == token[1] else "") for token in tokens]
-            return cls._from_letters("".join(letters), frictionless, text)
-        return cls._from_letters("".join(tokens), frictionless, text)
+        return cls.over(shaken(frictionless), text)
 
     @classmethod
-    def _from_letters(cls, joined: str, frictionless: bool, text: object) -> Word:
-        shown = text if isinstance(text, str) else " ".join(text)  # type: ignore[arg-type]
-        shown = shown if len(shown) <= 60 else f"{shown[:40]}..."
-        joined = joined.replace("−", "-")
-        if not re.fullmatch(r"(?:[LRt]|[su][+-]?)*", joined):
-            bad = re.sub(r"[LRt]|[su][+-]?", "", joined)[:1]
-            raise WordError(
-                f"word {shown!r} has the letter {bad!r}: events are L and R (impacts), t (turn), s (stick, with its "
-                "slip) and u (slip), a slip's direction is written s+ or s-"
-            )
-        if frictionless and re.search(r"[tsu]", joined):
-            raise WordError(
-                f"word {shown!r} has turns, sticks or slips, which are no events without friction: "
-                "write impacts only, or give friction and gravity values above 0"
-            )
-        events: list[str] = []
-        signs: list[int | None] = []
-        items = re.findall(r"[LRtsu][+-]?", joined)
-        for place, item in enumerate(items):
-            letter, sign = item[0], {"+": 1, "-": -1}.get(item[1:])
-            follower = items[(place + 1) % len(items)][0]
-            if letter == "s" and follower != "u":
-                events += ["s", "u"]
-                signs += [None, sign]
-            else:
-                events.append(letter)
-                signs.append(sign)
-        for place, letter in enumerate(events):
-            before = events[place - 1]
-            if (letter == "u") != (before == "s"):
-                raise WordError(
-                    f"word {shown!r} has a slip that follows no stick: write s for a stick and its slip"
-                )
-        return cls(tuple(events), _modes(events, signs, frictionless, shown), frictionless)
+    def over(
+        cls,
+        alphabet: Alphabet,
+        text: str | Sequence[str] | Word,
+        absent: frozenset[int] = frozenset(),
+        default: Sequence[int] | None = None,
+    ) -> Word:
+        """Read a word over any alphabet; see `orbits.words.reading.read`."""
+        if isinstance(text, Word):
+            if alphabet.alone is None or text.alphabet.without == alphabet.without:
+                return text
+            text = text.text
+        return cls(*read(text, alphabet, absent, default), alphabet)
+
+    @classmethod
+    def described(cls, about: Mapping[str, Any], alphabet: Alphabet | None = None) -> Word:
+        """The word that `describe` describes; without an alphabet, one of the shaken machines."""
+        modes = tuple(tuple(mode) if isinstance(mode, list) else mode for mode in about.get("modes", ()))
+        # files of version 0.1 keep no events for the absorber at rest
+        return cls(tuple(about.get("events", "")), modes, alphabet or shaken(bool(about.get("frictionless"))))
+
+    def like(self, events: Sequence[str], modes: Sequence[Any]) -> Word:
+        """A word over the same alphabet."""
+        return _word(tuple(events), tuple(modes), self.alphabet)
 
     # ------------------------------------------------------------------ facts
+    def __len__(self) -> int:
+        return len(self.events)
+
+    def __str__(self) -> str:
+        return self.text
+
     @cached_property
     def text(self) -> str:
-        """The word as it is written in studies: sticks carry a sign only where it is needed."""
-        plain = self._written(signed=False)
-        try:
-            if Word.parse(plain, self.frictionless).modes == self.modes:
-                return plain
-        except WordError:
-            pass
-        return self._written(signed=True)
+        """As it is written in studies: signs and modes (in brackets) appear only where the events leave them open."""
+        if not self.modes:
+            return ""
+        turns = bool(self.events) and all(self.letter(i).kind == TURN for i in range(len(self)))
+        alphabet = self.alphabet
+        for signed, noted in ((False, ()), (True, ())) if alphabet.alone is not None else (
+            (False, ()), (True, ()), (True, (0,)),
+        ):  # fmt: skip
+            text = self._written(signed, noted)
+            with suppress(WordError):
+                again = self.over(alphabet, text, alphabet.absent_in(self.modes[0]))
+                places = range(len(self)) if turns and again.events == self.events else (0,)
+                if any(again.rotate(k) == self for k in places):
+                    return text  # the same cycle, even where the text leaves open from which event it is read
+        return (
+            self._written(True)
+            if alphabet.alone is not None
+            else self._written(False, range(len(self.modes)))
+        )
 
-    def _written(self, signed: bool) -> str:
-        parts = []
+    def _written(self, signed: bool, noted: Sequence[int] = ()) -> str:
+        if not self.events:
+            return bracket(self.modes[0], self.alphabet) if noted else ""
+        parts: list[str] = []
         n = len(self.events)
-        for place, letter in enumerate(self.events):
-            if letter == "s" and place + 1 < n:
-                mark = "+" if self.modes[(place + 1) % n] > 0 else "-"
-                parts.append("s" + (mark if signed else ""))
-            elif letter == "u" and place > 0:
+        joined = len(noted) < n
+        for i, text in enumerate(self.events):
+            letter, before, following = self.letter(i), self.letter(i - 1), self.letter(i + 1)
+            own = letter.contact
+            if joined and letter.kind == SLIP and i > 0 and before.kind == STICK and before.contact == own:
                 continue
-            elif letter == "u":
-                parts.append("u" + (("+" if self.modes[place] > 0 else "-") if signed else ""))
-            else:
-                parts.append(letter)
-        return "".join(parts)
+            mark = ""
+            if signed and letter.kind == SLIP:
+                mark = "+" if self.alphabet.entry(self.modes[i], own) > 0 else "-"
+            elif signed and joined and letter.kind == STICK and following.kind == SLIP and i + 1 < n:
+                mark = "+" if self.alphabet.entry(self.modes[i + 1], own) > 0 else "-"
+            parts.append(text + mark + (bracket(self.modes[i], self.alphabet) if i in noted else ""))
+        joint = " " if any(len(text) > 1 for text in self.events) else ""
+        return joint.join(parts)
+
+    def spelled(self, mirror: bool = True) -> str:
+        """The word as people are told it: of the shaken machines one spelling for one motion, from whichever event and in whichever mirror image.
+
+        That of `canonical`, without signs where the letters alone mean this motion. Words of pages stand as they are read.
+        """
+        if self.alphabet.alone is None:
+            return self.text
+        return _spelled(self.canonical(mirror), mirror, self.alphabet)
 
     def describe(self) -> dict[str, Any]:
         """Events and modes, ready for JSON."""
+        if self.alphabet.alone is None:
+            return {"events": list(self.events), "modes": [list(mode) for mode in self.modes]}
         return {
             "events": "".join(self.events),
             "modes": list(self.modes),
             "frictionless": self.frictionless,
         }
 
-    def spelled(self, mirror: bool = True) -> str:
-        """The word as people are told it: one spelling for one motion, from whichever event and in whichever mirror image.
-
-        That of `canonical`, without signs where the letters alone mean this motion.
-        """
-        return _spelled(self.canonical(mirror), mirror)
+    @property
+    def frictionless(self) -> bool:
+        """Whether flights of a shaken machine may reverse freely, so that only impacts are events."""
+        return bool(self.alphabet.without)
 
     @cached_property
     def codes(self) -> np.ndarray:
-        """Event codes, shape (n,), int8."""
-        return np.array([CODES[letter] for letter in self.events], dtype=np.int8)
+        """Numbers of the events' letters, shape (n,), int8."""
+        return np.array([self.alphabet.codes[letter] for letter in self.events], dtype=np.int8)
 
     @cached_property
     def mode_codes(self) -> np.ndarray:
-        """Mode after each event, shape (n,), int8."""
+        """Mode after each event, shape (n,) or (n, contacts), int8."""
         return np.array(self.modes, dtype=np.int8)
+
+    @cached_property
+    def impact_free(self) -> bool:
+        """Whether no wall is hit."""
+        return self.impacts == 0
+
+    def letter(self, place: int) -> Letter:
+        """The letter of an event."""
+        return self.alphabet.letters[self.events[place % len(self.events)]]
+
+    def mode(self, place: int) -> Any:
+        """The mode after an event."""
+        return self.modes[place % len(self.modes)]
+
+    @cached_property
+    def impacts(self) -> int:
+        """Number of impacts l."""
+        letters = self.alphabet.letters
+        return sum(letters[text].kind == HIT for text in self.events)
+
+    # ------------------------------------------------------------------ transformations
+    def rotate(self, places: int) -> Word:
+        """The same cycle read from the event `places` further on."""
+        if not self.events:
+            return self
+        k = places % len(self.events)
+        return self.like(self.events[k:] + self.events[:k], self.modes[k:] + self.modes[:k])
+
+    def mirror(self) -> Word:
+        """The word of the mirror image."""
+        return self._image
+
+    @cached_property
+    def _image(self) -> Word:
+        images, mirrored = self.alphabet.images, self.alphabet.mirrored_mode
+        return self.like([images[text] for text in self.events], [mirrored(mode) for mode in self.modes])
+
+    def repeat(self, times: int) -> Word:
+        """The word written `times` times."""
+        if times < 1:
+            raise WordError(f"times = {times}: a word can be repeated 1, 2, ... times")
+        return self.like(self.events * times, self.modes * times if self.events else self.modes)
+
+    def double(self) -> Word:
+        """The word written twice, as after a period doubling."""
+        return self.repeat(2)
+
+    def head(self, length: int) -> Word:
+        """The first `length` events; not a cycle of its own, but the half of a symmetric one."""
+        return self.like(self.events[:length], self.modes[:length] if self.events else self.modes)
+
+    def with_image(self) -> Word:
+        """The word and, after it, its mirror image: the whole of a symmetric cycle from its half."""
+        image = self.mirror()
+        return self.like(self.events + image.events, self.modes + image.modes)
+
+    @cached_property
+    def repetitions(self) -> int:
+        """How often the primitive root is written in this word."""
+        return power(list(zip(self.events, self.modes))) if self.events else 1
+
+    def primitive_root(self) -> Word:
+        """The shortest word of which this one is a repetition."""
+        return self.head(len(self.events) // self.repetitions)
+
+    def canonical(self, mirror: bool = True) -> Word:
+        """The smallest of all rotations of the word, and of its mirror image if that is a motion of the machine, too."""
+        if not self.events and not self.modes:
+            return self
+        alphabet = self.alphabet
+        return _canonical(self, mirror and alphabet.mirror is not None, alphabet)
+
+    def _smallest_rotation(self) -> Word:
+        """The smallest rotation by its events, of those with equal events by its modes; no slip begins a word."""
+        if not self.events:
+            return self
+        place, root = least_rotation(self.events), len(self.events) // power(self.events)
+        modes = self.modes[place:] + self.modes[:place]
+        blocks = [modes[i : i + root] for i in range(0, len(modes), root)]
+        return self.rotate(place + root * least_rotation(blocks))
+
+    def readings(self, mirror: bool = True) -> list[tuple[bool, int]]:
+        """(mirrored, rotation) of every way in which this word reads as its canonical form."""
+        alphabet = self.alphabet
+        return _readings(self, mirror and alphabet.mirror is not None, alphabet)
+
+    @cached_property
+    def mirror_symmetric_halves(self) -> bool:
+        """Whether the second half is the mirror image of the first: the word a symmetric orbit can have."""
+        if self.alphabet.mirror is None:
+            return False
+        n = len(self.events)
+        if n == 0:
+            return bool(self.modes) and self.mirror() == self
+        return n % 2 == 0 and self.rotate(n // 2) == self.mirror()
 
 
 @lru_cache(maxsize=4096)
-def _word(events: tuple[str, ...], modes: tuple[int, ...], frictionless: bool) -> Word:
+def _word(events: tuple[str, ...], modes: tuple[Any, ...], alphabet: Alphabet) -> Word:
     """A word, the same one every time: what is worked out of it is kept."""
-    return Word(events, modes, frictionless)
+    return Word(events, modes, alphabet)
 
 
 @lru_cache(maxsize=1024)
-def _spelled(canonical: Word, mirror: bool) -> str:
+def _spelled(canonical: Word, mirror: bool, alphabet: Alphabet) -> str:
     plain = canonical._written(signed=False)
     with suppress(WordError):
-        if Word.parse(plain, canonical.frictionless).canonical(mirror) == canonical:
+        if Word.over(alphabet, plain).canonical(mirror) == canonical:
             return plain
     return canonical.text
 
 
-def _are_chained_maps(tokens: Sequence[str]) -> bool:
-    if not all(re.fullmatch("[LR]{2}", token) for token in tokens):
-        return False
-    return all(tokens[i][1] == tokens[(i + 1) % len(tokens)][0] for i in range(len(tokens)))
+@lru_cache(maxsize=1024)
+def _canonical(word: Word, mirror: bool, alphabet: Alphabet) -> Word:
+    images = (word, word.mirror()) if mirror else (word,)
+    return min((w._smallest_rotation() for w in images), key=lambda w: (w.events, w.modes))
 
 
-def _modes(
-    events: Sequence[str], signs: Sequence[int | None], frictionless: bool, shown: str
-) -> tuple[int, ...]:
-    """The mode after each event: the direction of sliding on the floor."""
-    letters = [SHAKEN.letters[text] for text in events]
-    flips = SHAKEN.flips
-    after = [flips[letter.contact, FLOOR] if letter.kind == HIT else None for letter in letters]
-    if frictionless:
-        return tuple(int(mode or 0) for mode in after)
-    beats = [
-        Beat(letter.kind, sign if letter.kind == SLIP else mode)
-        for letter, sign, mode in zip(letters, signs, after)
+@lru_cache(maxsize=256)
+def _readings(word: Word, mirror: bool, alphabet: Alphabet) -> list[tuple[bool, int]]:
+    target = word.canonical(mirror)
+    images = [(word, False), (word.mirror(), True)] if mirror else [(word, False)]
+    return [
+        (mirrored, k)
+        for reading, mirrored in images
+        for k in range(max(1, len(word)))
+        if reading.rotate(k) == target
     ]
-    try:
-        return tuple(SHAKEN.contacts[FLOOR].directions(beats))
-    except CannotFollow as error:
-        raise WordError(_impossible(events, beats, error, shown)) from None
-
-
-WORDS = {TURN: "turn", STICK: "stick", SLIP: "slip"}
-
-
-def _impossible(events: Sequence[str], beats: Sequence[Beat], error: CannotFollow, shown: str) -> str:
-    place = error.beat
-    before, event = events[place - 1], events[place]
-    hint = ""
-    if before == event and beats[place].kind == HIT:
-        hint = f"; between two impacts on one wall there is a turn ({event}t{event}) or a stick ({event}s{event})"
-    heading = {-1: "moving to the right", 1: "moving to the left", STUCK: "stuck"}[error.came or 0]
-    called = "a turn that leads to the next event" if event == "t" else f"the {_called(event)}"
-    return (
-        f"word {shown!r} cannot be: after the {_called(before)} ({before}) the absorber is {heading}, "
-        f"so {called} ({event}) cannot come next{hint}"
-    )
-
-
-def _called(text: str) -> str:
-    letter = SHAKEN.letters[text]
-    if letter.kind == HIT:
-        return f"impact on the {'left' if letter.contact == LEFT else 'right'} wall"
-    return WORDS[letter.kind]

@@ -17,7 +17,7 @@ from orbits.flows.protocol import Approach
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
 from orbits.machines.path import along
-from orbits.words.of_pages import PageWord
+from orbits.words import Word
 
 TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
@@ -63,7 +63,7 @@ class PageKernels(PlainKernels):
 KERNELS = PageKernels()
 
 
-def loose_states(machine: Machine, word: PageWord) -> tuple[int, ...]:
+def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
     """States along which any motion with this word may be shifted: no rate and no event of the word knows them."""
     e, names = machine.equations, machine.equations.layout.states
     known: set[str] = set()
@@ -84,7 +84,7 @@ class PageEquations:
     Parameters
     ----------
     machine : Machine
-    word : PageWord
+    word : Word
         Of the whole cycle.
     periods : int
         Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
@@ -103,7 +103,7 @@ class PageEquations:
     def __init__(
         self,
         machine: Machine,
-        word: PageWord,
+        word: Word,
         periods: int,
         parameter: str,
         params: np.ndarray,

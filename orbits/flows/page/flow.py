@@ -13,7 +13,7 @@ from orbits.flows.page import measures, sampling, vanishing
 from orbits.flows.page.cycle_equations import PageEquations, loose_states
 from orbits.flows.protocol import Motion, Vanishing
 from orbits.machines.page.machine import Machine
-from orbits.words.of_pages import PageWord
+from orbits.words import Word
 
 
 class PageFlow:
@@ -29,7 +29,7 @@ class PageFlow:
     def equations(
         self,
         model: Machine,
-        word: PageWord,
+        word: Word,
         periods: int,
         parameter: str,
         params: np.ndarray,
@@ -39,7 +39,7 @@ class PageFlow:
         """Flight by flight, in numpy; a page has no units of its own."""
         return PageEquations(model, word, periods, parameter, params, symmetric)
 
-    def loose(self, model: Machine, word: PageWord) -> tuple[int, ...]:
+    def loose(self, model: Machine, word: Word) -> tuple[int, ...]:
         """States that no rate and no event of the word knows."""
         return tuple(1 + j for j in loose_states(model, word))
 
@@ -73,7 +73,7 @@ class PageFlow:
     def measures(
         self,
         model: Machine,
-        word: PageWord,
+        word: Word,
         periods: int,
         nodes: np.ndarray,
         params: np.ndarray,

@@ -13,7 +13,7 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN
 from orbits.flows.page.flights import Work
-from orbits.words.of_pages import PageWord
+from orbits.words import Word
 
 DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted closes
 OWN = (
@@ -76,7 +76,7 @@ def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
                 table[i, j] = min(table[i, j], there[g])
 
 
-def owned(word: PageWord, place: int) -> frozenset[int]:
+def owned(word: Word, place: int) -> frozenset[int]:
     """The contacts of which an event says itself what their guards are at it.
 
     Its own; those that an impact turns; and, where a crossing is next to an impact that may jump over it, that impact's wall: as

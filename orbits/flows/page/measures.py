@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.letters import HIT
-from orbits.words.of_pages import PageWord
+from orbits.words import Word
 
 OF_STATES = ("max", "min", "first", "strobe")
 
@@ -34,7 +34,7 @@ def shown_first(machine: Any) -> str:
 
 
 def measure(
-    machine: Any, word: PageWord, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
+    machine: Any, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
     """Values, each of shape (m,), of solutions with nodes (m, L, n + 1) and parameters (m, P).
 
@@ -85,7 +85,7 @@ def _spans(machine: Any, periods: int, nodes: np.ndarray) -> tuple[np.ndarray, n
 
 
 def _extremes(
-    machine: Any, word: PageWord, periods: int, nodes: np.ndarray, params: np.ndarray
+    machine: Any, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Largest and smallest value of every state over the period: at the events, and where a rate is zero between them."""
     compiled, e = machine.compiled, machine.equations
@@ -106,7 +106,7 @@ def _extremes(
     return largest, smallest
 
 
-def _strobed(machine: Any, word: PageWord, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+def _strobed(machine: Any, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     """States at the first passage of phase zero (a multiple of 2 pi) after the first event."""
     compiled, e = machine.compiled, machine.equations
     out = np.empty((len(nodes), machine.size))
@@ -123,7 +123,7 @@ def _strobed(machine: Any, word: PageWord, periods: int, nodes: np.ndarray, para
     return out
 
 
-def _approach_speeds(machine: Any, word: PageWord, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+def _approach_speeds(machine: Any, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     """Fastest approach at an impact: the gap's rate before it, from the one after it and the restitution."""
     compiled = machine.compiled
     best = np.zeros(len(nodes))

@@ -25,8 +25,8 @@ from orbits.machines.page.patterns import Equations
 from orbits.machines.page.si import Units
 from orbits.machines.parameters import ParameterError
 from orbits.machines.varying import Varying
+from orbits.words import Word
 from orbits.words.alphabet import Alphabet
-from orbits.words.of_pages import PageWord, parse
 
 
 class Machine(Varying):
@@ -212,17 +212,16 @@ class Machine(Varying):
 
     # ------------------------------------------------------------------ motions
     def word(
-        self, text: str | PageWord, params: np.ndarray | None = None, default: Sequence[int] | None = None
-    ) -> PageWord:
+        self, text: str | Word, params: np.ndarray | None = None, default: Sequence[int] | None = None
+    ) -> Word:
         """Read a word of this machine."""
-        if isinstance(text, PageWord):
-            return text
         vector = self.vector() if params is None else params
-        return parse(text, self.alphabet, self.absent(vector), default)
+        absent = frozenset() if isinstance(text, Word) else self.absent(vector)
+        return Word.over(self.alphabet, text, absent, default)
 
-    def word_of(self, events: Sequence[str], modes: Sequence[Sequence[int]], params: np.ndarray) -> PageWord:
+    def word_of(self, events: Sequence[str], modes: Sequence[Sequence[int]], params: np.ndarray) -> Word:
         """The word with these events and modes."""
-        return PageWord(tuple(events), tuple(tuple(mode) for mode in modes), self.alphabet)
+        return Word(tuple(events), tuple(tuple(mode) for mode in modes), self.alphabet)
 
     def rest_mode(self, params: np.ndarray, state: np.ndarray, clock: float) -> tuple[int, ...]:
         """Modes that a state suggests: free walls, signs of velocities and surfaces."""
@@ -246,7 +245,7 @@ class Machine(Varying):
         """Unknowns of an event: the phase, or the duration of the flight that follows, and the states after it."""
         return ("phase" if self.forced else "duration", *self.states)
 
-    def start_nodes(self, word: PageWord, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+    def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
         """Nothing is known in closed form."""
         return iter(())
 
@@ -254,7 +253,7 @@ class Machine(Varying):
         """What shakes a page is not known."""
 
     def random_nodes(
-        self, word: PageWord, periods: int, params: np.ndarray, generator: np.random.Generator
+        self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
     ) -> np.ndarray:
         """Nodes at random, impacts such that they leave their wall."""
         n = max(1, len(word))
@@ -311,7 +310,7 @@ class Machine(Varying):
 
     def orbit(
         self,
-        word: str | PageWord,
+        word: str | Word,
         periods: int = 1,
         guess: Any = None,
         **parameters: float,

@@ -146,7 +146,9 @@ def test_a_negative_gap_at_the_start_is_refused():
 
 def test_words_that_cannot_be():
     machine = declared(motion=rubbing, contacts=[floor(), wall()])
-    with pytest.raises(WordError, match="'L' begins no letter of this machine; it has t, s, u, R"):
+    with pytest.raises(
+        WordError, match="the letter 'L': this machine has t .turn., s .stick., u .slip., R .impact."
+    ):
         machine.word("RL")
     with pytest.raises(WordError, match="only a stick or a slip takes a sign"):
         machine.word("R+")

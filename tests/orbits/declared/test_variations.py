@@ -8,12 +8,12 @@ pytest.importorskip("heyoka")
 from orbits import DryFriction, Machine, Switch, Wall
 from orbits.simulation.section import VariedSection, section_of_page
 from orbits.symbols import cos, sin, sqrt
-from orbits.words.of_pages import PageWord
+from orbits.words import Word
 
 
 def section(machine: Machine, parameter: str, **values: float) -> VariedSection:
     """A section at phase zero, once per forcing period, that differentiates by a parameter."""
-    word = PageWord((), (tuple(0 for _ in machine.contacts),), machine.alphabet)
+    word = Word((), (tuple(0 for _ in machine.contacts),), machine.alphabet)
     return section_of_page(machine, machine.vector(values), word, 1, machine.parameter_names.index(parameter))
 
 

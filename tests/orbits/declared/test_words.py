@@ -4,8 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orbits.words import Word as BuiltIn
-from orbits.words.of_pages import PageWord
+from orbits.words import Word
 from tools.pages.pages import page
 
 
@@ -14,7 +13,7 @@ from tools.pages.pages import page
 )
 def test_one_friction_and_two_walls_read_as_the_built_in_words(text):
     """The declared alphabet of the absorber has the built-in letters, modes and text."""
-    mine, theirs = page("absorber").word(text), BuiltIn.parse(text)
+    mine, theirs = page("absorber").word(text), Word.parse(text)
     assert mine.events == theirs.events
     assert tuple(mode[2] for mode in mine.modes) == theirs.modes
     assert page("absorber").word(mine.text) == mine
@@ -27,7 +26,7 @@ def test_impossible_words_are_refused_as_the_built_in_ones_are():
         with pytest.raises(ValueError, match=f"word '{text}'"):
             page("absorber").word(text)
         with pytest.raises(ValueError, match=f"word '{text}'"):
-            BuiltIn.parse(text)
+            Word.parse(text)
 
 
 def test_switches_alternate_and_may_be_long():
@@ -49,4 +48,4 @@ def test_rotations_and_mirrors_are_one_cycle(events, places):
     assert word.rotate(places).canonical() == word.canonical() == word.mirror().canonical()
     assert word.mirror().mirror() == word
     assert word.repeat(3).repetitions % 3 == 0
-    assert isinstance(word, PageWord) and machine.word(word.text) == word
+    assert isinstance(word, Word) and machine.word(word.text) == word
