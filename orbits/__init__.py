@@ -5,8 +5,6 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from orbits.doors import lead
-
 _PLACES = {
     "Absorber": "orbits.machines.absorber.machine",
     "Cavity": "orbits.machines.cavity.machine",
@@ -23,23 +21,6 @@ _PLACES = {
     "WordError": "orbits.words",
 }
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
-lead(
-    {
-        "attractor": "orbits.attractors.search:find_attractor",
-        "attractors": "orbits.attractors.search:different_attractors",
-        "find": "orbits.starts.find:find",
-        "of_branch": "orbits.proofs.subjects:of_branch",
-        "of_orbit": "orbits.proofs.subjects:of_orbit",
-        "of_point": "orbits.proofs.subjects:of_point",
-        "Orbit": "orbits.orbit:Orbit",
-        "orbit_page": "orbits.plots.page:page",
-        "OrbitProblem": "orbits.problem:OrbitProblem",
-        "Population": "orbits.population:Population",
-        "portrait": "orbits.plots.portrait:portrait",
-        "scene": "orbits.plots.scene:scene",
-        "simulate": "orbits.simulation.driver:simulate",
-    }
-)
 __all__ = sorted([*_PLACES, *_ROOMS])
 
 

@@ -12,7 +12,6 @@ import numpy as np
 from contvines.shared.near_arguments import hinting
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import deviation
-from orbits.doors import above
 from orbits.flows.protocol import Equations
 from orbits.words.margins import Margin, approaches_of, limits_of, margin_units, named_margins
 
@@ -162,11 +161,12 @@ class Orbit(Cycle):
         symmetric : bool, optional
             Solve on half the word; default: whether the orbit is symmetric.
         """
-        parameter = parameter or self.model.default_parameter
+        from orbits.problem import OrbitProblem
+
+        parameter = str(parameter or self.model.default_parameter)
         lasting = self.symmetric and self.model.has_mirror(self.params, parameter)
         half = lasting if symmetric is None else symmetric
-        made = above("OrbitProblem")
-        return made(self.model, self.word, self.periods, parameter, self.params, half)
+        return OrbitProblem(self.model, self.word, self.periods, parameter, self.params, half)
 
     def seed(self, problem: Any) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value of this orbit in `problem`."""
@@ -175,18 +175,26 @@ class Orbit(Cycle):
     # ------------------------------------------------------------------ seeing and proving
     def prove(self, bits: int | None = None, **parameters: Any) -> Any:
         """Prove that the orbit exists, is real or virtual, stable or unstable; see `orbits.proofs.subjects.of_orbit`."""
-        return above("of_orbit")(self, bits, **parameters)
+        from orbits.proofs.subjects import of_orbit
+
+        return of_orbit(self, bits, **parameters)
 
     def _repr_html_(self) -> str:
-        return above("orbit_page")(self)
+        from orbits.plots.page import page
+
+        return page(self)
 
     def plot(self, **options: Any) -> Any:
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""
-        return above("portrait")(self, **options)
+        from orbits.plots.portrait import portrait
+
+        return portrait(self, **options)
 
     def scene(self, points: int = 120) -> dict[str, Any]:
         """The orbit as plain numbers for a page that draws it; see `orbits.plots.scene.scene`."""
-        return above("scene")(self, points)
+        from orbits.plots.scene import scene
+
+        return scene(self, points)
 
     def to_dict(self) -> dict[str, Any]:
         """The orbit as JSON: events, multipliers, margins."""

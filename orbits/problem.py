@@ -15,7 +15,6 @@ from orbits.borders.crossing import cross
 from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import INSTANTS, distance
 from orbits.cycles.identity import canonical, size_of_one
-from orbits.doors import above
 from orbits.flows.catalogue import flow_of
 from orbits.flows.plain_kernels import PLAIN
 from orbits.machines.building import build
@@ -262,7 +261,9 @@ class OrbitProblem(Simulated, Relatives, Answers):
         self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
     ) -> Any:
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
-        return above("of_point")(self, kind, u, p, margin, bits)
+        from orbits.proofs.subjects import of_point
+
+        return of_point(self, kind, u, p, margin, bits)
 
     def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]:
         """What one of these coordinates of a motion (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; empty for a machine of plain numbers."""
@@ -299,7 +300,9 @@ class OrbitProblem(Simulated, Relatives, Answers):
         special: Mapping[int, Any] | None = None,
     ) -> Any:
         """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
-        return above("of_branch")(self, points, values, marks, within, special)
+        from orbits.proofs.subjects import of_branch
+
+        return of_branch(self, points, values, marks, within, special)
 
     def describe(self) -> dict[str, Any]:
         """A description that `rebuild` understands, ready for JSON."""

@@ -18,6 +18,11 @@ HELD = {
     "contvines.loci.locus",
     "contvines.problems.maps",
     "contvines.survey.results",
+    "orbits.machines.absorber.machine",
+    "orbits.machines.coupled.machine",
+    "orbits.machines.varying",
+    "orbits.orbit",
+    "orbits.problem",
 }
 """Files of the classes that users hold. Their methods for comfort (``graph.plot()``) import what stands above, inside the method; nothing else does."""
 

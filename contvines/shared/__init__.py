@@ -1,1 +1,1 @@
-"""What `orbits` and `contvines` both need, and what knows neither: figures in one style, doors that lead up, hints, processes."""
+"""What `orbits` and `contvines` both need, and what knows neither: figures in one style, hints, processes."""

@@ -29,7 +29,6 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean, no_parameter
-from orbits.doors import above
 from orbits.machines.parameters import Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest
 from orbits.machines.varying import Varying
@@ -325,44 +324,11 @@ class Model(Varying):
             "w_rate": generator.uniform(-2.0, 2.0),
         }
 
-    def simulate(
-        self,
-        start: Mapping[str, float] | np.ndarray | None = None,
-        *,
-        periods: float | None = None,
-        events: int | None = None,
-        **parameters: float,
-    ) -> Any:
-        """Simulate from event to event; see `orbits.simulation.simulate`."""
-        return above("simulate")(self, start, periods=periods, events=events, **parameters)
-
-    def attractor(self, start: Mapping[str, float] | np.ndarray | None = None, **parameters: float) -> Any:
-        """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
-        return above("attractor")(self, start, **parameters)
-
-    def attractors(self, count: int, seed: int = 0, **parameters: float) -> list[Any]:
-        """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
-        return above("attractors")(self, count, seed, **parameters)
-
-    def population(self, over: str | None = None, **parameters: float) -> Any:
-        """Many starts and what they settle on; see `orbits.population.Population`."""
-        return above("Population")(self, over or self.default_parameter, parameters)
-
     def measure_own(
         self, wanted: Sequence[str], word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
     ) -> dict[str, np.ndarray]:
         """The machine's own measures of many orbits with one word."""
         raise KeyError(f"the model {self.name!r} has no measures of its own")
-
-    def orbit(
-        self,
-        word: str,
-        periods: int = 1,
-        guess: Sequence[Sequence[float]] | np.ndarray | None = None,
-        **parameters: Any,
-    ) -> Any:
-        """Solve for the orbit with this word; see `orbits.starts.find.find`."""
-        return above("find")(self, word, periods, guess, parameters)
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """The machine's own fields by name, ready for JSON; those of a page are its parameters, at `params` where they are given."""

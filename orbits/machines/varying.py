@@ -16,6 +16,9 @@ from orbits.machines.notation import SYMBOLS, WORDS
 from orbits.machines.parameters import Parameter, ParameterError
 from orbits.machines.path import single
 
+if TYPE_CHECKING:
+    from orbits.words import Word
+
 
 class Varying:
     """The part of a machine (`orbits.machines.base.Model`) that knows what may vary."""
@@ -24,6 +27,7 @@ class Varying:
 
     if TYPE_CHECKING:
         name: str
+        default_parameter: str
         parameter_names: tuple[str, ...]
 
         def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray: ...
@@ -114,3 +118,48 @@ class Varying:
                 + ", ".join(self.amount_names)
             )
         return self.amount_names.index(name)
+
+    # ------------------------------------------------------------------ motions
+    def simulate(
+        self,
+        start: Mapping[str, float] | np.ndarray | None = None,
+        *,
+        periods: float | None = None,
+        time: float | None = None,
+        events: int | None = None,
+        **parameters: float,
+    ) -> Any:
+        """Simulate from event to event; see `orbits.simulation.simulate`."""
+        from orbits.simulation.driver import simulate
+
+        return simulate(self, start, periods=periods, time=time, events=events, **parameters)
+
+    def attractor(self, start: Mapping[str, float] | np.ndarray | None = None, **parameters: Any) -> Any:
+        """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
+        from orbits.attractors.search import find_attractor
+
+        return find_attractor(self, start, **parameters)
+
+    def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: Any) -> list[Any]:
+        """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
+        from orbits.attractors.search import different_attractors
+
+        return different_attractors(self, count, seed, size, **parameters)
+
+    def population(self, over: str | None = None, **parameters: float) -> Any:
+        """Many starts and what they settle on; see `orbits.population.Population`."""
+        from orbits.population.population import Population
+
+        return Population(self, over or self.default_parameter, parameters)
+
+    def orbit(
+        self,
+        word: str | Word,
+        periods: int = 1,
+        guess: Sequence[Sequence[float]] | np.ndarray | None = None,
+        **parameters: Any,
+    ) -> Any:
+        """Solve for the orbit with this word; see `orbits.starts.find.find`."""
+        from orbits.starts.find import find
+
+        return find(self, word, periods, guess, parameters)

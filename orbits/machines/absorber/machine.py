@@ -10,7 +10,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from contvines.shared.near_arguments import hinting
-from orbits.doors import above
 from orbits.machines.absorber.closed_forms import sliding_nodes, stick_slip_nodes, symmetric_nodes
 from orbits.machines.absorber.rest import LevelRest
 from orbits.machines.cavity.shaken import Shaken
@@ -108,10 +107,9 @@ class Absorber(Shaken):
         ParameterError
             If there is no symmetric orbit at this amplitude.
         """
+        from orbits.orbit import Orbit
         from orbits.words import Word
 
         params = self.vector({"amplitude": amplitude})
         nodes = symmetric_nodes(params, stable)
-        return above("Orbit")(
-            self, Word.parse("LR", frictionless=self.frictionless(params)), 1, nodes, params
-        )
+        return Orbit(self, Word.parse("LR", frictionless=self.frictionless(params)), 1, nodes, params)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from orbits.doors import above
 from orbits.machines.base import Model
 from orbits.machines.coupled import closed_forms
 from orbits.machines.coupled.rest import DrivenRest
@@ -223,12 +222,13 @@ class Coupled(Model):
         return self.orbit(word, 1, guess.nodes, **values)
 
     def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Any:
+        from orbits.orbit import Orbit
         from orbits.words import Word
 
         reading = Word.parse(word, frictionless=self.frictionless(params))
         if reading.modes[0] != (-1 if word == "LR" else 1):
             nodes = np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
-        return above("Orbit")(self, reading, 1, nodes, params)
+        return Orbit(self, reading, 1, nodes, params)
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
         """Nodes to start from in closed form, where there are any: `LR`, `RL`, `tt`."""

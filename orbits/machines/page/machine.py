@@ -14,7 +14,6 @@ from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
-from orbits.doors import above
 from orbits.machines.notation import SYMBOLS
 from orbits.machines.page import checks, names
 from orbits.machines.page.compiled import Compiled
@@ -283,40 +282,6 @@ class Machine(Varying):
         """States within +-size and a phase."""
         start = {name: float(generator.uniform(-size, size)) for name in self.states}
         return start | ({"phase": float(generator.uniform(0.0, 2.0 * np.pi))} if self.forced else {})
-
-    def simulate(
-        self,
-        start: Mapping[str, float] | None = None,
-        *,
-        periods: float | None = None,
-        time: float | None = None,
-        events: int | None = None,
-        **parameters: float,
-    ) -> Any:
-        """Simulate from event to event; see `orbits.simulation.simulate`."""
-        return above("simulate")(self, start, periods=periods, time=time, events=events, **parameters)
-
-    def attractor(self, start: Mapping[str, float] | None = None, **parameters: float) -> Any:
-        """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
-        return above("attractor")(self, start, **parameters)
-
-    def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: float) -> list[Any]:
-        """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
-        return above("attractors")(self, count, seed, size, **parameters)
-
-    def population(self, over: str | None = None, **parameters: float) -> Any:
-        """Many starts and what they settle on; see `orbits.population.Population`."""
-        return above("Population")(self, over or self.default_parameter, parameters)
-
-    def orbit(
-        self,
-        word: str | Word,
-        periods: int = 1,
-        guess: Any = None,
-        **parameters: float,
-    ) -> Any:
-        """Solve for the orbit with this word; see `orbits.starts.find`."""
-        return above("find")(self, word, periods, guess, parameters)
 
 
 __all__ = ["Machine", "PageError"]
