@@ -20,6 +20,7 @@ _HOME = {
     "Embedding": ".problems.protocol",
     "FlowProblem": ".flows",
     "Graph": ".graph.graph",
+    "Interrupted": ".interrupts",
     "KINDS": ".bifurcation.kinds",
     "Kernels": ".problems.kernels",
     "Kind": ".bifurcation.kind",
@@ -59,6 +60,7 @@ __all__ = [
     "Embedding",
     "FlowProblem",
     "Graph",
+    "Interrupted",
     "Kernels",
     "Kind",
     "Locus",
@@ -117,6 +119,7 @@ if TYPE_CHECKING:
     from .flows import FlowProblem
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch
+    from .interrupts import Interrupted
     from .journal import MemoryJournal, NullJournal
     from .loci.chart import Chart
     from .loci.charting import chart

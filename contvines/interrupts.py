@@ -10,7 +10,7 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any
@@ -120,3 +120,37 @@ def _interrupted(number: int, frame: FrameType | None) -> None:
     _state.wanted = True
     if not _state.held:
         raise KeyboardInterrupt
+
+
+class Resumable:
+    """A result that interrupted work may leave.
+
+    Attributes
+    ----------
+    rest : callable or None
+        Goes on with the interrupted work, from what is done, and returns the whole result; None where nothing was interrupted,
+        and in results from files.
+    """
+
+    rest: Callable[[], Any] | None = None
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during long work.
+
+    Attributes
+    ----------
+    graph : Graph, Chart or Survey
+        All that is done; ``contvines.resume(graph)`` goes on.
+    """
+
+    def __init__(self, graph: Resumable) -> None:
+        super().__init__(
+            f"interrupted: all that is done is in .graph, {graph!r}; contvines.resume(that graph) goes on"
+        )
+        self.graph = graph
+
+
+def unfinished(result: Resumable, rest: Callable[[], Any]) -> None:
+    """Say how interrupted work goes on; a result may be frozen."""
+    object.__setattr__(result, "rest", rest)

@@ -14,8 +14,11 @@ from ..continuation.settings import Settings
 from ..graph.automatic import new_run
 from ..graph.builder import finish
 from ..graph.graph import Graph
-from ..graph.run import Progress, Run
+from ..graph.run import Run
+from ..interruptible import Asked, OnInterrupt, carried_out
 from ..interrupts import listening
+from ..journal import Journal
+from ..progress import Tell
 from .census import Counted, census, locate
 from .effort import BUDGET, Effort
 from .handover import Handover
@@ -44,10 +47,11 @@ def atlas(
     depth: int = 3,
     virtual: bool = False,
     user_functions: Mapping[str, Any] | None = None,
-    journal: Any = None,
-    progress: Callable[[Progress], None] | None = None,
+    journal: Journal | None = None,
+    progress: Asked = None,
     settings: Settings | Mapping[str, Any] | None = None,
     kinds: Sequence[Kind] | None = None,
+    interrupt: OnInterrupt = "raise",
 ) -> Graph:
     """One graph with every attractor that many simulated starts find, and all that is connected to them.
 
@@ -84,7 +88,7 @@ def atlas(
     budget : int, optional
         Work that the atlas may take, by default 500000: so many points of branches, or a hundred times as many simulated periods (steps of a map). It does not
         depend on the machine's speed or load; ``settings["work"]`` of the graph says how much of it was used.
-    depth, virtual, user_functions, journal, progress, settings, kinds
+    depth, virtual, user_functions, journal, progress, settings, kinds, interrupt
         As for :func:`contvines.diagram`.
 
     Returns
@@ -111,30 +115,33 @@ def atlas(
         budget = BUDGET
     if not (isinstance(budget, int) and budget >= 1):
         raise ValueError(f"budget = {budget!r} must be a whole number, 1 or more")
-    run = new_run(
-        population.parameter,
-        dict(population.about),
-        within,
-        depth,
-        virtual,
-        user_functions,
-        journal,
-        progress,
-        settings,
-        kinds=kinds,
-    )
     if scan is None:
         scan = -(-len(where) * starts // FEW)
     if not (isinstance(scan, int) and scan >= 0):
         raise ValueError(f"scan = {scan!r} must be a whole number, 0 or more")
-    run.graph.settings |= {
-        "values": len(where),
-        "starts": starts,
-        "seed": seed,
-        "scan": scan,
-        "budget": budget,
-    }
-    looking = _Looking(run, population, seed, budget)
+    asked = {"values": len(where), "starts": starts, "seed": seed, "scan": scan, "budget": budget}
+
+    def begun(kept: Journal, tell: Tell | None) -> tuple[Graph, Callable[[], None]]:
+        run = new_run(
+            population.parameter,
+            dict(population.about),
+            within,
+            depth,
+            virtual,
+            user_functions,
+            kept,
+            tell,
+            settings,
+            kinds=kinds,
+        )
+        run.graph.settings |= asked
+        return run.graph, partial(_work, _Looking(run, population, seed, budget), where, starts, scan)
+
+    return carried_out(begun, journal, progress, interrupt)
+
+
+def _work(looking: _Looking, where: list[float], starts: int, scan: int) -> None:
+    """The steps of an atlas, one after another."""
     looking.given(where, starts)
     if scan:
         looking.between(scan)
@@ -145,11 +152,10 @@ def atlas(
         looking.between(scan)
         looking.unbranched(scan)
     looking.tell_left()
-    everything = looking.found
+    run, everything = looking.run, looking.found
     everything.sort(key=lambda counted: counted.attractor.value)
     run.graph.attractors = [counted.attractor for counted in everything]
     finish(run)
-    return run.graph
 
 
 def check_values(values: int | Sequence[float], within: tuple[float, float]) -> list[float]:

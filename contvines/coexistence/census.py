@@ -10,7 +10,6 @@ import numpy as np
 
 from ..graph.attractor import Attractor
 from ..graph.run import Run
-from ..problems.registry import rebuild
 from .effort import recall_work
 from .population import Population
 
@@ -69,7 +68,7 @@ def _settled(
 ) -> list[Counted]:
     """What starts settle on, with shares of them; the starts are made where the journal does not know."""
     known = journal.recall(key)
-    recalled = None if known is None else _recalled(known, p)
+    recalled = None if known is None else _recalled(population, known, p)
     if known is not None and recalled is not None:
         recall_work(population, float(known.get("work", 0.0)))
         return recalled
@@ -114,7 +113,7 @@ def _recorded(found: Sequence[Counted]) -> dict[str, Any]:
     return record
 
 
-def _recalled(known: dict[str, Any], p: float) -> list[Counted] | None:
+def _recalled(population: Population, known: dict[str, Any], p: float) -> list[Counted] | None:
     """What was recorded; None where a problem takes functions of the user's that are not at hand."""
     found = []
     for k, description in enumerate(known["problems"]):
@@ -122,8 +121,9 @@ def _recalled(known: dict[str, Any], p: float) -> list[Counted] | None:
             float(p), known["word"][k], known["periods"][k], known["kind"][k], None, float(known["share"][k]),
             float(known["mirror_share"][k]), known["starts"][k], float(known["exponent"][k]), float(known["error"][k]),
         )  # fmt: skip
-        problem = None if description is None else rebuild(description)
+        u = known.get(f"u{k}")
+        problem = None if description is None or u is None else population.restored(description, u, p)
         if description is not None and problem is None:
             return None
-        found.append(Counted(attractor, problem, known.get(f"u{k}"), known.get(f"state{k}")))
+        found.append(Counted(attractor, problem, u, known.get(f"state{k}")))
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -195,6 +195,10 @@ class MapPopulation:
     def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
         """Cycles known in closed form: none of a map of the user's own."""
         return []
+
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
+        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be had again."""
+        return self.problem.cycle_through(np.reshape(u, (-1, self.problem.node)), p)
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
         """Measures of a motion that is no cycle: none."""

@@ -19,13 +19,15 @@ The contract, in words:
 7. ``population.returning(starts, p)`` returns ``(problem, u)`` of cycles, stable or not, to which Newton's method on the return map leads
    from starts, each once: it reaches a cycle from far more starts than settle on it. What is known in closed form is among them.
 8. ``population.closed(p)`` returns ``(problem, u)`` of the motions known in closed form, stable or not, each once.
-9. ``population.observed(motion.state, p)`` returns the measures by name of the motion through this state, from simulation; none without a state.
+9. ``population.restored(problem.describe(), u, p)`` returns the problem of a motion that `settle`, `embedded` or `returning` had at p, measured as theirs; None
+   where it cannot be had again.
+10. ``population.observed(motion.state, p)`` returns the measures by name of the motion through this state, from simulation; none without a state.
 10. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas; without it only continuation is counted.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -81,6 +83,8 @@ class Population(Protocol):
     def returning(self, starts: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
 
     def closed(self, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
+
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any: ...
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]: ...
 

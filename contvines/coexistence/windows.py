@@ -14,7 +14,6 @@ from ..graph.builder import begin, work
 from ..graph.graph import Graph
 from ..graph.run import Run
 from ..journal import Part
-from ..problems.registry import rebuild
 from .census import Counted
 from .effort import Effort, recall_work
 from .population import Population
@@ -96,7 +95,7 @@ class Windows:
     ) -> list[tuple[Any, np.ndarray, float]]:
         """A point of every stable stretch to which cycles lead."""
         points = []
-        known = self._recalled(key)
+        known = self._recalled(key, p)
         before = float(getattr(self.population, "work", 0.0))
         found = self._recorded(key, cycles(), before) if known is None else known
         for k, (problem, u) in enumerate(found):
@@ -109,10 +108,17 @@ class Windows:
                 points += self._traced(problem, u, p)
         return points
 
-    def _recalled(self, key: str) -> list[tuple[Any, np.ndarray]] | None:
+    def _recalled(self, key: str, p: float) -> list[tuple[Any, np.ndarray]] | None:
         """Cycles of an earlier run; None if there was none, or their problems take functions that are not at hand."""
         known = self.run.journal.recall(key)
-        problems = [] if known is None else [rebuild(description) for description in known["problems"]]
+        problems = (
+            []
+            if known is None
+            else [
+                self.population.restored(description, known[f"u{k}"], p)
+                for k, description in enumerate(known["problems"])
+            ]
+        )
         if known is None or any(problem is None for problem in problems):
             return None
         recall_work(self.population, float(known.get("work", 0.0)))

@@ -60,9 +60,9 @@ def chart(
 def _chart(graph: Any, over: str, ends: tuple[float, float], virtual: bool, target: Path, quiet: bool) -> Any:
     """The chart of a diagram: from its file if that is finished, computed else."""
     from contvines.command.compose import say
-    from contvines.command.progress import shown
     from contvines.command.run import interruptible
     from contvines.loci.charting import chart as make
+    from contvines.progress import shown
     from contvines.store import Store
 
     fingerprint = _fingerprint(graph, over, ends, virtual)
@@ -72,7 +72,7 @@ def _chart(graph: Any, over: str, ends: tuple[float, float], virtual: bool, targ
         return found
     note = f"all finished points are kept in {target}; the same command goes on from there"
     with Store.attach(target, fingerprint, {"chart": [over, *ends]}) as store:
-        with interruptible(note), shown(quiet=quiet) as progress:
+        with interruptible(note), shown(not quiet) as progress:
             found = make(graph, over, ends, virtual=virtual, journal=store, progress=progress)
         store.tidy()
     return found

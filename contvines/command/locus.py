@@ -56,10 +56,10 @@ def locus(
         )
     refuse_detached(graph, [label])
     ends = interval("--within", within, over, graph.units)
-    from contvines.command.progress import shown
     from contvines.loci.charting import chart_of_one
+    from contvines.progress import shown
 
-    with shown(quiet=quiet) as progress:
+    with shown(not quiet) as progress:
         found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress)
     with held(target, quiet, fresh):
         found.save(target)

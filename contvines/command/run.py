@@ -132,9 +132,9 @@ def switch(
 
 def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, list[Any]]:
     """The graph of a file with what leaves a special point, and the branches that are new."""
-    from contvines.command.progress import shown
     from contvines.continuation.settings import Settings
     from contvines.graph.automatic import switch as leave
+    from contvines.progress import shown
     from contvines.store import Store, load
 
     graph = load(file, trust=trust)
@@ -151,7 +151,7 @@ def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, li
     }  # trace allows one only
     with (
         interruptible(f"{file} is as it was"),
-        shown(quiet=quiet) as progress,
+        shown(not quiet) as progress,
         warnings.catch_warnings(action="ignore", category=UserWarning),  # the caller prints the reason
     ):
         new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
@@ -216,8 +216,8 @@ def _run(
 def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:
     """The graph of a study: from its file if that is finished, computed else."""
     from contvines.command.compose import first_orbit, population, run_atlas, run_diagram, say
-    from contvines.command.progress import shown
     from contvines.command.stored import finished_of
+    from contvines.progress import shown
     from contvines.store import Store
 
     fingerprint = study.fingerprint(command)
@@ -228,7 +228,7 @@ def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: boo
         seed = population(study) if command == "atlas" else first_orbit(study)
         with Store.attach(target, fingerprint, study.describe()) as store:
             note = f"all finished points are kept in {target}; the same command goes on from there"
-            with interruptible(note), shown(quiet=quiet) as progress:
+            with interruptible(note), shown(not quiet) as progress:
                 graph = run(study, seed, journal=store, progress=progress, **alone)
             store.tidy()
         say(f"kept in {target}", quiet)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from contvines.command.place import held
 
@@ -75,11 +75,11 @@ def _computed(
 
     plan, model = plan_and_machine(study)
     outcomes, family, journal = outcomes_of(study), family_of(study, model), journal_of(target)
-    with without_main(), counted(len(plan), quiet) as tell:
+    with without_main():
         try:
             found = run(
                 family, plan, over=study.parameter, within=study.within, outcomes=outcomes, workers=workers, cluster=cluster,
-                journal=journal, units=units_of(study, model), about=asked_of(study), progress=tell, **ways_of(study), **options_of(study),
+                journal=journal, units=units_of(study, model), about=asked_of(study), progress=not quiet, **ways_of(study), **options_of(study),
             )  # fmt: skip
         except KeyboardInterrupt:
             raise Interrupted(
@@ -110,31 +110,3 @@ def without_main() -> Iterator[None]:
     finally:
         for name, value in kept.items():
             setattr(main, name, value)
-
-
-class counted:
-    """Counts machines on a terminal, silent elsewhere."""
-
-    def __init__(self, total: int, quiet: bool) -> None:
-        import sys
-
-        self.total, self.shown, self.progress = total, sys.stderr.isatty() and not quiet, None
-
-    def __enter__(self) -> Any:
-        if self.shown:
-            from rich.console import Console
-            from rich.progress import Progress
-
-            # no thread that draws by itself: beside one, workers could not be copies of this process
-            self.progress = Progress(console=Console(stderr=True), transient=True, auto_refresh=False)
-            self.progress.start()
-            self.task = self.progress.add_task("machines", total=self.total)
-        return self
-
-    def __call__(self, row: Any) -> None:
-        if self.progress is not None:
-            self.progress.update(self.task, advance=1, refresh=True)
-
-    def __exit__(self, *_: object) -> None:
-        if self.progress is not None:
-            self.progress.stop()

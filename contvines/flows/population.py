@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ..problems.registry import rebuild
 from .attractors import AtRest, Escaped, Irregular
 from .march import March
 
@@ -339,6 +340,10 @@ class FlowPopulation:
     def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
         """Motions known in closed form: none."""
         return []
+
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
+        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be had again."""
+        return rebuild(description)
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
         """Measures of a motion that is no cycle: none."""

@@ -11,8 +11,10 @@ from ..bifurcation.kinds import checked
 from ..continuation.hints import hinting
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval, problem_and_start
-from ..journal import NullJournal
+from ..interruptible import Asked, OnInterrupt, carried_out
+from ..journal import Journal, NullJournal
 from ..problems.registry import without_problem
+from ..progress import Tell
 from .builder import adopt, begin, finish, work
 from .graph import Graph
 from .limits import NO_LIMITS, Limits
@@ -28,12 +30,13 @@ def diagram(
     depth: int = 3,
     virtual: bool = False,
     user_functions: Mapping[str, Any] | None = None,
-    journal: Any = None,
-    progress: Callable[[Progress], None] | None = None,
+    journal: Journal | None = None,
+    progress: Asked = None,
     settings: Settings | Mapping[str, Any] | None = None,
     stop: Mapping[str, Any] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
     kinds: Sequence[Kind] | None = None,
+    interrupt: OnInterrupt = "raise",
 ) -> Graph:
     """All branches that hang together with a solution: traced, switched, each listed once.
 
@@ -53,8 +56,9 @@ def diagram(
         name -> callable (u, p) -> float, or (measure, value); their zeros become special points of kind "user".
     journal : Journal, optional
         What it remembers is not computed again; see :mod:`contvines.journal`.
-    progress : callable, optional
-        Called with a :class:`Progress` after each chunk and each branch.
+    progress : callable or bool, optional
+        Called with a :class:`Progress` after each chunk and each branch. By default a line on a terminal or in a notebook;
+        False for none.
     settings : Settings or mapping, optional
     stop : mapping, optional
         Like ``user_functions``; branches end at their zeros.
@@ -62,6 +66,9 @@ def diagram(
         name of a measure (``"u0"``, ``"norm"``, an output of your own) -> (low, high), either may be None; branches end there.
     kinds : sequence of Kind, optional
         What is looked for: ``[*contvines.KINDS, yours]``; the built-in kinds if it is left out.
+    interrupt : "raise" or "return"
+        What Ctrl-C does: raise :class:`contvines.Interrupted`, whose ``graph`` holds all that is done, or return that graph.
+        ``contvines.resume(graph)`` goes on.
 
     Returns
     -------
@@ -71,6 +78,8 @@ def diagram(
     ------
     ValueError
         If the interval, a setting, a kind or the start will not do; the sentence says why.
+    Interrupted
+        On Ctrl-C.
     """
     problem, u, p = problem_and_start(seed, over)
     if within is None:
@@ -81,23 +90,30 @@ def diagram(
     model = description.get("model") or {"name": description.get("name", type(problem).__name__)}
     about = dict(model) if isinstance(model, Mapping) else {"name": model}
     limits = Limits.of(stop, bounds, problem)
-    run = new_run(
-        problem.parameter,
-        about,
-        within,
-        depth,
-        virtual,
-        user_functions,
-        journal,
-        progress,
-        settings,
-        limits,
-        kinds,
-    )
-    begin(run, problem, u, p)
-    work(run)
-    finish(run)
-    return run.graph
+
+    def begun(kept: Journal, tell: Tell | None) -> tuple[Graph, Callable[[], None]]:
+        run = new_run(
+            problem.parameter,
+            about,
+            within,
+            depth,
+            virtual,
+            user_functions,
+            kept,
+            tell,
+            settings,
+            limits,
+            kinds,
+        )
+
+        def carry_on() -> None:
+            begin(run, problem, u, p)
+            work(run)
+            finish(run)
+
+        return run.graph, carry_on
+
+    return carried_out(begun, journal, progress, interrupt)
 
 
 def new_run(

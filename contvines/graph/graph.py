@@ -11,6 +11,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import LABELS, RENAMED, kind_named
 from ..continuation.hints import hinted
+from ..interrupts import Resumable
 from ..problems.abilities import notation_of
 from .attractor import Attractor
 from .unresolved import Unresolved
@@ -57,7 +58,7 @@ class Switch:
 
 @hinted
 @dataclass(eq=False)
-class Graph:
+class Graph(Resumable):
     """Branches and special points by label, and the switches between branches.
 
     Attributes

@@ -14,6 +14,7 @@ from ..continuation.hints import hinted
 from ..graph.old_names import renamed
 from ..graph.persistence import branch_of, content_of
 from ..graph.well_formed import check_branch, check_fields, fits
+from ..interrupts import Resumable
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
 from .locus import Locus, Turn
@@ -23,7 +24,7 @@ from .regions import Region
 
 @hinted
 @dataclass(eq=False)
-class Chart:
+class Chart(Resumable):
     """What happens in the plane of two parameters.
 
     Attributes

@@ -10,7 +10,10 @@ from ..continuation.hints import hinting
 from ..continuation.settings import Settings
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
+from ..interruptible import Asked, OnInterrupt, carried_out
 from ..interrupts import listening
+from ..journal import Journal
+from ..progress import Tell
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
 from .own_test import followed
@@ -28,8 +31,9 @@ def chart(
     virtual: bool = False,
     regions: bool = True,
     settings: Settings | Mapping[str, Any] | None = None,
-    journal: Any = None,
-    progress: Callable[[ChartProgress], None] | None = None,
+    journal: Journal | None = None,
+    progress: Asked = None,
+    interrupt: OnInterrupt = "raise",
 ) -> Chart:
     """A chart of two parameters: a locus from every special point of a graph, and again from what is found on them.
 
@@ -54,8 +58,11 @@ def chart(
     settings : Settings or mapping, optional
     journal : Journal, optional
         What it remembers is not computed again.
-    progress : callable, optional
-        Called with a :class:`ChartProgress`.
+    progress : callable or bool, optional
+        Called with a :class:`ChartProgress`. By default a line on a terminal or in a notebook; False for none.
+    interrupt : "raise" or "return"
+        What Ctrl-C does: raise :class:`contvines.Interrupted`, whose ``graph`` is the chart of all that is done, or return
+        that chart. ``contvines.resume(chart)`` goes on.
 
     Returns
     -------
@@ -65,20 +72,29 @@ def chart(
     ------
     ValueError
         If a parameter or interval will not do, or no special point of the graph has a locus; the sentence says why.
+    Interrupted
+        On Ctrl-C.
     """
     within = check_interval(within)
     bounds = check_interval(graph.within if bounds is None else bounds)
     points = [s for s in graph.special.values() if followed(s) and (s.real or virtual)]
     if not points:
         raise ValueError("the graph has no special points, so there is nothing to chart; widen its interval")
-    run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), journal, progress)
-    for point in sorted(points, key=lambda point: not _ends_stability(graph, point)):
-        run.add_special(point)
-    run.work(depth)
-    if regions:
-        run.divide()
-    run.finish()
-    return run.chart
+
+    def begun(kept: Journal, tell: Tell | None) -> tuple[Chart, Callable[[], None]]:
+        run = Charting(graph, over, within, bounds, virtual, Settings.of(settings), kept, tell)
+
+        def carry_on() -> None:
+            for point in sorted(points, key=lambda point: not _ends_stability(graph, point)):
+                run.add_special(point)
+            run.work(depth)
+            if regions:
+                run.divide()
+            run.finish()
+
+        return run.chart, carry_on
+
+    return carried_out(begun, journal, progress, interrupt)
 
 
 def _ends_stability(graph: Graph, point: SpecialPoint) -> bool:

@@ -179,10 +179,10 @@ class Store:
         """What was recorded under `key`: arrays and JSON values by name; None if nothing was."""
         return next((content for _, content in self.entries("journal", key)), None)
 
-    def record(self, key: str, content: Mapping[str, Any]) -> None:
+    def record(self, key: str, values: Mapping[str, Any]) -> None:
         """Keep arrays and JSON values under `key`, in one transaction."""
         with self.transaction():
-            self.put("journal", key, content)
+            self.put("journal", key, values)
 
     def checkpoint(self, graph: Any) -> None:
         """Keep the graph as it stands, replacing what was kept of it before, in one transaction.

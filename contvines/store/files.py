@@ -3,12 +3,15 @@
 import os
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, overload
 
 from ..continuation.hints import hinting
+from ..interrupts import Resumable
 from .database import Store
 from .header import TAILS, check_header
 from .publishing import draft_of
+
+Result = TypeVar("Result", bound=Resumable)
 
 
 @hinting
@@ -37,18 +40,41 @@ def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
             draft.unlink()
 
 
-@hinting
-def resume(path: str | Path, fingerprint: str = "run from Python") -> Store:
-    """The journal kept in a file, made where there is none: `diagram(..., journal=resume("run.vines"))`.
+@overload
+def resume(path: Result, fingerprint: str = ...) -> Result: ...
 
-    Run the same command with the same journal again after an interruption, and it goes on where it stopped.
-    `fingerprint` names the run; a file of another one is refused.
+
+@overload
+def resume(path: str | Path, fingerprint: str = ...) -> Store: ...
+
+
+@hinting
+def resume(path: Any, fingerprint: str = "run from Python") -> Any:
+    """Go on with what was interrupted: `resume(graph)`, or `diagram(..., journal=resume("run.vines"))`.
+
+    Parameters
+    ----------
+    path : Graph, Chart, Survey or path
+        What an interrupted call has left (the ``graph`` of :class:`contvines.Interrupted`): the work goes on, and the whole result is
+        returned. Or a .vines file, made where there is none: its journal is returned; the same call with the same
+        journal goes on where it stopped.
+    fingerprint : str
+        Name of the run of a file; a file of another run is refused.
 
     Raises
     ------
+    ValueError
+        If the result was not interrupted in this program.
     StoreError
         If the file is not ours, is damaged, is newer or belongs to another run.
     """
+    if isinstance(path, Resumable):
+        if path.rest is None:
+            raise ValueError(
+                f"{path!r} was not interrupted in this program, so there is nothing to go on with; "
+                'of a file, run the same call again with journal=contvines.resume("FILE.vines")'
+            )
+        return path.rest()
     return Store.attach(path, fingerprint)
 
 

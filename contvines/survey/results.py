@@ -14,6 +14,7 @@ import numpy as np
 
 from ..continuation.hints import hinted
 from ..graph.table import with_unit
+from ..interrupts import Resumable
 from ..text_table import Table, fitted, terminal_width
 from .files import read, write
 from .outcomes import OF_ALL
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
 @hinted
 @dataclass(frozen=True, eq=False, repr=False)
-class Survey:
+class Survey(Resumable):
     """The outcomes of all systems of a plan.
 
     Attributes

@@ -14,7 +14,10 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.hints import hinting
+from ..interruptible import OnInterrupt, check_interrupt
+from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of
+from ..progress import counted
 from . import pools
 from .journal import Rows
 from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
@@ -22,6 +25,7 @@ from .plan import Plan, PlanError, planned
 from .results import Survey
 from .work import Job, Row
 
+NOT_YET = "not done yet: the survey was interrupted"
 MEANING = 2  # of rows: those of another number were found in another way, and are not taken over
 
 
@@ -61,10 +65,11 @@ def survey(
     atlas: Mapping[str, Any] | None = None,
     workers: int | None = None,
     cluster: Any = None,
-    journal: str | Path | None = None,
+    journal: str | Path | Rows | None = None,
     units: Mapping[str, str] | None = None,
     about: Mapping[str, Any] | None = None,
-    progress: Callable[[Row], None] | None = None,
+    progress: Callable[[Row], None] | bool | None = None,
+    interrupt: OnInterrupt = "raise",
     **options: Any,
 ) -> Survey:
     """A diagram of each of many systems.
@@ -94,8 +99,11 @@ def survey(
         Of parameters and outcomes.
     about : mapping, optional
         What is surveyed, JSON-able; it is kept with the results and decides whether a journal's rows are of the same survey.
-    progress : callable, optional
-        Called with each row.
+    progress : callable or bool, optional
+        Called with each row. By default a count on a terminal or in a notebook; False for none.
+    interrupt : "raise" or "return"
+        What Ctrl-C does: raise `contvines.Interrupted`, whose ``graph`` is the survey of the systems that are done, or return that survey.
+        ``contvines.resume(survey)`` goes on.
     **options
         Of `contvines.diagram`, ``depth`` for example.
 
@@ -107,7 +115,10 @@ def survey(
     ------
     PlanError
         If it cannot be; a system that fails is a row with a sentence.
+    Interrupted
+        On Ctrl-C.
     """
+    check_interrupt(interrupt)
     plan = vary if isinstance(vary, Plan) else planned(vary)
     functions = tuple(outcome_named(o) if isinstance(o, str) else o for o in outcomes)
     job = Job(
@@ -118,17 +129,35 @@ def survey(
     digest = digest_of(plan, over, job.within, about)
     if cluster is not None:
         pools.need_dask()
-    with Rows(Path(journal) if journal else None, {"contvines": "unfinished survey", "of": digest}) as rows:
+    kept = (
+        journal
+        if isinstance(journal, Rows)
+        else Rows(Path(journal) if journal else None, {"contvines": "unfinished survey", "of": digest})
+    )
+    with kept as rows, counted(len(systems), "systems", progress) as tell:
         begun = getattr(family, "starts", None)
         near = begun(systems, plan.neighbours()) if begun is not None else [None] * len(systems)
         tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in rows.found]
-        with closing(_worked(job, tasks, workers, cluster)) as worked:
-            for row in worked:
-                rows.keep(row)
-                if progress is not None:
-                    progress(row)
-        found = [rows.found[i] for i in range(len(systems))]
-    return Survey.of(plan, found, dict(units or {}), {**told, "digest": digest}, notation_of(family))
+        stopped = False
+        try:
+            with closing(_worked(job, tasks, workers, cluster)) as worked:
+                for row in worked:
+                    rows.keep(row)
+                    if tell is not None:
+                        tell(row)
+        except KeyboardInterrupt:
+            stopped = True
+        found = [rows.found.get(i) or Row(i, {}, NOT_YET) for i in range(len(systems))]
+    result = Survey.of(plan, found, dict(units or {}), {**told, "digest": digest}, notation_of(family))
+    if stopped:
+        again = partial(
+            survey, family, plan, over=over, within=within, outcomes=outcomes, gaps=gaps, values=values, starts=starts, atlas=atlas,
+            workers=workers, cluster=cluster, journal=kept, units=units, about=about, progress=progress, interrupt=interrupt, **options,
+        )  # fmt: skip
+        unfinished(result, again)
+        if interrupt == "raise":
+            raise Interrupted(result)
+    return result
 
 
 def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None) -> str:

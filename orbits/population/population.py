@@ -16,6 +16,7 @@ from orbits.machines.page.machine import Machine
 from orbits.population.native import NativeStarts
 from orbits.population.page import PageStarts
 from orbits.population.sorting import Sorting
+from orbits.problem import rebuild
 
 DRAWS = 64  # times as many starts are drawn at most to find those outside the walls
 
@@ -171,6 +172,10 @@ class Population:
     def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
         """The real motions known in closed form, stable or not: of built-in machines rest, sliding between the walls, symmetric impacts."""
         return distinct(self._sort.closed(self.vector(p)), self.parameter, p)
+
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
+        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be had again."""
+        return rebuild(description)
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
         """Measures, in the machine's units, of the motion through a state; those of a sweep."""
