@@ -91,18 +91,28 @@ template <class T> struct Oscillation {
 // Displacements and speeds of absorber and cavity.
 template <class T> struct Motion { T w, rate, v, v_rate; };
 
-// The machine's numbers. Parameters in order: forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation.
+// The machine's numbers. Parameters in order: forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation, slope.
+// pull and lean: accelerations of the absorber by friction and by gravity along the cavity; a and b: the same, relative to the cavity.
 template <class T> struct Law {
-    T G, omega, lambda, eps, r, mu, g, chi;
-    T full = 1.0 + eps, by_full = 1.0 / full, by_omega = 1.0 / omega, pull = mu * g, a = full * pull, drag = eps * lambda, square = omega * omega;
+    static constexpr int PARAMETERS = 9;
+    T G, omega, lambda, eps, r, mu, g, chi, pull, lean;
+    T full = 1.0 + eps, by_full = 1.0 / full, by_omega = 1.0 / omega, a, b, drag = eps * lambda, square = omega * omega;
     Response<T> slide{1.0, eps * G, chi, drag, omega}, stuck{full, eps * G, chi, drag, omega};
 
-    explicit Law(const T* p) : G(p[0]), omega(p[1]), lambda(p[2]), eps(p[3]), r(p[4]), mu(p[5]), g(p[6]), chi(p[7]) {}
+    explicit Law(const T* p) : G(p[0]), omega(p[1]), lambda(p[2]), eps(p[3]), r(p[4]), mu(p[5]), g(p[6]), chi(p[7]) {
+        T sin_slope, cos_slope;
+        sine_cosine(p[8], sin_slope, cos_slope);
+        pull = mu * g * cos_slope, lean = g * sin_slope;
+        a = full * pull, b = full * lean;
+    }
+
+    // q2'' while the absorber slides.
+    T slides(double s) const { return s * pull + lean; }
 
     // The closed form of a leg that begins with a state.
     Oscillation<T> oscillation(const T& psi, const Motion<T>& x, double s) const {
         const Response<T>& response = s != 0.0 ? slide : stuck;
-        T sin_psi, cos_psi, sp = s * pull, q2_rate = (x.v_rate - x.rate) * by_full, q1 = (x.v + eps * x.w) * by_full;
+        T sin_psi, cos_psi, sp = s != 0.0 ? slides(s) : T(0.0), q2_rate = (x.v_rate - x.rate) * by_full, q1 = (x.v + eps * x.w) * by_full;
         sine_cosine(psi, sin_psi, cos_psi);
         T h0 = response.X * sin_psi + response.Y * cos_psi, h1 = omega * (response.X * cos_psi - response.Y * sin_psi);
         return {omega, square, response.alpha, response.beta, response.kappa,
@@ -115,7 +125,7 @@ template <class T> struct Law {
         return {x.w + (low + (p.way - travel)), x.rate + p.speed - q.q2_pull * t, x.v + p.way + eps * travel,
                 x.v_rate + p.speed + eps * q.q2_pull * t};
     }
-    // v'' = -q1 - eps lambda q1' + e + eps lambda e', which no friction enters.
+    // v'' = -q1 - eps lambda q1' + e + eps lambda e', which neither friction nor gravity enters: q1 is counted from where all is at rest.
     T push(const Motion<T>& x, const T& sin_psi, const T& cos_psi) const {
         T q1 = (x.v + eps * x.w) / full, q1_rate = (x.v_rate + eps * x.rate) / full;
         return -q1 - drag * q1_rate + eps * G * (sin_psi + chi * drag * omega * cos_psi);

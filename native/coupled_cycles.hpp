@@ -18,8 +18,9 @@ struct Coupled {
     [[gnu::flatten]] static double linearise(const Cycle& c, const double* u, Workspace& work) {
         enum Variable { PSI0, Y, V, V_RATE, PSI1, PARAMETER, ALL };
         using Number = Dual<ALL>;
-        Number par[8];
-        for (int j = 0; j < 8; j++) par[j] = work.numbers[j], par[j].partial[PARAMETER] = work.numbers[c.parameters + j];
+        constexpr int P = coupled::Law<Number>::PARAMETERS;
+        Number par[P];
+        for (int j = 0; j < P; j++) par[j] = work.numbers[j], par[j].partial[PARAMETER] = work.numbers[c.parameters + j];
         const coupled::Law<Number> law(par);
         for (whole i = 0; i < c.length; i++) sine_cosine(u[4 * i], work.sines[i], work.cosines[i]);
         double largest = 0.0;
@@ -35,7 +36,7 @@ struct Coupled {
             const auto to = law.after(q, p, from, mode, t);
             Number ends = to.rate, second = to.w;  // equations 0 and 1: what ends the segment, and what remains of the node
             if (arrival < TURN) ends = to.w - (1.0 - 2.0 * double(arrival)), second = to.v_rate + law.r * to.rate;
-            else if (arrival == SLIP) ends = law.full * (p.h2 + p.z2) - mode_after(c, i) * law.a;  // friction gives way: v'' = m a
+            else if (arrival == SLIP) ends = law.full * (p.h2 + p.z2) - (mode_after(c, i) * law.a + law.b);  // friction gives way: v'' = m a + b
             else if (event >= TURN && mode != 0.0) ends = p.mean - q.q2_pull;  // from rest to rest: w'/d, so that no flight of no duration solves it
             const Number rows[4] = {ends, second, to.v, to.v_rate};
             for (int row = 0; row < 4; row++) {
@@ -54,22 +55,23 @@ struct Coupled {
     // ---- margins ----------------------------------------------------------------------------------------------------------------
     using Oscillation = coupled::Oscillation<double>;
 
-    // First zero of derivative `order` of q1, less `constant`, between two times.
-    static double first_zero(const Oscillation& q, int order, double constant, double psi, double start, double end) {
-        const double tiny = 4e-16 * (fabs(constant) + 2.0 * q.driven(order) + 2.0 * q.own(order, 0.0));
+    // First zero between two times of w' (order 1), or of q1''' (order 3).
+    static double first_zero(const Oscillation& q, int order, double psi, double start, double end) {
+        const double tiny = 4e-16 * ((order == 1 ? fabs(q.q2_rate) + fabs(q.q2_pull) * end : 0.0) + 2.0 * q.driven(order) + 2.0 * q.own(order, 0.0));
         return coupled::first_zero(start, end, q.driven(order + 2) + q.own(order + 2, start), tiny, psi, [&](double tau, double& value, double& slope) {
             const Oscillation::Point p = q.at(tau);
-            if (order == 1) value = q.h1 + q.z1 + p.speed - constant, slope = p.h2 + p.z2;
-            else value = p.h3 + p.z3 - constant, slope = q.fourth(p);
+            if (order == 1) value = q.h1 + q.z1 + p.speed - (q.q2_rate + q.q2_pull * tau), slope = p.h2 + p.z2 - q.q2_pull;
+            else value = p.h3 + p.z3, slope = q.fourth(p);
         });
     }
     // Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none. A zero of w'' needs to be known to
     // 1e-5 only: the minimum is then taken from the Taylor series.
-    static double slowest(const Oscillation& q, double s, double pull, double force, double start, double end) {
+    static double slowest(const Oscillation& q, double s, double force, double start, double end) {
+        const double brake = s * q.q2_pull;
         double smallest = HUGE_VAL, tau = start, bound = -1.0;
         while (true) {
             const Oscillation::Point p = q.at(tau);
-            const double y = s * (p.h2 + p.z2) - pull, slope = s * (p.h3 + p.z3);
+            const double y = s * (p.h2 + p.z2) - brake, slope = s * (p.h3 + p.z3);
             if (bound < 0.0) {
                 const double fourth = q.fourth(p), fifth = q.fifth(p);
                 bound = sqrt(fourth * fourth + fifth * fifth * q.by_kappa) + q.square * q.square * force * (end - start) / sqrt(q.kappa);
@@ -80,7 +82,7 @@ struct Coupled {
                 double zero = sign * slope < 0.0 ? -y / slope : 0.0;
                 if (tau + zero >= end) return smallest;
                 if (slope > 0.0) {
-                    double speed = s * (q.h1 + q.z1 + p.speed - q.q2_rate) - pull * tau;
+                    double speed = s * (q.h1 + q.z1 + p.speed - q.q2_rate) - brake * tau;
                     smallest = smaller(smallest, speed + (y + 0.5 * slope * zero) * zero);
                 }
                 step = zero + larger(fabs(slope) / bound, 1e-5);
@@ -92,22 +94,22 @@ struct Coupled {
 
     static void margins(const Cycle& c, const double* u, Workspace& work, double* out) {
         const coupled::Law<double> law(work.numbers);
-        const double a = law.a, strength = law.strength();
+        const double a = law.a, b = law.b, strength = law.strength();
         for (whole i = 0; i < c.length; i++) {
             const whole event = c.events[i], arrival = arrival_of(c, i);
             const bool inner = i + 1 < c.length;
             const double mode = double(c.modes[i]), *x = u + 4 * i, psi0 = x[0], psi1 = inner ? x[4] : u[0] + c.shift, d = (psi1 - psi0) / law.omega;
             const auto from = start(event, x[1], x[2], x[3]);
-            const double push = law.push(from, work.sines[i], work.cosines[i]);  // v''
+            const double push = law.push(from, work.sines[i], work.cosines[i]) - b;  // what friction withstands: v'' - b
             const Oscillation q = law.oscillation(psi0, from, mode);
             const Oscillation::Point begin = q.begin();
             const double jerk = begin.h3 + begin.z3;
             double flight = HUGE_VAL, tau = 0.0;
             if (!(d > 0.0)) {
             } else if (mode == 0.0) {
-                while ((tau = first_zero(q, 3, 0.0, psi0, tau, d)) < d) {
+                while ((tau = first_zero(q, 3, psi0, tau, d)) < d) {
                     const Oscillation::Point p = q.at(tau);
-                    flight = smaller(flight, a - law.full * fabs(p.h2 + p.z2));
+                    flight = smaller(flight, a - fabs(law.full * (p.h2 + p.z2) - b));
                 }
             } else if (a > 0.0) {
                 if (event == SLIP) {  // w' = w'' = 0 at the start of a slip: go as far as m w''' keeps its sign
@@ -115,9 +117,9 @@ struct Coupled {
                     if (bound > 0.0) tau = smaller(fabs(jerk) / bound, 0.5 * d);
                 }
                 if (event != TURN || mode * push > a)  // else the turn's own margin says it
-                    flight = slowest(q, mode, law.pull, strength, tau, d);
+                    flight = slowest(q, mode, strength, tau, d);
             } else {
-                while ((tau = first_zero(q, 1, q.q2_rate, psi0, tau, d)) < d)
+                while ((tau = first_zero(q, 1, psi0, tau, d)) < d)
                     flight = smaller(flight, 1.0 - fabs(law.after(q, q.at(tau), from, mode, tau).w));
             }
             double* margin = out + 4 * i;

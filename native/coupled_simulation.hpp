@@ -6,7 +6,7 @@
 //
 // and w is monotone for as long as y is positive: inside such a step the wall ahead is met exactly when it has been passed at the end
 // of it, and steps towards a turn approach it from one side like Newton's method. So no hit and no turn can be missed. The slip is
-// found in the same way from a - |v''| > 0.
+// found in the same way from a - |v'' - b| > 0, b being the acceleration down a slope.
 //
 // M comes from the energy of the third derivative u = q1''', which is itself an oscillator's response to a force of amplitude
 // f = Omega^3 eps G sqrt(1 + (eps lambda Omega)^2): sqrt(u^2 + u'^2/kappa) grows by at most f/sqrt(kappa) per unit of time.
@@ -39,9 +39,9 @@ struct Coupled : coupled::Law<double> {
         carry(state[PSI], state[TURNS]);
         double sin_psi, cos_psi, w = state[W], rate = state[RATE];
         sine_cosine(state[PSI], sin_psi, cos_psi);
-        double push = Law::push({w, rate, state[V], state[V_RATE]}, sin_psi, cos_psi);  // v''
+        double push = Law::push({w, rate, state[V], state[V_RATE]}, sin_psi, cos_psi) - b;  // against friction
         if (push == 0.0 && a == 0.0)  // the third derivative decides
-            push = eps * G * omega * (cos_psi - chi * drag * omega * sin_psi) - state[V_RATE] / full - drag * push;
+            push = eps * G * omega * (cos_psi - chi * drag * omega * sin_psi) - state[V_RATE] / full - drag * lean;
         if (rate != 0.0) state[MODE] = rate > 0.0 ? 1.0 : -1.0;
         else if ((fabs(push) <= a && a > 0.0) || (fabs(w) == 1.0 && push * w >= 0.0)) state[MODE] = 0.0;
         else state[MODE] = push >= 0.0 ? 1.0 : -1.0;
@@ -52,16 +52,15 @@ struct Coupled : coupled::Law<double> {
 
     // While the absorber sticks: the time until friction no longer holds it, and in which direction it then goes.
     Outcome wait(const Oscillation& q, double w, double left, double& tau, Oscillation::Point& p, double& way) const {
-        const double driven = full * q.driven(2), own = full * q.own(2, 0.0), tiny = 4e-16 * (driven + own);  // bounds of |v''|
+        const double driven = full * q.driven(2), own = full * q.own(2, 0.0), tiny = 4e-16 * (driven + own + fabs(b));  // bounds of |v''|
+        const double hold = w >= 1.0 ? a - b : w <= -1.0 ? a + b : a - fabs(b);  // what holds the absorber where it may slip
         p = q.begin();
         bool first = true;  // a zero right at the start is judged by its slope, and left behind
         double renew = -1.0, M = 0.0;
         tau = 0.0;
         while (tau < left) {
             if (tau >= renew) {
-                if (driven + own * exponential(-q.alpha * tau) < a || driven + own == 0.0) {
-                    return NEVER;
-                }
+                if (driven + own * exponential(-q.alpha * tau) < hold || (driven + own == 0.0 && hold >= 0.0)) return NEVER;
                 double u4 = q.fourth(p), u5 = q.fifth(p);
                 M = full * (sqrt(u4 * u4 + u5 * u5 * q.by_kappa) + square * square * force * HORIZON);
                 renew = tau + HORIZON;
@@ -69,7 +68,7 @@ struct Coupled : coupled::Law<double> {
             double value = full * (p.h2 + p.z2), slope = full * (p.h3 + p.z3), step = renew - tau;
             for (double m = 1.0; m >= -1.0; m -= 2.0) {
                 if (m * w >= 1.0) continue;
-                double y = a - m * value, y_rate = -m * slope;
+                double y = a - m * (value - b), y_rate = -m * slope;
                 way = m;
                 if (y <= tiny) {
                     if (!first || y_rate < 0.0 || y < -tiny) return SLIPS;
@@ -91,7 +90,7 @@ struct Coupled : coupled::Law<double> {
     // While it slides: the time until it hits the wall ahead or comes to a halt; y = s w' and its rate there, the way slid.
     Outcome slip(const Oscillation& q, double s, double Y0, double Y1, double target, double left, double& tau, Oscillation::Point& p,
                  double& y, double& y_rate, double& gain) const {
-        const double third = square * omega * force * HORIZON * sqrt(q.by_kappa), tiny = 1e-300;
+        const double third = square * omega * force * HORIZON * sqrt(q.by_kappa), tiny = 1e-300, brake = s * q.q2_pull;
         double renew = -1.0, M = 0.0;
         tau = gain = 0.0;
         y = Y0;
@@ -100,8 +99,8 @@ struct Coupled : coupled::Law<double> {
         auto look = [&] {
             p = q.at(tau);
             gain = s * (p.way - q.travel(tau));
-            y = Y0 + s * p.speed - pull * tau;
-            y_rate = s * (p.h2 + p.z2) - pull;
+            y = Y0 + s * p.speed - brake * tau;
+            y_rate = s * (p.h2 + p.z2) - brake;
         };
         for (;;) {
             if (tau >= renew) {
@@ -116,7 +115,7 @@ struct Coupled : coupled::Law<double> {
                 double jerk = s * (p.h3 + p.z3), u4 = q.fourth(p), u5 = q.fifth(p);
                 double M4 = sqrt(u4 * u4 + u5 * u5 * q.by_kappa) + omega * third;
                 step = most(M > 0.0 ? y_rate / M : 0.0, M4 > 0.0 ? 1.5 * jerk / M4 : 0.0);
-                if (M == 0.0 && M4 == 0.0) return NEVER;  // neither friction nor forcing: nothing moves
+                if (M == 0.0 && M4 == 0.0 && !(y_rate > 0.0)) return NEVER;  // neither friction, slope nor forcing: nothing moves
                 if (!(step > 1e-13)) step = 1e-13;  // hardly any acceleration in this direction
             } else {
                 step = M > 0.0 || y_rate < 0.0 ? certain(y, y_rate, M) : HUGE_VAL;
@@ -160,7 +159,7 @@ struct Coupled : coupled::Law<double> {
     Status advance(double *state, double until, Events& events) const {
         double psi = state[PSI], w = state[W], rate = state[RATE], s = state[MODE], turns = state[TURNS], low = state[LOW];
         double v = state[V], v_rate = state[V_RATE];
-        double check = psi + w + rate + v + v_rate + slide.X + slide.Y + stuck.X + stuck.Y + slide.beta + stuck.beta + a;
+        double check = psi + w + rate + v + v_rate + slide.X + slide.Y + stuck.X + stuck.Y + slide.beta + stuck.beta + a + b;
         if (!isfinite(check)) return FAILED;
         // by forcing periods and by periods of the oscillator, whichever are longer
         const double goal = least(until, turns + least(SLICE, SLICE * omega));
@@ -197,16 +196,16 @@ struct Coupled : coupled::Law<double> {
             }
             const Oscillation q = Law::oscillation(psi, {w, rate, v, v_rate}, s);
             p = q.begin();
-            double Y0 = s * rate, Y1 = fresh ? 0.0 : s * (p.h2 + p.z2) - pull;
+            double Y0 = s * rate, Y1 = fresh ? 0.0 : s * (p.h2 + p.z2) - s * q.q2_pull;
             if (Y0 < 1e-6 && s * w == -1.0 && low == 0.0 && Y1 + 2.0 * a < 0.0) {
                 // leaving a wall that is pushed after the absorber: is this the tail of a chatter?
-                double shove = -Y1 - a, factor = r * sqrt((shove - a) / (shove + a));  // shove: |v''|
+                double shove = -Y1 - a, factor = r * sqrt((shove - a) / (shove + a));  // shove: |v'' - b|
                 double rest = Y0 * (1.0 / (shove + a) + 1.0 / sqrt((shove - a) * (shove + a)));
                 if (factor < 1.0) rest /= 1.0 - factor;
                 if ((factor < 1.0 && rest < 1e-7 && rest * fabs(p.h3 + p.z3) < 0.01 * (shove - a)) || Y0 < 1e-13) {
                     rest = least(rest, 1e-7);
                     v += rest * v_rate;
-                    v_rate -= rest * s * shove;
+                    v_rate += rest * (b - s * shove);
                     psi += omega * rest;
                     carry(psi, turns);
                     rate = s = 0.0;
@@ -303,7 +302,7 @@ struct Coupled : coupled::Law<double> {
     double energy(const double *state) const {
         double q1 = (state[V] + eps * state[W]) / full, q1_rate = (state[V_RATE] + eps * state[RATE]) / full;
         double q2_rate = (state[V_RATE] - state[RATE]) / full;
-        return 0.5 * (q1_rate * q1_rate + q1 * q1 + eps * q2_rate * q2_rate);
+        return 0.5 * (q1_rate * q1_rate + q1 * q1 + eps * q2_rate * q2_rate) + eps * lean * state[W];
     }
 
     // Of a segment: largest |q1|, and the integrals of v sin Psi, v cos Psi and q1 sin Psi over the phase.

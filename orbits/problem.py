@@ -346,16 +346,12 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
             return None
     else:
         model = build(settings)
-    if params.shape != (len(model.parameter_names),):
-        raise ValueError(
-            f"{params.size} parameters are described, the machine has {len(model.parameter_names)}"
-        )
     return OrbitProblem(
         model,
         Word.described(description, getattr(model, "alphabet", None)),
         description["periods"],
         description["parameter"],
-        params,
+        model.completed(params),
         bool(description["symmetric"]),
         tuple(description.get("counted_in", PLAIN)),  # older files count in the machine's own units
     )

@@ -210,9 +210,14 @@ class Model(Varying):
 
     @classmethod
     def friction_acceleration(cls, params: np.ndarray) -> float:
-        """a = (1 + eps) mu g, the friction's relative acceleration (dimensionless)."""
+        """a = (1 + eps) mu g cos(slope), the friction's relative acceleration (dimensionless)."""
         eps, mu, g = (float(cls.column(params, name)) for name in ("mass_ratio", "friction", "gravity"))
-        return (1.0 + eps) * mu * g
+        return (1.0 + eps) * mu * g * float(cls.upright(params))
+
+    @classmethod
+    def upright(cls, params: np.ndarray) -> Any:
+        """cos(slope), the share of gravity that presses the absorber on its floor; 1 where there is no slope."""
+        return np.cos(cls.column(params, "slope")) if "slope" in cls.parameter_names else 1.0
 
     def frictionless(self, params: np.ndarray) -> bool:
         """Whether turns are no events."""
@@ -290,8 +295,13 @@ class Model(Varying):
 
     @classmethod
     def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """mu g times the path slid, from the displacements w between events (m, L); shape (m,)."""
-        return cls.column(params, "friction") * cls.column(params, "gravity") * np.abs(steps).sum(axis=1)
+        """mu g cos(slope) times the path slid, from the displacements w between events (m, L); shape (m,)."""
+        return (
+            cls.column(params, "friction")
+            * cls.column(params, "gravity")
+            * cls.upright(params)
+            * np.abs(steps).sum(axis=1)
+        )
 
     # ------------------------------------------------------------------ starts and measures
     def word(self, text: str | Word, params: np.ndarray) -> Word:

@@ -24,6 +24,8 @@ class Varying:
     """The part of a machine (`orbits.machines.base.Model`) that knows what may vary."""
 
     table: ClassVar[tuple[Parameter, ...]] = ()
+    younger: ClassVar[tuple[str, ...]] = ()
+    """Parameters that older files do not have: their machines have the defaults."""
 
     if TYPE_CHECKING:
         name: str
@@ -31,6 +33,22 @@ class Varying:
         parameter_names: tuple[str, ...]
 
         def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray: ...
+
+    def completed(self, params: np.ndarray) -> np.ndarray:
+        """A parameter vector of an older file with what was added since.
+
+        Raises
+        ------
+        ValueError
+            If it has not as many numbers as any version of the machine.
+        """
+        names = self.parameter_names
+        if params.size == len(names) - len(self.younger):
+            given = iter(params)
+            return np.array([getattr(self, name) if name in self.younger else next(given) for name in names])
+        if params.size != len(names):
+            raise ValueError(f"{params.size} parameters are described, the machine has {len(names)}")
+        return params
 
     @property
     def amount_names(self) -> tuple[str, ...]:

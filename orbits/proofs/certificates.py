@@ -100,7 +100,7 @@ def numbers(machine: str, parameters: Mapping[str, Any], varying: Varying | None
             factor, exponent = moved[name]
             given[name] = [plain(factor), "0", plain(str(Decimal(exponent)))]
         else:
-            value = parameters[name]
+            value = parameters[name] if name != "slope" else parameters.get(name, "0")
             middle, radius = (value, "0") if isinstance(value, str) else value
             given[name] = [plain(middle), plain(radius), "0"]
     return given

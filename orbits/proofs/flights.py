@@ -11,9 +11,9 @@ with a = (1 + eps) mu g cos(slope), mu depending on the direction, and bias = -(
 
 Absorber on its oscillator (`coupled`), e = eps G sin Psi:
 
-    q1'' + eps lambda q1' + q1 = e + chi eps lambda e' - eps mu g s,    q2'' = mu g s,
+    q1'' + eps lambda q1' + q1 = e + chi eps lambda e' - eps q2'',    q2'' = mu g cos(slope) s + g sin(slope),
 
-so q1 is a harmonic of the forcing, a constant and a damped oscillation; stuck, both move as one mass 1 + eps.
+so q1, counted from where all is at rest, is a harmonic of the forcing, a constant and a damped oscillation; stuck, both move as one mass 1 + eps.
 """
 
 from __future__ import annotations
@@ -131,15 +131,17 @@ class Coupled:
 
     node = 4
     moving_cavity = True
-    bias = 0
     limit: Mapping[int, Any]
     room: Mapping[int, Any]
 
     def __init__(self, p: Mapping[str, Any]) -> None:
         self.eps, self.omega = p["mass_ratio"], p["frequency"]
         self.whole = 1 + self.eps
-        self.pull = p["friction"] * p["gravity"]
-        a = self.whole * self.pull
+        self.pull, self.lean = p["friction"] * p["gravity"], 0
+        if "slope" in p:
+            sine, cosine = sin_cos(p["slope"])
+            self.pull, self.lean = self.pull * cosine, p["gravity"] * sine
+        a, self.bias = self.whole * self.pull, -self.whole * self.lean
         self.limit, self.room = {1: a, -1: a, 0: 0}, {1: 1, -1: 1}
         self.r = p["restitution"]
         self.rate = self.eps * p["damping"]
@@ -174,7 +176,8 @@ class Coupled:
             w0, q1r, q2r = y, v1 / whole, v1 / whole
         q1, q2 = (v0 + eps * w0) / whole, (v0 - w0) / whole
         X, Y, alpha, beta = self._response(mode == 0)
-        offset = -eps * (self.pull * mode)
+        slide = self.pull * mode + self.lean if mode else 0  # q2''
+        offset = -eps * slide
         s0, c0 = sin_cos(phase0)
         z0 = q1 - X * s0 - Y * c0 - offset
         z1 = q1r - omega * (X * c0 - Y * s0)
@@ -197,11 +200,10 @@ class Coupled:
             q_4 = -2 * alpha * Z3 - kappa * Z2 + omega * omega * omega * omega * h
             if mode == 0:
                 v, rate = whole * q - eps * w0, whole * q_1
-                return Motion(w0, 0, 0, 0, whole * q_2, whole * q_3, whole * q_4, v, rate)
-            slide = self.pull * mode
+                return Motion(w0, 0, 0, 0, whole * q_2 + self.bias, whole * q_3, whole * q_4, v, rate)
             q2_1 = q2r + slide * t
             q2_0 = q2 + (q2r + slide * t / 2) * t
-            push = q_2 + eps * slide
+            push = q_2 + eps * slide + self.bias
             w, v = q - q2_0, q + eps * q2_0
             return Motion(w, q_1 - q2_1, q_2 - slide, q_3, push, q_3, q_4, v, q_1 + eps * q2_1)
 
@@ -212,7 +214,7 @@ class Coupled:
         s, c = sin_cos(phase)
         X, Y, _, _ = self._response(True)
         size = -self.whole * self.omega * self.omega
-        return size * (X * s + Y * c), size * self.omega * (X * c - Y * s)
+        return size * (X * s + Y * c) + self.bias, size * self.omega * (X * c - Y * s)
 
 
 MACHINES: dict[str, type[Shaken] | type[Coupled]] = {
@@ -228,7 +230,7 @@ _SIDES = tuple(
 NAMES: dict[str, tuple[str, ...]] = {
     "absorber": ("amplitude", "restitution", "friction", *_EVERY),
     "cavity": ("amplitude", "slope", *_SIDES, *_EVERY),
-    "coupled": ("forcing", "damping", "restitution", "excitation", "friction", *_EVERY),
+    "coupled": ("forcing", "damping", "restitution", "excitation", "friction", "slope", *_EVERY),
 }
 
 

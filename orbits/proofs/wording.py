@@ -31,7 +31,7 @@ def _mirrored(proof: Any) -> bool:
     """Whether mirror images are motions of the machine, however the enclosed parameter varies."""
     known = proof.parameters
     alike = all(known.get(f"{name}_left") == known.get(f"{name}_right") for name in SIDED)
-    return proof.motif.machine != "cavity" or (alike and "slope" in known and float(known["slope"]) == 0.0)
+    return alike and float(known.get("slope", 0.0 if proof.motif.machine != "cavity" else 1.0)) == 0.0
 
 
 def sentence(proof: Any) -> str:

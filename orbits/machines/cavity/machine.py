@@ -11,7 +11,7 @@ import numpy as np
 
 from orbits.machines.cavity.rest import InclinedRest
 from orbits.machines.cavity.shaken import Shaken
-from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, RESTITUTION, Limits, Parameter, ParameterError
+from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, RESTITUTION, SLOPE, Parameter, ParameterError
 from orbits.machines.rest import Rest
 from orbits.words import Word
 
@@ -20,7 +20,6 @@ PAIRS = {
     "friction": ("friction_left", "friction_right"),
 }
 """Names that stand for both sides at once."""
-SLOPE = Limits(-0.5 * np.pi, 0.5 * np.pi)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -190,7 +189,7 @@ class Cavity(Shaken):
     @classmethod
     def _normal(cls, params: np.ndarray) -> Any:
         eps, g = cls.column(params, "mass_ratio"), cls.column(params, "gravity")
-        return (1.0 + eps) * g * np.cos(cls.column(params, "slope"))
+        return (1.0 + eps) * g * cls.upright(params)
 
     @classmethod
     def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:

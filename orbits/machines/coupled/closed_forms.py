@@ -93,8 +93,10 @@ def symmetric_discriminant(params: np.ndarray) -> float:
 def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
     """Nodes (Psi, B+, v, v') at L and R of the symmetric orbits `LR`, each of shape (2, 4): the faster absorber first.
 
-    Empty when there is none. Admissibility is not looked at.
+    Empty when there is none, as on a slope. Admissibility is not looked at.
     """
+    if params[8] != 0.0:
+        return []
     omega, eps, pull = float(params[1]), float(params[3]), float(params[5]) * float(params[6])
     h, h_rate, polynomial, half = _quadratic(params)
     c, b, a = polynomial
@@ -156,6 +158,8 @@ def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray | None:
     mode : int
         Direction of the slide after the first turn.
     """
+    if params[8] != 0.0:
+        return None
     pull = float(params[5]) * float(params[6])
     eps = float(params[3])
     half = _half(params, mode)
@@ -185,7 +189,7 @@ class StuckResponse:
     shaking : float
         Largest |v''|.
     reserve : float
-        a - |v''|: positive when friction holds the absorber.
+        a - |b| - |v''|, b = (1 + eps) g sin(slope): positive when friction holds the absorber.
     """
 
     amplitude: float
@@ -199,13 +203,19 @@ class StuckResponse:
         return self.reserve >= 0.0
 
 
+def _held(params: np.ndarray) -> float:
+    """The acceleration that friction and slope hold in either direction."""
+    mu, g, slope = (float(params[i]) for i in (5, 6, 8))
+    return g * (mu * math.cos(slope) - abs(math.sin(slope)))
+
+
 def stuck_response(params: np.ndarray) -> StuckResponse:
     """The stuck response, which is the only linear one."""
     X, Y = response(params, stuck=True)
-    omega, eps, mu, g = (float(params[i]) for i in (1, 3, 5, 6))
+    omega, eps = float(params[1]), float(params[3])
     amplitude = math.hypot(X, Y)
     shaking = (1.0 + eps) * omega**2 * amplitude
-    return StuckResponse(amplitude, math.atan2(Y, X), shaking, (1.0 + eps) * mu * g - shaking)
+    return StuckResponse(amplitude, math.atan2(Y, X), shaking, (1.0 + eps) * _held(params) - shaking)
 
 
 def stuck_state(params: np.ndarray, phase: float = 0.0, w: float = 0.0) -> dict[str, float]:
@@ -226,11 +236,14 @@ def stuck_state(params: np.ndarray, phase: float = 0.0, w: float = 0.0) -> dict[
 def stuck_frequencies(params: np.ndarray) -> np.ndarray:
     """Frequencies at which the stuck response begins or ceases to slip, ascending.
 
-    With x = Omega^2 and c = eps lambda: Omega^2 |q1| = mu g is the cubic
-    (eps G)^2 x^2 (1 + chi^2 c^2 x) = (mu g)^2 ((1 - (1 + eps) x)^2 + c^2 x).
+    With x = Omega^2, c = eps lambda and f = g (mu cos(slope) - |sin(slope)|): Omega^2 |q1| = f is the cubic
+    (eps G)^2 x^2 (1 + chi^2 c^2 x) = f^2 ((1 - (1 + eps) x)^2 + c^2 x).
     """
-    G, lam, eps, mu, g, chi = (float(params[i]) for i in (0, 2, 3, 5, 6, 7))
-    square, hold, force = (eps * lam) ** 2, (mu * g) ** 2, (eps * G) ** 2
+    G, lam, eps, chi = (float(params[i]) for i in (0, 2, 3, 7))
+    held = _held(params)
+    if held < 0.0:
+        return np.zeros(0)
+    square, hold, force = (eps * lam) ** 2, held**2, (eps * G) ** 2
     roots = np.polynomial.polynomial.polyroots(
         np.trim_zeros(
             [

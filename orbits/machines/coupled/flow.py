@@ -3,15 +3,17 @@
 Between two events both masses obey linear equations with constant coefficients (lengths in units of the
 half-width b, time tau = omega_0 t, q1 the oscillator, q2 the absorber, S the friction's sign):
 
-    q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps mu g S        q2'' = mu g S,     e = eps G sin Psi
+    q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps q2''        q2'' = mu g cos(slope) S + g sin(slope),     e = eps G sin Psi
 
-* sliding, S = s = -1 or +1: q1 is a harmonic, a constant offset -eps mu g s and a damped oscillation; q2 a parabola.
+(q1 is counted from where all is at rest, so that on a slope its spring carries the absorber's weight there)
+
+* sliding, S = s = -1 or +1: q1 is a harmonic, a constant offset -eps q2'' and a damped oscillation; q2 a parabola.
 * stuck: w = q1 - q2 keeps its value and both move as one mass,
-  (1 + eps) q1'' + eps lambda q1' + q1 = e + eps lambda e', with S = q1''/(mu g) inside [-1, 1].
+  (1 + eps) q1'' + eps lambda q1' + q1 = e + eps lambda e', with S = (q1'' - g sin(slope))/(mu g cos(slope)) inside [-1, 1].
 
 In both modes v = q1 + eps q2 accelerates by the force on the oscillator without friction,
 
-    v'' = -q1 - eps lambda q1' + e + eps lambda e',       w'' = v'' - a S,       a = (1 + eps) mu g,
+    v'' = -q1 - eps lambda q1' + e + eps lambda e',       w'' = v'' - b - a S,       a = (1 + eps) mu g cos(slope),       b = (1 + eps) g sin(slope),
 
 so stick, slip and turn read exactly as in the reduced model. Whatever the mode, q1 and its derivatives are
 
@@ -96,15 +98,15 @@ def derivative(Omega, alpha, beta, P, Q, A, B):
     return -Omega * Q, Omega * P, beta * B - alpha * A, -beta * A - alpha * B
 
 
-def wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau):
-    """A wave's value and its derivative at time tau after the phase `phase`."""
+def wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau, drift=0.0):
+    """A wave's value and its derivative at time tau after the phase `phase`, with `drift` times tau."""
     Psi = phase + Omega * tau
     s, c = math.sin(Psi), math.cos(Psi)
     decay = math.exp(-alpha * tau)
     C = decay * math.cos(beta * tau)
     S = decay * math.sin(beta * tau)
-    value = constant + P * s + Q * c + A * C + B * S
-    slope = Omega * (P * c - Q * s) + (beta * B - alpha * A) * C - (beta * A + alpha * B) * S
+    value = constant + drift * tau + P * s + Q * c + A * C + B * S
+    slope = drift + Omega * (P * c - Q * s) + (beta * B - alpha * A) * C - (beta * A + alpha * B) * S
     return value, slope
 
 
@@ -116,8 +118,8 @@ def certain(y, y_rate, bound):
     return 2.0 * y / (root - y_rate)
 
 
-def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
-    """First zero of a wave in start < tau < end; `end` when there is none.
+def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end, drift=0.0):
+    """First zero of a wave with a drift in start < tau < end; `end` when there is none.
 
     With M >= abs(second derivative) on the interval, a value y > 0 with slope y' stays positive for at least
     2 y / (sqrt(y'**2 + 2 M y) - y'). Steps of that length approach a simple zero like Newton's method, from one side, and
@@ -131,18 +133,18 @@ def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
     bound = Omega * Omega * math.hypot(P, Q) + (alpha * alpha + beta * beta) * math.exp(
         -alpha * start
     ) * math.hypot(A, B)
-    scale = abs(constant) + abs(P) + abs(Q) + abs(A) + abs(B)
+    scale = abs(constant) + abs(drift) * end + abs(P) + abs(Q) + abs(A) + abs(B)
     tiny = 4e-16 * scale
     tau = start
     if bound <= TINY:
         return end, 0.0
-    value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau)
+    value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau, drift)
     if abs(value) <= tiny + 1e-15 * (1.0 + start + abs(phase)) * abs(slope):
         # leave the zero at the start: the slope decides the sign until 2 slope / bound
         tau += max(abs(slope) / bound, 1e-8)
         if tau >= end:
             return end, slope
-        value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau)
+        value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau, drift)
     sign = 1.0 if value > 0.0 else -1.0
     while True:
         y, y_rate = sign * value, sign * slope
@@ -154,4 +156,4 @@ def first_zero(constant, P, Q, A, B, Omega, alpha, beta, phase, start, end):
         tau += step
         if tau >= end:
             return end, slope
-        value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau)
+        value, slope = wave(constant, P, Q, A, B, Omega, alpha, beta, phase, tau, drift)

@@ -17,6 +17,7 @@ from orbits.machines.parameters import (
     NOT_NEGATIVE,
     POSITIVE,
     RESTITUTION,
+    SLOPE,
     Limits,
     Parameter,
     ParameterError,
@@ -32,10 +33,10 @@ if TYPE_CHECKING:
 class Coupled(Model):
     """A vibro-impact absorber on a linear oscillator with a shaken base, without approximation.
 
-    ``q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps mu g S,    q2'' = mu g S,    e = eps G sin(Omega tau)``,
+    ``q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps q2'',    q2'' = mu g cos(slope) S + g sin(slope),    e = eps G sin(Omega tau)``,
 
     with S the sign of w' = q1' - q2' while sliding, ``|S| <= 1`` while stuck, ``|w| <= 1``, and w'+ = -r w'- at the walls with
-    v = q1 + eps q2 and v' continuous. Lengths in units of the cavity's half-width b, time tau = omega_0 t.
+    v = q1 + eps q2 and v' continuous. q1 and q2 are counted from where both rest with the absorber in the middle. Lengths in units of the cavity's half-width b, time tau = omega_0 t.
 
     Parameters
     ----------
@@ -56,6 +57,8 @@ class Coupled(Model):
     excitation : {"exact", "truncated"} or float
         Whether the base also acts through the damper (eps lambda e', exact) or that term is dropped, as in the literature; a
         number from 0 to 1 leaves that part of it.
+    slope : float
+        Angle of the cavity, and of the oscillator's rail, in radians, from -pi/2 to pi/2; positive pulls the absorber towards the right wall, w = -1.
 
     Raises
     ------
@@ -76,6 +79,7 @@ class Coupled(Model):
     forcing: float | None = None
     frequency: float = 1.0
     excitation: str | float = "exact"
+    slope: float = 0.0
 
     name: ClassVar[str] = "coupled"
     node_names: ClassVar[tuple[str, ...]] = ("phase", "B or w", "v", "v_rate")
@@ -87,6 +91,7 @@ class Coupled(Model):
     patience: ClassVar[int] = 2  # a light absorber's oscillator settles over thousands of periods
     rest: ClassVar[Rest] = DrivenRest()
     closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt")
+    younger: ClassVar[tuple[str, ...]] = ("slope",)
     table: ClassVar[tuple[Parameter, ...]] = (
         Parameter("forcing", "amplitude of the base over eps b", NOT_NEGATIVE, "G", "", 3.3),
         Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", "omega_0", 1.0),
@@ -102,6 +107,7 @@ class Coupled(Model):
             r"\chi",
             words={"exact": 1.0, "truncated": 0.0},
         ),
+        Parameter("slope", "angle of the cavity", SLOPE, r"\alpha", "rad", 0.0),
     )
     own_measures: ClassVar[tuple[str, ...]] = (
         "max_abs_q1",
@@ -128,6 +134,11 @@ class Coupled(Model):
 
         return stepper
 
+    # ------------------------------------------------------------------ mechanics
+    def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
+        """Level, whatever varies."""
+        return self.column(params, "slope") == 0.0 and varying != "slope"
+
     @classmethod
     def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return nodes[:, :, 2], nodes[:, :, 3]
@@ -143,7 +154,7 @@ class Coupled(Model):
         return start | {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
 
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
-        """The parameter vector, shape (8,); see `Model.vector`.
+        """The parameter vector, shape (9,); see `Model.vector`.
 
         Raises
         ------

@@ -9,11 +9,12 @@ arrival          row 0              row 1                  row 2       row 3
 ===============  =================  =====================  ==========  ============
 impact           w - wall           v' + r w' - B+         v - v_i+1   v' - v'_i+1
 turn, stick      w'                 w - w_i+1              v - v_i+1   v' - v'_i+1
-slip             v'' - m a          w - w_i+1              v - v_i+1   v' - v'_i+1
+slip             v'' - m a - b      w - w_i+1              v - v_i+1   v' - v'_i+1
 ===============  =================  =====================  ==========  ============
 
 (m the mode after the slip). Parameters in order: forcing G, frequency Omega, damping lambda, mass_ratio eps,
-restitution r, friction mu, gravity g, excitation (1 exact, 0 without the term eps lambda e').
+restitution r, friction mu, gravity g, excitation (1 exact, 0 without the term eps lambda e'), slope. Friction's share of q2'' is
+s mu g cos(slope), gravity's g sin(slope), and b is 1 + eps times that.
 
 **The pin.** Without impacts the absorber may be shifted as a whole, q2 -> q2 - delta with q1 untouched. In node variables
 that is w -> w + delta and v -> v - eps delta at every node, the direction (0, 1, -eps, 0). A closed orbit of such a word is not
@@ -88,13 +89,15 @@ def linearise(data, u, p, work):
     length = F.shape[0]
     place(data.params, data.path, p, par)
     slope = par[data.params.shape[0] :]
-    G, omega, lam, eps, r, mu, g, chi = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
+    G, omega, lam, eps, r, mu, g, chi, angle = par[: data.params.shape[0]][:9]
     whole = 1.0 + eps
     part = 1.0 / whole
     rate = eps * lam
     force = eps * G
-    pull = mu * g  # acceleration of the absorber by friction
-    d_pull = mu * slope[6] + g * slope[5]
+    upright, aside = math.cos(angle), math.sin(angle)
+    pull, lean = mu * g * upright, g * aside  # accelerations of the absorber by friction and by gravity
+    d_pull = (mu * slope[6] + g * slope[5]) * upright - mu * g * aside * slope[8]
+    d_lean = slope[6] * aside + g * upright * slope[8]
     d_omega, d_eps, d_r = slope[1], slope[3], slope[4]
     d_rate = d_eps * lam + eps * slope[2]
     d_force = d_eps * G + eps * slope[0]
@@ -149,8 +152,9 @@ def linearise(data, u, p, work):
         dq2 = dq1
         dq2r = -d_eps * q2_rate * part
         # --- the oscillator
-        offset = -eps * mode * pull
-        d_offset = -mode * (d_eps * pull + eps * d_pull)
+        slides, d_slides = (mode * pull + lean, mode * d_pull + d_lean) if mode != 0 else (0.0, 0.0)  # q2''
+        offset = -eps * slides
+        d_offset = -d_eps * slides - eps * d_slides
         z = q1 - X * s0 - Y * c0 - offset
         zr = q1_rate - omega * (X * c0 - Y * s0)
         T11, T12, T21, T22, C, S = transition(alpha, beta, d)
@@ -187,16 +191,15 @@ def linearise(data, u, p, work):
         Q1_psi1, Q1r_psi1 = Q1r * by_omega, Q1rr * by_omega
         # --- the absorber
         if mode != 0:
-            acceleration = mode * pull
-            Q2r = q2_rate + acceleration * d
-            Q2 = q2 + (q2_rate + 0.5 * acceleration * d) * d
-            Q2_psi1, Q2r_psi1 = Q2r * by_omega, acceleration * by_omega
+            Q2r = q2_rate + slides * d
+            Q2 = q2 + (q2_rate + 0.5 * slides * d) * d
+            Q2_psi1, Q2r_psi1 = Q2r * by_omega, slides * by_omega
             Q2_psi0, Q2r_psi0 = -Q2_psi1, -Q2r_psi1
             Q2_y, Q2r_y = q2_y + d * q2r_y, q2r_y
             Q2_v, Q2r_v = part, 0.0
             Q2_vr, Q2r_vr = d * q2r_vr, q2r_vr
-            dQ2r = dq2r + acceleration * dd + mode * d_pull * d
-            dQ2 = dq2 + dq2r * d + Q2r * dd + 0.5 * mode * d_pull * d * d
+            dQ2r = dq2r + slides * dd + d_slides * d
+            dQ2 = dq2 + dq2r * d + Q2r * dd + 0.5 * d_slides * d * d
         else:
             Q2, Q2r = Q1 - w0, Q1r
             Q2_psi1, Q2r_psi1 = Q1_psi1, Q1r_psi1
@@ -258,9 +261,11 @@ def linearise(data, u, p, work):
             A[i, 1, 3] = Q1_vr - Q2_vr
             D[i, 1, 0] = Q1_psi1 - Q2_psi1
             Q[i, 1] = dQ1 - dQ2
-            if arrival == 4:  # friction gives way: v'' = -q1 - eps lambda q1' + e + eps lambda e' reaches m a
+            if (
+                arrival == 4
+            ):  # friction gives way: v'' = -q1 - eps lambda q1' + e + eps lambda e' reaches m a + b
                 base = s1 + chi * rate * omega * c1
-                F[i, 0] = -Q1 - rate * Q1r + force * base - after * whole * pull
+                F[i, 0] = -Q1 - rate * Q1r + force * base - whole * (after * pull + lean)
                 A[i, 0, 0] = -Q1_psi0 - rate * Q1r_psi0
                 A[i, 0, 1] = -Q1_y - rate * Q1r_y
                 A[i, 0, 2] = -Q1_v - rate * Q1r_v
@@ -268,7 +273,7 @@ def linearise(data, u, p, work):
                 D[i, 0, 0] = -Q1_psi1 - rate * Q1r_psi1 + force * (c1 - chi * rate * omega * s1)
                 Q[i, 0] = (
                     -dQ1 - rate * dQ1r - d_rate * Q1r + d_force * base + force * d_lever * c1
-                    - after * (d_eps * pull + whole * d_pull)
+                    - d_eps * (after * pull + lean) - whole * (after * d_pull + d_lean)
                 )  # fmt: skip
             elif event < 2 or mode == 0:
                 F[i, 0] = Q1r - Q2r
@@ -282,7 +287,7 @@ def linearise(data, u, p, work):
                 # from rest to rest, hardly apart: the second derivative of w and half of the third times d
                 base, base_psi = s0 + chi * rate * omega * c0, c0 - chi * rate * omega * s0
                 jerk = force * omega * base_psi - q1_rate - rate * q1_acceleration
-                F[i, 0] = q1_acceleration - mode * pull + 0.5 * jerk * d
+                F[i, 0] = q1_acceleration - slides + 0.5 * jerk * d
                 A[i, 0, 0] = force * base_psi - 0.5 * jerk * by_omega
                 A[i, 0, 1] = -q1_y - rate * q1r_y
                 A[i, 0, 2] = -part
@@ -290,7 +295,7 @@ def linearise(data, u, p, work):
                 D[i, 0, 0] = 0.5 * jerk * by_omega
                 Q[i, 0] = (
                     d_force * base + force * d_lever * c0 + d_offset - dq1 - d_rate * q1_rate - rate * dq1r
-                    - mode * d_pull + 0.5 * jerk * dd
+                    - d_slides + 0.5 * jerk * dd
                 )  # fmt: skip
             else:
                 # from rest to rest: the mean of w'' over the flight, w'/d, so that no flight of no duration solves it
@@ -302,7 +307,7 @@ def linearise(data, u, p, work):
                 )  # T22 - 1
                 swing = 2.0 * omega * math.sin(half) * (X * math.sin(middle) + Y * math.cos(middle))
                 by_d = 1.0 / d
-                mean = (T21 * z + loss * zr - swing) * by_d - mode * pull
+                mean = (T21 * z + loss * zr - swing) * by_d - slides
                 F[i, 0] = mean
                 A[i, 0, 0] = (Q1r_psi0 - Q2r_psi0 + mean * by_omega) * by_d
                 A[i, 0, 1] = (Q1r_y - Q2r_y) * by_d

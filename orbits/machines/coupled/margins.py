@@ -9,10 +9,10 @@ import numpy as np
 from orbits.machines.coupled.flow import certain, derivative, first_zero, harmonic, oscillation, rates, wave
 
 
-def _slowest(s, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start, end):
+def _slowest(s, brake, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start, end):
     """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none.
 
-    w'' = q1'' - s mu g is followed from zero to zero by steps that cannot pass one (`coupled_flow.certain`); the fourth
+    w'' = q1'' - q2'' is followed, s q2'' being `brake`, from zero to zero by steps that cannot pass one (`coupled_flow.certain`); the fourth
     derivative of q1 is an oscillator's response to a force of amplitude Omega^4 `force`, which bounds it. A zero needs to
     be known to 1e-5 only: the minimum is then taken from the Taylor series, exact to roundoff.
     """
@@ -33,7 +33,7 @@ def _slowest(s, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start,
         Z1 = z1 * cosine - (alpha * z1 + kappa * z0) * sine
         Z2 = -2.0 * alpha * Z1 - kappa * (z0 * cosine + (z1 + alpha * z0) * sine)
         Z3 = -2.0 * alpha * Z2 - kappa * Z1
-        y = s * (Z2 - square * H0) - pull
+        y = s * (Z2 - square * H0) - brake
         slope = s * (Z3 - square * H1)
         if bound < 0.0:
             fourth = square * square * H0 - 2.0 * alpha * Z3 - kappa * Z2
@@ -49,7 +49,7 @@ def _slowest(s, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, force, start,
             if tau + zero >= end:
                 return smallest
             if slope > 0.0:
-                speed = s * (H1 + Z1 - q2_rate) - pull * tau
+                speed = s * (H1 + Z1 - q2_rate) - brake * tau
                 smallest = min(smallest, speed + (y + 0.5 * slope * zero) * zero)
             step = zero + max(abs(slope) / bound, 1e-5)
         tau += step
@@ -64,22 +64,23 @@ def margins(data, u, p, work, out):
     cosines of the last `linearise` from `work`. All zeros are found by `coupled_flow.first_zero`: none can be missed.
 
     0. The flight after the node. Sliding: smallest s w' at an interior minimum (`_slowest`). Without
-       friction, where a flight may reverse: 1 - |w| at the zeros of w'. Stuck: smallest a - |v''| at an interior extremum.
-    1. The event. Impact: approach speed. Turn: -s v'' - a with s the mode before, since the relative acceleration
-       v'' - a S cannot vanish for any S in [-1, 1] exactly when |v''| > a. Stick: a - |v''|. Slip: m v''' at its start.
-       Here v'' = -q1 - eps lambda q1' + e + eps lambda e', which no friction enters.
+       friction, where a flight may reverse: 1 - |w| at the zeros of w'. Stuck: smallest a - |v'' - b| at an interior extremum.
+    1. The event. Impact: approach speed. Turn: -s (v'' - b) - a with s the mode before, since the relative acceleration
+       v'' - b - a S cannot vanish for any S in [-1, 1] exactly when |v'' - b| > a. Stick: a - |v'' - b|. Slip: m v''' at its start.
+       Here v'' = -q1 - eps lambda q1' + e + eps lambda e', which neither friction nor gravity enters, and
+       b = (1 + eps) g sin(slope).
     2. The wall: 1 - |w| away from impacts.
     3. The duration of the segment.
     """
     events, modes, twist, shift = data.events, data.modes, data.twist, data.shift
     par, sines, cosines = work.numbers, work.sines, work.cosines
     length = events.shape[0]
-    G, omega, lam, eps, r, mu, g, chi = par[0], par[1], par[2], par[3], par[4], par[5], par[6], par[7]
+    G, omega, lam, eps, r, mu, g, chi, angle = par[:9]
     whole = 1.0 + eps
     rate = eps * lam
     force = eps * G
-    pull = mu * g
-    a = whole * pull
+    pull, lean = mu * g * math.cos(angle), g * math.sin(angle)
+    a, b = whole * pull, whole * lean
     square = omega * omega
     slide_X, slide_Y = harmonic(force, chi, rate * omega, 1.0 - square)
     stuck_X, stuck_Y = harmonic(force, chi, rate * omega, 1.0 - whole * square)
@@ -107,12 +108,13 @@ def margins(data, u, p, work, out):
             w0 = y0
             q1_rate = q2_rate = v0_rate / whole
         q1 = (v0 + eps * w0) / whole
-        push = -q1 - rate * q1_rate + force * (s0 + chi * rate * omega * c0)  # v''
+        push = -q1 - rate * q1_rate + force * (s0 + chi * rate * omega * c0) - b
         if mode != 0:
             X, Y, alpha, beta = slide_X, slide_Y, slide_alpha, slide_beta
         else:
             X, Y, alpha, beta = stuck_X, stuck_Y, stuck_alpha, stuck_beta
-        offset = -eps * mode * pull
+        acceleration = mode * pull + lean if mode != 0 else 0.0  # of q2
+        offset = -eps * acceleration
         h0, h1 = X * s0 + Y * c0, omega * (X * c0 - Y * s0)
         z0, z1 = q1 - h0 - offset, q1_rate - h1
         A, B = oscillation(alpha, beta, z0, z1)
@@ -128,8 +130,8 @@ def margins(data, u, p, work, out):
                 tau, _ = first_zero(0.0, P3, Q3, A3, B3, omega, alpha, beta, psi0, tau, d)
                 if tau >= d:
                     break
-                acceleration, _ = wave(0.0, P2, Q2, A2, B2, omega, alpha, beta, psi0, tau)
-                flight = min(flight, a - whole * abs(acceleration))
+                q1_second, _ = wave(0.0, P2, Q2, A2, B2, omega, alpha, beta, psi0, tau)
+                flight = min(flight, a - abs(whole * q1_second - b))
         elif a > 0.0:
             tau = 0.0
             if event == 4:  # w' = w'' = 0 at the start of a slip: go as far as m w''' keeps its sign
@@ -137,15 +139,17 @@ def margins(data, u, p, work, out):
                 if bound > 0.0:
                     tau = min(abs(P3 * s0 + Q3 * c0 + A3) / bound, 0.5 * d)
             if event != 2 or mode * push > a:  # else the turn's own margin says it
-                flight = _slowest(mode, pull, q2_rate, h0, h1, z0, z1, omega, alpha, beta, strength, tau, d)
+                flight = _slowest(
+                    mode, mode * acceleration, q2_rate, h0, h1, z0, z1, omega, alpha, beta, strength, tau, d
+                )
         else:
             tau = 0.0
             while True:
-                tau, _ = first_zero(-q2_rate, P1, Q1, A1, B1, omega, alpha, beta, psi0, tau, d)
+                tau, _ = first_zero(-q2_rate, P1, Q1, A1, B1, omega, alpha, beta, psi0, tau, d, -lean)
                 if tau >= d:
                     break
                 position, _ = wave(offset, X, Y, A, B, omega, alpha, beta, psi0, tau)
-                flight = min(flight, 1.0 - abs(w0 - q1 + position - q2_rate * tau))
+                flight = min(flight, 1.0 - abs(w0 - q1 + position - (q2_rate + 0.5 * lean * tau) * tau))
         out[k] = flight
         incoming = modes[i - 1] if i > 0 else (modes[length - 1] if twist > 0.0 else -modes[length - 1])
         out[k + 2] = np.inf

@@ -28,6 +28,7 @@ class Numbers(NamedTuple):
     friction: float
     gravity: float
     excitation: float
+    slope: float
 
     @classmethod
     def of(cls, params: Any) -> Numbers:
@@ -46,8 +47,13 @@ class Numbers(NamedTuple):
 
     @property
     def pull(self) -> float:
-        """mu g."""
-        return self.friction * self.gravity
+        """mu g cos(slope), the absorber's acceleration by friction."""
+        return self.friction * self.gravity * math.cos(self.slope)
+
+    @property
+    def lean(self) -> float:
+        """g sin(slope), its acceleration by gravity along the cavity."""
+        return self.gravity * math.sin(self.slope)
 
 
 class Point(NamedTuple):
@@ -174,7 +180,7 @@ def oscillation(state: np.ndarray, numbers: Numbers) -> Oscillation:
     s, omega, eps = state[MODE], numbers.frequency, numbers.mass_ratio
     mass, rate = (1.0, state[RATE]) if s != 0.0 else (numbers.whole, 0.0)
     X, Y = response(mass, numbers)
-    pull = s * numbers.pull
+    pull = s * numbers.pull + numbers.lean if s != 0.0 else 0.0
     q2_rate = (state[V_RATE] - rate) / numbers.whole
     q1 = (state[V] + eps * state[W]) / numbers.whole
     sine, cosine = math.sin(state[PSI]), math.cos(state[PSI])

@@ -37,6 +37,7 @@ QUANTITIES = {
         Quantity("force_amplitude", "N", "3 N", _BASE | {"oscillator_mass": 1, "natural_rate": 2}, (1e-9, 1e9), "a force's amplitude", group="excitation_amplitude", zero=True),
         Quantity("frequency", "Hz", "8 Hz", {"frequency": 1, "natural_rate": 1}, (1e-3, 1e5), "the frequency of the excitation", _TURN),
         Quantity("excitation", "", "1", {"excitation": 1}, (0.0, 1.0), "the damper's share in the excitation", zero=True, default=1.0),
+        Quantity("slope", "rad", "5 deg", {"slope": 1}, (-1.6, 1.6), "the cavity's angle", zero=True, signed=True, default="0 deg"),
     )
 }  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The absorber at rest on its oscillator: a linear response with the mass 1 + eps."""
+"""The absorber at rest on its oscillator: a linear response with the mass 1 + eps, about the place where both rest."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from orbits.machines.coupled.damper import share_of_the_base
 
-FORCING, FREQUENCY, DAMPING, MASS_RATIO, FRICTION, GRAVITY, EXCITATION = 0, 1, 2, 3, 5, 6, 7
+FORCING, FREQUENCY, DAMPING, MASS_RATIO, FRICTION, GRAVITY, EXCITATION, SLOPE = 0, 1, 2, 3, 5, 6, 7, 8
 
 
 class DrivenRest:
@@ -24,9 +24,17 @@ class DrivenRest:
         )
 
     def reserve(self, params: np.ndarray, u: np.ndarray) -> float:
-        """mu g - max |q1''|."""
-        pull = float(params[FRICTION]) * float(params[GRAVITY])
-        return pull - float(params[FREQUENCY]) ** 2 * float(np.hypot(u[0], u[1]))
+        """Of the two directions the nearer to slipping."""
+        return min(self.reserves(params, u))
+
+    def reserves(self, params: np.ndarray, u: np.ndarray | None = None) -> tuple[float, float]:
+        """Of both directions: g (mu cos(slope) + sin(slope)) - max |q1''| and g (mu cos(slope) - sin(slope)) - max |q1''|."""
+        if u is None:
+            u = np.linalg.solve(*self.equations(params))
+        friction, gravity, slope = (float(params[j]) for j in (FRICTION, GRAVITY, SLOPE))
+        pull, lean = friction * gravity * np.cos(slope), gravity * np.sin(slope)
+        shaking = float(params[FREQUENCY]) ** 2 * float(np.hypot(u[0], u[1]))
+        return pull + lean - shaking, pull - lean - shaking
 
     def multipliers(self, params: np.ndarray) -> np.ndarray:
         omega, damping, eps = (float(value) for value in params[1:4])

@@ -68,13 +68,13 @@ def works(states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.nda
 
 
 def energies(states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
-    """Kinetic and potential energy per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2; contract, item 5."""
-    eps = params[3]
+    """Kinetic and potential energy per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2 + eps g sin(slope) w; contract, item 5."""
+    eps, lean = params[3], Numbers.of(params).lean
     whole = 1.0 + eps
     q1 = (states[:, V] + eps * states[:, W]) / whole
     q1_rate = (states[:, V_RATE] + eps * states[:, RATE]) / whole
     q2_rate = (states[:, V_RATE] - states[:, RATE]) / whole
-    out[:] = 0.5 * (q1_rate**2 + q1**2 + eps * q2_rate**2)
+    out[:] = 0.5 * (q1_rate**2 + q1**2 + eps * q2_rate**2) + eps * lean * states[:, W]
 
 
 @np.errstate(all="ignore")

@@ -7,7 +7,7 @@ y = s w' > 0 and y' = s w''. With M >= |w'''| ahead, y stays positive for at lea
 
 and w is monotone for as long as y is positive: inside such a step the wall ahead is met exactly when it has been passed at
 the end of it, and steps towards a turn approach it from one side like Newton's method. So no hit and no turn can be missed. The slip
-is found in the same way from a - |v''| > 0.
+is found in the same way from a - |v'' - b| > 0, b being the acceleration down a slope.
 
 M comes from the energy of the third derivative u = q1''', which is itself an oscillator's response to a force of amplitude
 f = Omega^3 eps G sqrt(1 + (eps lambda Omega)^2): sqrt(u^2 + u'^2/kappa) grows by at most f/sqrt(kappa) per unit of time.
@@ -66,10 +66,11 @@ def launch(state: np.ndarray, params: np.ndarray) -> None:
     q1, q1_rate = (state[V] + eps * w) / numbers.whole, (v_rate + eps * rate) / numbers.whole
     sine, cosine = math.sin(state[PSI]), math.cos(state[PSI])
     base = numbers.excitation * drag * numbers.frequency
-    push = -q1 - drag * q1_rate + eps * numbers.forcing * (sine + base * cosine)  # v''
+    push = -q1 - drag * q1_rate + eps * numbers.forcing * (sine + base * cosine)
+    push -= numbers.whole * numbers.lean  # v'' - b, against which friction holds
     if push == 0.0 and a == 0.0:  # the third derivative decides
         force = eps * numbers.forcing * numbers.frequency * (cosine - base * sine)
-        push = force - v_rate / numbers.whole - drag * push
+        push = force - v_rate / numbers.whole - drag * numbers.lean
     if rate != 0.0:
         state[MODE] = 1.0 if rate > 0.0 else -1.0
     elif (abs(push) <= a and a > 0.0) or (abs(w) == 1.0 and push * w >= 0.0):
@@ -110,7 +111,7 @@ class _Run:
 
     def __init__(self, state: np.ndarray, numbers: Numbers) -> None:
         self.state, self.numbers = state, numbers
-        self.a = numbers.whole * numbers.pull
+        self.a, self.b = numbers.whole * numbers.pull, numbers.whole * numbers.lean
         base = numbers.excitation * numbers.drag * numbers.frequency
         self.force = numbers.mass_ratio * abs(numbers.forcing) * np.sqrt(1.0 + base * base)
 
@@ -119,7 +120,7 @@ class _Run:
     ) -> tuple[int, int]:
         state, numbers, a = self.state, self.numbers, self.a
         known = [*response(1.0, numbers), *response(numbers.whole, numbers)]
-        if not np.isfinite([*known, *state, a]).all() or math.isnan(oscillation(state, numbers).beta):
+        if not np.isfinite([*known, *state, a, self.b]).all() or math.isnan(oscillation(state, numbers).beta):
             return 0, FAILED
         limit = min(until, state[TURNS] + _FOREVER)
         fresh = False  # the leg starts with a slip: w' = w'' = 0
@@ -151,10 +152,10 @@ class _Run:
             begin = q.start()
             s = float(state[MODE])
             Y0 = s * state[RATE]
-            Y1 = 0.0 if fresh else s * (begin.h2 + begin.z2) - numbers.pull
+            Y1 = 0.0 if fresh else s * (begin.h2 + begin.z2) - s * q.q2_pull
             if Y0 < 1e-6 and s * state[W] == -1.0 and state[LOW] == 0.0 and Y1 + 2.0 * a < 0.0:
                 # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
-                shove = -Y1 - a  # |v''|
+                shove = -Y1 - a  # |v'' - b|
                 factor = numbers.restitution * np.sqrt((shove - a) / (shove + a))
                 rest = Y0 * (1.0 / (shove + a) + 1.0 / np.sqrt((shove - a) * (shove + a)))
                 if factor < 1.0:
@@ -163,7 +164,7 @@ class _Run:
                 if small or Y0 < 1e-13:
                     rest = min(rest, 1e-7)
                     state[V] += rest * state[V_RATE]
-                    state[V_RATE] -= rest * s * shove
+                    state[V_RATE] += rest * (self.b - s * shove)
                     self._turn(rest)
                     state[RATE] = state[MODE] = 0.0
                     add(HOLD, 0.0, 0.0)
@@ -222,15 +223,19 @@ class _Run:
         return outcome, way
 
     def _until_slip(self, q: Oscillation, left: float) -> tuple[int, float, Point, float]:
-        a, w, whole, omega = self.a, self.state[W], self.numbers.whole, q.omega
+        a, b, w, whole, omega = self.a, self.b, self.state[W], self.numbers.whole, q.omega
+        hold = min(
+            a + way * b for way in (1.0, -1.0) if way * w < 1.0
+        )  # what holds the absorber where it may slip
         driven = whole * omega * omega * math.hypot(q.h0, q.h1 / omega)  # bounds of |v''|
         free = whole * q.kappa * math.hypot(q.z0, (q.z1 + q.alpha * q.z0) / q.beta)
-        tiny = 4e-16 * (driven + free)
+        tiny = 4e-16 * (driven + free + abs(b))
         at, tau, renew, bound = q.start(), 0.0, -1.0, 0.0
         first = True  # a zero right at the start is judged by its slope, and left behind
         while tau < left:
             if tau >= renew:
-                if driven + free * math.exp(-q.alpha * tau) < a or driven + free == 0.0:
+                most = driven + free * math.exp(-q.alpha * tau)
+                if most < hold or (most == 0.0 and hold >= 0.0):
                     return _NEVER, tau, at, 0.0
                 own = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa)
                 bound = whole * (own + omega**4 * self.force * _HORIZON)
@@ -240,7 +245,7 @@ class _Run:
             for way in (1.0, -1.0):
                 if way * w >= 1.0:
                     continue
-                y, y_rate = a - way * value, -way * slope
+                y, y_rate = a - way * (value - b), -way * slope
                 if y <= tiny:
                     if not first or y_rate < 0.0 or y < -tiny:
                         return _SLIPS, tau, at, way
@@ -257,12 +262,12 @@ class _Run:
 
     def _slide(self, q: Oscillation, s: float, Y0: float, Y1: float, target: float, left: float) -> _Sliding:
         """Slide until the wall ahead is hit or the absorber halts, or for the time `left`."""
-        pull = self.numbers.pull
+        brake = s * q.q2_pull
         third = q.omega**3 * self.force * _HORIZON / np.sqrt(q.kappa)
 
         def look(tau: float) -> tuple[Point, float, float, float]:
             at = q.at(tau)
-            y, y_rate = Y0 + s * at.speed - pull * tau, s * (at.h2 + at.z2) - pull
+            y, y_rate = Y0 + s * at.speed - brake * tau, s * (at.h2 + at.z2) - brake
             return at, y, y_rate, s * (at.way - q.travel(tau))
 
         at, tau, y, y_rate, gain = q.start(), 0.0, Y0, Y1, 0.0
@@ -279,7 +284,9 @@ class _Run:
                 # from rest: y' or, after a slip, y'' opens the flight
                 jerk = s * (at.h3 + at.z3)
                 further = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa) + q.omega * third
-                if bound == 0.0 and further == 0.0:  # neither friction nor forcing: nothing moves
+                if (
+                    bound == 0.0 and further == 0.0 and not y_rate > 0.0
+                ):  # neither friction, slope nor forcing
                     return _Sliding(_NEVER, left, at, y, y_rate, gain)
                 steps = (
                     y_rate / bound if bound > 0.0 else 0.0,

@@ -29,6 +29,7 @@ PARAMETERS = {
     "coupled": {
         "forcing": st.floats(0.1, 5.0), "frequency": st.floats(0.5, 1.6), "damping": st.floats(0.05, 1.5), "mass_ratio": st.floats(0.005, 0.4),
         "restitution": fraction, "friction": friction, "gravity": st.floats(0.0, 1.0), "excitation": st.floats(0.0, 1.0),
+        "slope": st.one_of(st.just(0.0), st.floats(-0.6, 0.6)),
     },
 }  # fmt: skip
 SPEEDS = st.one_of(st.floats(-3.0, 3.0), st.sampled_from([0.0, 1e-9, -1e-9, 1e-6, -1e-4, 1e-14]))
@@ -92,10 +93,11 @@ HARD = [
     ("absorber", absorber(0.0, 1.0, 0.0, 0.2), start(0.0, 0.0, 0.5)),  # free drift
     ("absorber", absorber(0.0, 1.0, 0.0, 0.2), start(0.0, 0.0, 0.0)),  # nothing moves
     ("cavity", np.array([0.5, 0.7, 0.6, 0.1, 0.1, 2.0, 0.1, 1.0, 0.6, 1.0, 0.8]), start(0.3, 0.2, 0.0)),  # slides down
-    ("coupled", np.array([2.47, 0.985, 0.9, 0.006, 0.76, 0.5, 0.211, 1.0]), start(0.0, 0.0, 0.0, 1.0)),
-    ("coupled", np.array([3.0, 0.9, 0.3, 0.3, 0.3, 0.2, 0.2, 1.0]), start(0.0, 1.0, -1e-8, 2.0)),  # impacts pile up
-    ("coupled", np.array([0.0, 1.0, 0.0, 0.2, 0.5, 0.0, 0.0, 1.0]), start(0.0, 0.3, 0.0, 0.0)),  # nothing moves
-    ("coupled", np.array([0.1, 1.0, 0.9, 0.1, 0.5, 1.0, 1.0, 1.0]), start(0.0, 0.3, 0.0, 0.1)),  # sticks for ever
+    ("coupled", np.array([2.47, 0.985, 0.9, 0.006, 0.76, 0.5, 0.211, 1.0, 0.0]), start(0.0, 0.0, 0.0, 1.0)),
+    ("coupled", np.array([3.0, 0.9, 0.3, 0.3, 0.3, 0.2, 0.2, 1.0, 0.0]), start(0.0, 1.0, -1e-8, 2.0)),  # impacts pile up
+    ("coupled", np.array([0.0, 1.0, 0.0, 0.2, 0.5, 0.0, 0.0, 1.0, 0.0]), start(0.0, 0.3, 0.0, 0.0)),  # nothing moves
+    ("coupled", np.array([0.1, 1.0, 0.9, 0.1, 0.5, 1.0, 1.0, 1.0, 0.0]), start(0.0, 0.3, 0.0, 0.1)),  # sticks for ever
+    ("coupled", np.array([2.47, 0.985, 0.9, 0.006, 0.76, 0.5, 0.211, 1.0, 0.2]), start(0.0, 0.0, 0.0, 1.0)),
 ]  # fmt: skip
 
 

@@ -12,7 +12,8 @@ TIGHT = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-14}
 
 def right_side(params, s):
     """(q1, q1', q2, q2') and time since phase 0 -> rates, in mode s."""
-    G, Omega, lam, eps, _r, mu, g, chi = params
+    G, Omega, lam, eps, _r, mu, g, chi, slope = params
+    absorber = mu * g * math.cos(slope) * s + g * math.sin(slope)
 
     def rates(t, y):
         q1, p1, _q2, p2 = y
@@ -20,16 +21,16 @@ def right_side(params, s):
         if s == 0:
             acceleration = (base - eps * lam * p1 - q1) / (1.0 + eps)
             return [p1, acceleration, p2, acceleration]
-        return [p1, base - eps * lam * p1 - q1 - eps * mu * g * s, p2, mu * g * s]
+        return [p1, base - eps * lam * p1 - q1 - eps * absorber, p2, absorber]
 
     return rates
 
 
 def push(params, t, y):
-    """v'', which friction does not enter."""
-    G, Omega, lam, eps, _r, _mu, _g, chi = params
+    """v'', which friction does not enter, less the acceleration down the slope."""
+    G, Omega, lam, eps, _r, _mu, g, chi, slope = params
     base = eps * G * (math.sin(Omega * t) + chi * eps * lam * Omega * math.cos(Omega * t))
-    return base - eps * lam * y[1] - y[0]
+    return base - eps * lam * y[1] - y[0] - (1.0 + eps) * g * math.sin(slope)
 
 
 def event(function, direction):
@@ -40,8 +41,8 @@ def event(function, direction):
 
 def integrate(params, t, y, s, count):
     """The first `count` events after a start: list of (letter, phase, w, w' before, v, v')."""
-    _G, Omega, _lam, eps, r, mu, g, _chi = params
-    a = (1.0 + eps) * mu * g
+    _G, Omega, _lam, eps, r, mu, g, _chi, slope = params
+    a = (1.0 + eps) * mu * g * math.cos(slope)
     events = []
     while len(events) < count:
         if s != 0:

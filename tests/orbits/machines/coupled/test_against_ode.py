@@ -31,6 +31,11 @@ CASES = {
         {"forcing": 2.9, "frequency": 0.8, "damping": 0.0, "mass_ratio": 0.05, "friction": 0.1},
         {"w": 0.5, "w_rate": -0.4, "v": 0.9},
     ),
+    "on a slope": ({"frequency": 0.985, "slope": 0.1}, {"q1": 1.0, "q2": 0.0}),
+    "down a steep slope": (
+        {"frequency": 0.9, "mass_ratio": 0.2, "slope": -0.7, "forcing": 1.2},
+        {"w": 0.1, "w_rate": 0.3, "v": 0.2},
+    ),
 }
 
 
@@ -58,7 +63,7 @@ def test_simulated_events_are_those_of_the_integration(case):
 
 def half_map(params, x):
     """From just after an impact on the left to just after the next on the right, mirrored: (Psi, B, v, v') -> same."""
-    _G, Omega, _lam, eps, r, _mu, _g, _chi = params
+    _G, Omega, _lam, eps, r, _mu, _g, _chi, _slope = params
     psi, B, v, v_rate = x
     q2_rate = B / (1 + eps)
     y = [(v + eps) / (1 + eps), v_rate - eps * q2_rate, (v - 1) / (1 + eps), q2_rate]
@@ -209,7 +214,7 @@ def test_period_doubling_behind_the_borders():
 
     def whole_map(params, x):
         """From just after an impact on the left to the next one: (Psi, B, v, v') -> same, through R, t, t."""
-        _G, Omega, _lam, eps, r, _mu, _g, _chi = params
+        _G, Omega, _lam, eps, r, _mu, _g, _chi, _slope = params
         psi, B, v, v_rate = x
         y = np.array(
             [(v + eps) / (1 + eps), v_rate - eps * B / (1 + eps), (v - 1) / (1 + eps), B / (1 + eps)]

@@ -14,11 +14,11 @@ NODE = (0.63, 0.274, -0.107, 1.728)  # of the turn: phase, w, v, v'
 
 def newton(params, mode, psi, w, v, v_rate, w_rate=0.0):
     """w'' and v''."""
-    G, Omega, lam, eps, _, mu, g, chi = params
+    G, Omega, lam, eps, _, mu, g, chi, slope = params
     q1, q1_rate = (v + eps * w) / (1.0 + eps), (v_rate + eps * w_rate) / (1.0 + eps)
     base = np.sin(psi) + chi * eps * lam * Omega * np.cos(psi)
     push = -q1 - eps * lam * q1_rate + eps * G * base
-    return push - (1.0 + eps) * mode * mu * g, push
+    return push - (1.0 + eps) * g * (mode * mu * np.cos(slope) + np.sin(slope)), push
 
 
 def slope(function, x, i, step=1e-6):

@@ -27,15 +27,17 @@ SEGMENTS = [
     (U, -1, R, 1),
 ]
 PARAMETERS = [
-    [2.47, 0.98, 1.0, 0.006, 0.76, 0.5, 0.211, 1.0],
-    [1.3, 1.21, 0.7, 0.16, 0.5, 0.35, 0.4, 0.4],
-    [2.0, 0.8, 0.0, 0.05, 0.9, 0.1, 0.3, 0.0],
+    [2.47, 0.98, 1.0, 0.006, 0.76, 0.5, 0.211, 1.0, 0.0],
+    [1.3, 1.21, 0.7, 0.16, 0.5, 0.35, 0.4, 0.4, 0.2],
+    [2.0, 0.8, 0.0, 0.05, 0.9, 0.1, 0.3, 0.0, -0.7],
 ]
 
 
 def residual(params, start, mode, arrival, after, x0, x1):
     """The map's four rows: the linear equations of motion, with sin Psi and cos Psi as states, by matrix exponential."""
-    G, Omega, lam, eps, r, mu, g, chi = params
+    G, Omega, lam, eps, r, mu, g, chi, slope = params
+    pull, lean = mu * g * mp.cos(slope), g * mp.sin(slope)
+    absorber = (mode * pull + lean) if mode else 0
     psi, y, v, v_rate = x0
     w = mp.mpf(1 - 2 * start) if start < 2 else y
     w_rate = v_rate - y if start < 2 else mp.mpf(0)
@@ -46,8 +48,8 @@ def residual(params, start, mode, arrival, after, x0, x1):
     for j in range(7):
         matrix[1, j] = force[j] if mode else force[j] / (1 + eps)
         matrix[3, j] = 0 if mode else force[j] / (1 + eps)
-    matrix[1, 6] -= eps * mu * g * mode
-    matrix[3, 6] += mu * g * mode
+    matrix[1, 6] -= eps * absorber
+    matrix[3, 6] += absorber
     state = mp.matrix(
         [
             (v + eps * w) / (1 + eps),
@@ -65,7 +67,7 @@ def residual(params, start, mode, arrival, after, x0, x1):
     if arrival < 2:
         rows = [w - (1 - 2 * arrival), v_rate + r * w_rate - x1[1]]
     elif arrival == U:
-        rows = [sum(force[j] * end[j] for j in range(7)) - after * (1 + eps) * mu * g, w - x1[1]]
+        rows = [sum(force[j] * end[j] for j in range(7)) - (1 + eps) * (after * pull + lean), w - x1[1]]
     else:
         from_rest = start >= 2 and mode  # then the map is the mean of w'' over the flight
         rows = [w_rate / ((x1[0] - psi) / Omega) if from_rest else w_rate, w - x1[1]]
@@ -75,7 +77,7 @@ def residual(params, start, mode, arrival, after, x0, x1):
 def closed(events, modes, params, path, twist=1.0):
     """Data of a cycle that closes after one period, or after half of one where it is turned round."""
     shift = 2 * np.pi if twist > 0.0 else np.pi
-    return cycle_data(events, modes, params, path, twist, shift, 0, 0, params, np.zeros((0, 8)))
+    return cycle_data(events, modes, params, path, twist, shift, 0, 0, params, np.zeros((0, 9)))
 
 
 @pytest.mark.parametrize("segment", SEGMENTS)
@@ -84,13 +86,13 @@ def test_maps_and_all_their_derivatives(segment):
     generator = np.random.default_rng(sum(segment) + 7)
     params = np.array(PARAMETERS[generator.integers(3)])
     u = np.array([0.3, 0.4, 0.2, -0.6, 2.9, -0.5, 0.35, 0.25]) + 0.1 * generator.standard_normal(8)
-    work = workspace(2, 4, 8)
+    work = workspace(2, 4, 9)
     events, modes = np.array([start, arrival], np.int8), np.array([mode, after], np.int8)
     with mp.workdps(40):
         numbers = [mp.mpf(float(value)) for value in (*params, *u)]
 
         def rows(values):
-            return residual(values[:8], start, mode, arrival, after, values[8:12], values[12:])
+            return residual(values[:9], start, mode, arrival, after, values[9:13], values[13:])
 
         def slope(j):
             h = mp.mpf(10) ** -13
@@ -101,21 +103,21 @@ def test_maps_and_all_their_derivatives(segment):
                 ends.append(rows(moved))
             return np.array([float((a - b) / (2 * h)) for a, b in zip(*ends)])
 
-        for ip in range(8):
-            assert np.isfinite(linearise(closed(events, modes, params, single(8, ip)), u, params[ip], work))
+        for ip in range(9):
+            assert np.isfinite(linearise(closed(events, modes, params, single(9, ip)), u, params[ip], work))
             F, A, D, Q = (work[i][0] for i in range(4))
             np.testing.assert_allclose(Q, slope(ip), rtol=1e-12, atol=1e-13)
         # a parameter that moves several numbers, each with its own power: the chain rule
-        powers = np.array([-1.0, 0.5, -0.5, 2.0, 0.0, 1.0, -2.0, 0.0])
+        powers = np.array([-1.0, 0.5, -0.5, 2.0, 0.0, 1.0, -2.0, 0.0, 1.0])
         path = np.array([params / 1.3**powers, powers])
         linearise(closed(events, modes, params, path), u, 1.3, work)
-        chain = sum(slope(j) * powers[j] * params[j] / 1.3 for j in range(8) if powers[j])
+        chain = sum(slope(j) * powers[j] * params[j] / 1.3 for j in range(9) if powers[j])
         np.testing.assert_allclose(work[3][0], chain, rtol=1e-11, atol=1e-12)
-        linearise(closed(events, modes, params, single(8, 0)), u, params[0], work)
+        linearise(closed(events, modes, params, single(9, 0)), u, params[0], work)
         np.testing.assert_allclose(F, [float(value) for value in rows(numbers)], atol=1e-14)
         for j in range(4):
-            np.testing.assert_allclose(A[:, j], slope(8 + j), rtol=1e-12, atol=1e-13)
-            np.testing.assert_allclose(D[:, j], slope(12 + j), rtol=1e-12, atol=1e-13)
+            np.testing.assert_allclose(A[:, j], slope(9 + j), rtol=1e-12, atol=1e-13)
+            np.testing.assert_allclose(D[:, j], slope(13 + j), rtol=1e-12, atol=1e-13)
 
 
 def inner_minima(values):
@@ -131,20 +133,20 @@ def test_margins_are_those_of_the_motion(segment, case):
     """Against the motion sampled finely: what friction has left, the lowest speed, the walls, the events' own margins."""
     start, mode, arrival, after = segment
     params = np.array(PARAMETERS[case])
-    eps, r, mu, g = params[3], params[4], params[5], params[6]
+    eps, r, mu, g, slope = params[[3, 4, 5, 6, 8]]
     generator = np.random.default_rng(10 * case + sum(segment))
     u = np.array([0.3, 0.4, 0.2, -0.6, 5.9, -0.5, 0.35, 0.25]) + 0.2 * generator.standard_normal(8)
-    work = workspace(2, 4, 8)
+    work = workspace(2, 4, 9)
     events, modes = np.array([start, arrival], np.int8), np.array([mode, after], np.int8)
-    data = closed(events, modes, params, single(8, 0))
+    data = closed(events, modes, params, single(9, 0))
     linearise(data, u, params[0], work)
     found = np.full(8, np.nan)
     margins(data, u, params[0], work, found)
     duration = (u[4] - u[0]) / params[1]
     w, w_rate = (1.0 - 2.0 * start, u[3] - u[1]) if start < 2 else (u[1], 0.0)
     states, q1_2, q2_2 = path(params, mode, u[0], w, w_rate, u[2], u[3], duration, 20000)
-    a = (1.0 + eps) * mu * g
-    push = q1_2 + eps * q2_2
+    a = (1.0 + eps) * mu * g * np.cos(slope)
+    push = q1_2 + eps * q2_2 - (1.0 + eps) * g * np.sin(slope)
     if mode == 0:
         left = a - np.abs(push)
         expected = inner_minima(left)
@@ -176,9 +178,9 @@ def test_half_and_whole_words_agree():
     orbit = machine.symmetric_orbit(frequency=0.99)
     u = orbit.nodes.ravel()
     codes, modes = orbit.word.codes, orbit.word.mode_codes
-    whole = closed(codes, modes, orbit.params, single(8, 1))
-    half = closed(codes[:1].copy(), modes[:1].copy(), orbit.params, single(8, 1), -1.0)
-    one, two = workspace(1, 4, 8), workspace(2, 4, 8)
+    whole = closed(codes, modes, orbit.params, single(9, 1))
+    half = closed(codes[:1].copy(), modes[:1].copy(), orbit.params, single(9, 1), -1.0)
+    one, two = workspace(1, 4, 9), workspace(2, 4, 9)
     assert linearise(half, u[:4].copy(), 0.99, one) < 1e-14
     assert linearise(whole, u, 0.99, two) < 1e-14
     short, long = np.empty(4), np.empty(8)
@@ -194,11 +196,11 @@ def test_what_cannot_be_evaluated_is_infinite():
     params = machine.vector({"frequency": 0.9})
     events, modes = np.array([L, R], np.int8), np.array([-1, 1], np.int8)
     u = np.array([0.3, 1.0, 0.1, 0.2, 3.4, -1.0, -0.1, -0.2])
-    work = workspace(2, 4, 8)
+    work = workspace(2, 4, 9)
     assert (
-        linearise(closed(events, modes, params, single(8, 1)), u, 1.0, work) == np.inf
+        linearise(closed(events, modes, params, single(9, 1)), u, 1.0, work) == np.inf
     )  # undamped resonance
-    assert linearise(closed(events, modes, params, single(8, 2)), u, 400.0, work) == np.inf  # overdamped
+    assert linearise(closed(events, modes, params, single(9, 2)), u, 400.0, work) == np.inf  # overdamped
 
 
 def test_first_zero_finds_every_zero():

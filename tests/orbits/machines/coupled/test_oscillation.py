@@ -15,7 +15,7 @@ from orbits.machines.coupled.oscillation import (
 
 OMEGA, ALPHA, BETA = 1.07, 0.03, 0.98
 START = (0.21, -0.34, 0.55, 0.17)  # harmonic h and its rate, oscillation z and its rate
-PARAMS = Numbers(2.1, 0.97, 0.8, 0.15, 0.7, 0.4, 0.3, 0.6)
+PARAMS = Numbers(2.1, 0.97, 0.8, 0.15, 0.7, 0.4, 0.3, 0.6, 0.2)
 
 
 def exact(order, tau):
@@ -77,18 +77,17 @@ def test_the_certain_time_is_the_first_zero_of_the_worst_parabola(y, rate):
 
 @pytest.mark.parametrize("mode", [-1.0, 0.0, 1.0])
 def test_a_leg_starts_at_its_state_with_the_acceleration_of_newton(mode):
-    """(1 + eps [stuck]) q1'' = -q1 - eps lambda q1' + eps G (sin Psi + chi eps lambda Omega cos Psi) - eps s mu g."""
-    G, Omega, lam, eps, _, mu, g, chi = PARAMS
+    """(1 + eps [stuck]) q1'' = -q1 - eps lambda q1' + eps G (sin Psi + chi eps lambda Omega cos Psi) - eps q2''; q2'' = s mu g cos(slope) + g sin(slope) [sliding]."""
+    G, Omega, lam, eps, _, mu, g, chi, slope = PARAMS
+    pull = mode * mu * g * np.cos(slope) + g * np.sin(slope) if mode else 0.0
     psi, w, rate, v, v_rate = 0.9, 0.25, 0.4 * mode, 0.3, -0.2
     q = oscillation(np.array([psi, w, rate, mode, 0.0, 0.0, v, v_rate]), PARAMS)
     q1, q1_rate = (v + eps * w) / (1 + eps), (v_rate + eps * rate) / (1 + eps)
-    offset = -eps * mode * mu * g
+    offset = -eps * pull
     assert q.h0 + q.z0 + offset == pytest.approx(q1, abs=1e-15)
     assert q.h1 + q.z1 == pytest.approx(q1_rate, abs=1e-15)
-    assert q.q2_rate == pytest.approx((v_rate - rate) / (1 + eps)) and q.q2_pull == pytest.approx(
-        mode * mu * g
-    )
+    assert q.q2_rate == pytest.approx((v_rate - rate) / (1 + eps)) and q.q2_pull == pytest.approx(pull)
     acceleration = -(Omega**2) * q.h0 - 2 * q.alpha * q.z1 - q.kappa * q.z0
     base = mp.sin(psi) + chi * eps * lam * Omega * mp.cos(psi)
-    right = -q1 - eps * lam * q1_rate + eps * G * base - eps * mode * mu * g
+    right = -q1 - eps * lam * q1_rate + eps * G * base - eps * pull
     assert acceleration * (1.0 if mode else 1.0 + eps) == pytest.approx(float(right), abs=1e-14)

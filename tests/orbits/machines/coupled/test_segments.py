@@ -8,8 +8,8 @@ from orbits.machines.coupled import segments
 from tests.orbits.machines.coupled.motion import path
 
 PARAMS = np.array(
-    [2.1, 0.97, 0.8, 0.15, 0.7, 0.4, 0.3, 0.6]
-)  # forcing, frequency, damping, mass ratio, r, mu, g, excitation
+    [2.1, 0.97, 0.8, 0.15, 0.7, 0.4, 0.3, 0.6, 0.15]
+)  # forcing, frequency, damping, mass ratio, r, mu, g, excitation, slope
 START = {"psi": 0.9, "w": 0.25, "v": 0.3, "v_rate": -0.2}
 
 
@@ -34,7 +34,7 @@ def test_positions_and_velocities(mode, ahead):
 @pytest.mark.parametrize("ahead", [0.3, 1.3])
 def test_works_are_integrals_and_balance_the_energy(mode, ahead):
     """Of the excitation eps G (sin + chi eps lambda Omega cos) q1', of the damper eps lambda q1'^2, of friction eps mu g abs(w')."""
-    G, Omega, lam, eps, _, mu, g, chi = PARAMS
+    G, Omega, lam, eps, _, mu, g, chi, slope = PARAMS
     state, numbers = state_of(mode)
     works, energies = np.empty((1, 3)), np.empty(2)
     segments.works(state[None], PARAMS, np.array([ahead]), works)
@@ -46,14 +46,16 @@ def test_works_are_integrals_and_balance_the_energy(mode, ahead):
     expected = [
         simpson(force * states[:, 1], x=tau),
         eps * lam * simpson(states[:, 1] ** 2, x=tau),
-        eps * mu * g * simpson(np.abs(speed), x=tau),
+        eps * mu * g * np.cos(slope) * simpson(np.abs(speed), x=tau),
     ]
     assert works[0] == pytest.approx(expected, abs=1e-11)
     ends = np.zeros((2, 8))
     for row, (q1, p1, q2, p2) in zip(ends, states[[0, -1], :4]):
         row[1], row[2], row[6], row[7] = q1 - q2, p1 - p2, q1 + eps * q2, p1 + eps * p2
     segments.energies(ends, PARAMS, energies)
+    height = states[0, 0] - states[0, 2]
     assert energies[0] == pytest.approx(
         0.5 * (states[0, 1] ** 2 + states[0, 0] ** 2 + eps * states[0, 3] ** 2)
+        + eps * g * np.sin(slope) * height
     )
     assert energies[1] - energies[0] == pytest.approx(expected[0] - expected[1] - expected[2], abs=1e-11)
