@@ -6,15 +6,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
-from contvines.bifurcation.detect import changes
-from contvines.bifurcation.multiplier_counts import counts
-from contvines.bifurcation.scan import Scanner, dips, in_native
-from contvines.bifurcation.symmetry_test import SymmetryTest
-from contvines.continuation.engine import Engine
-from contvines.continuation.settings import Settings
-from contvines.core.library import native
 from contvines.problems.dense import KERNELS, dense_workspace
-from contvines.problems.protocol import Kernels, ProblemDefaults, Symmetry
+from contvines.problems.protocol import Kernels, ProblemDefaults
 
 
 def inspect(data, u, p, work, row):
@@ -111,61 +104,6 @@ def test_short_loss_of_stability(centre, half):
 def test_a_touch_from_above_is_no_event():
     graph = cv.diagram(Line(margin=lambda p: (p - 0.1234) ** 2 + 1e-9), within=(-1.0, 1.0))
     assert len(graph) == 1 and not graph.of_kind("velocity-graze")
-
-
-def test_dips_of_parabolas():
-    x, above = np.array([0.0, 0.1, 0.2, 0.3]), (0.0, 0.1, 0.3)
-    for lowest, expected in ((-(0.01**2), [True, True]), (0.01**2, [False, False])):
-        values = (x - 0.13) ** 2 + lowest
-        assert [dips(*values[i : i + 3], 0.1, 0.1) for i in (0, 1)] == expected
-    uneven = [(t - 0.2) ** 2 - 1e-4 for t in above]
-    assert dips(*uneven, 0.1, 0.2) and not dips(*uneven, 0.2, 0.1)  # wrong lengths: no dip
-    assert not dips(1.0, np.inf, 1.0, 0.1, 0.1) and not dips(1.0, -0.1, 1.0, 0.1, 0.1)
-
-
-class Scanned(cv.AlgebraicProblem):
-    """Made-up points: two multipliers, five margins, the mirror u -> -u."""
-
-    def __init__(self):
-        super().__init__(lambda u, p: u - p, [0.0, 0.0], 0.0, scale=1.0)
-        self.n_multipliers, self.n_margins, self.spectrum = 2, 5, "map"
-        self.detection = ""
-        self.symmetries = (Symmetry("symmetry-breaking", lambda u: -u),)
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.booleans())
-def test_a_scan_is_what_numpy_says(seed, real):
-    """Both cores, against whole-array operations."""
-    draw = np.random.default_rng(seed)
-    n = int(draw.integers(2, 40))
-    points, values = draw.normal(size=(n, 2)), np.cumsum(draw.uniform(0.1, 1.0, n))
-    tangents, signs = draw.normal(size=(n, 3)), draw.choice([-1.0, 1.0], n)
-    rows = draw.normal(size=(n, 9)) + 1.0
-    rows[:, 3] = -rows[:, 1]
-    paired = draw.random(n) < 0.5
-    rows[paired, 2] = rows[paired, 0]
-    rows[~paired, 1] = rows[~paired, 3] = 0.0
-    rows[draw.random((n, 9)) < np.r_[np.zeros(4), np.full(5, 0.1)]] = np.nan
-    engine = Engine(Scanned(), (-100.0, 100.0), Settings())
-    scanner = Scanner(engine, [SymmetryTest(s, 2, None) for s in engine.problem.symmetries])
-    found = [scanner(points, values, tangents, rows, signs, real)]
-    if native():
-        scanner.mark = in_native
-        found.append(scanner(points, values, tangents, rows, signs, real))
-    smallest = np.fmin(np.fmin.reduce(rows[:, 4:], axis=1), np.inf)
-    numbers = counts(rows[:, 0:4:2] + 1j * rows[:, 1:4:2], "map")
-    negative = smallest < 0.0
-    for flags, least in found:
-        np.testing.assert_array_equal(least, smallest)
-        np.testing.assert_array_equal((flags & 1) > 0, changes(tangents[:, -1]))
-        np.testing.assert_array_equal((flags & 2) > 0, changes(signs))
-        np.testing.assert_array_equal((flags & 4) > 0, (numbers[1:] != numbers[:-1]).any(axis=1))
-        np.testing.assert_array_equal(
-            (flags & 8) > 0, (negative[1:] & ~negative[:-1]) if real else (negative[:-1] & ~negative[1:])
-        )
-        np.testing.assert_array_equal((flags & 16) > 0, (points[1:] * points[:-1]).sum(axis=1) < 0.0)
-    np.testing.assert_array_equal(found[0].flags, found[-1].flags)
 
 
 def test_points_that_hit_a_special_point_exactly():

@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.optimize import fsolve
 
 import contvines as cv
-from contvines.bifurcation.scan import turns_twice
 from orbits import Absorber
 
 
@@ -32,16 +29,6 @@ def test_an_inflection_is_no_pair_of_folds():
     for e in (1e-2, 1e-3, 1e-4):
         problem = cv.AlgebraicProblem(lambda x, p, e=e: p - x**3 - 3 * e**2 * x, [-0.5], -0.125 - 1.5 * e**2)
         assert not cv.diagram(problem, within=(-0.2, 0.2)).of_kind("fold")
-
-
-@given(st.floats(0.01, 10), st.floats(0.01, 10), st.floats(-10, 10))
-@settings(deadline=None)
-def test_the_cubic_with_given_slopes(here, there, mean):
-    """Whether c' is negative somewhere on [0, 1], c the cubic with c'(0), c'(1) and c(1) - c(0), by looking everywhere."""
-    a = np.linalg.solve([[1, 0, 0], [1, 2, 3], [1, 1, 1]], [here, there, mean])
-    smallest = np.polyval([3 * a[2], 2 * a[1], a[0]], np.linspace(0, 1, 20001)).min()
-    if abs(smallest) > 1e-5:
-        assert turns_twice(here, there, mean) == (smallest < 0.0)
 
 
 def test_folds_beside_borders_of_a_machine():
@@ -86,20 +73,3 @@ def test_folds_beside_borders_of_a_machine():
         changes = np.array([value(step), value(-step)]) - fold.value
         assert np.all(changes < 0.0) or np.all(changes > 0.0)
         assert abs(changes[0] - changes[1]) < 0.1 * abs(changes).min()
-
-
-@pytest.mark.parametrize(
-    "name", ["border", "leap", "meets", "fold", "astray", "branch-point", "end", "plain"]
-)
-def test_a_user_function_may_have_any_name(name):
-    """The circle x^2 + p^2 = 1 closes, folds at p = -1 and 1, and has x = 0.3 at p = -+sqrt(0.91), whatever that is called."""
-    problem = cv.AlgebraicProblem(lambda u, p: [u[0] ** 2 + p**2 - 1.0], [1.0], 0.0)
-    graph = cv.diagram(problem, within=(-2.0, 2.0), user_functions={name: lambda u, p: u[0] - 0.3})
-    (branch,) = graph
-    assert branch.closed
-    folds = sorted(point.value for point in graph.of_kind("fold"))
-    assert folds == pytest.approx([-1.0, 1.0], abs=1e-10)
-    mine = graph.of_kind("user")
-    assert [point.name for point in mine] == [name, name]
-    assert sorted(point.value for point in mine) == pytest.approx([-np.sqrt(0.91), np.sqrt(0.91)], abs=1e-10)
-    assert len(graph.special) == 4

@@ -6,9 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
-from contvines.bifurcation.detect import Detector
-from contvines.continuation.engine import Engine
-from contvines.continuation.settings import Settings
 from contvines.problems.dense import KERNELS
 from contvines.problems.protocol import Kernels
 from tests.contvines.bifurcation.test_dips import Line
@@ -82,12 +79,3 @@ def test_where_one_is_lost_before_the_other_comes_back_nothing_is_real(centre, h
 def test_margins_that_change_places_at_one_point_leave_no_window(centre, rounding):
     """As where one round gets what another one loses; margins are known to half their digits there."""
     assert not real_from_to(lambda p: p - centre + rounding, lambda p: centre - p)
-
-
-def test_a_window_between_a_branch_point_and_the_first_point_of_a_branch_that_leaves_it():
-    problem = Virtual(lambda p: p - 0.5, lambda p: 0.503 - p)
-    engine = Engine(problem, (0.0, 1.0), Settings())
-    ends = (engine.start(np.array([p]), p) for p in (0.49, 0.51))
-    found = Detector(engine).beside(*ends, real=False)
-    assert [event.kind for event in found] == ["velocity-graze"]
-    assert found[0].point.p == pytest.approx(0.5, abs=1e-13)

@@ -57,19 +57,6 @@ def test_an_isola_is_found_and_nothing_is_listed_twice():
     assert graph.of_kind("fold")[0].value == pytest.approx(1 + np.sqrt(8), abs=1e-12)
 
 
-def test_equal_seeds_give_equal_results():
-    problem = cv.MapProblem(henon, [0.6, 0.2], 0.5, parameter="a")
-    population = problem.population(box=[(-2, 2), (-2, 2)])
-    one, two = (
-        cv.atlas(population, within=(0.3, 0.8), values=3, starts=50, seed=4, depth=1) for _ in range(2)
-    )
-    assert [a.to_dict() for a in one.attractors if a.kind != "chaotic"] == [
-        a.to_dict() for a in two.attractors if a.kind != "chaotic"
-    ] or repr(one.attractors) == repr(two.attractors)
-    assert list(one.branches) == list(two.branches)
-    assert all(np.array_equal(one[b].points, two[b].points) for b in one.branches)
-
-
 def test_shares_of_henons_basin_are_within_three_sigma_of_counts_from_elsewhere():
     """Attractors.jl, test/mapping/attractor_mapping_tests.jl: 0.451 of 1000 starts, drawn uniformly from [-2, 2]^2, stay.
 

@@ -47,11 +47,6 @@ def test_every_stretch_between_two_changes_is_asked(pairs, asked):
     assert len(unasked(graph, known, 2)) <= 2
 
 
-def test_asked_for_is_what_lies_just_outside_of_stable_stretches():
-    found = unasked(graph_with((0.3, 0.6)), [0.1, 0.45, 0.9], 1000)
-    assert any(0.29 < p < 0.3 for p in found) and any(0.6 < p < 0.61 for p in found)
-
-
 def windows(x, p):
     """x = 0 attracts everywhere; x = 1 attracts |x - 1| < 1/2 for 0.40 < p < 0.42 alone."""
     inside = 40.0 * ((p - 0.41) ** 2 - 0.01**2) * 1e4
@@ -70,12 +65,3 @@ def test_a_window_narrower_than_the_distance_of_the_values_is_found():
     assert atlas.settings["scanned"] >= 96 and atlas.settings["quiet"] == 96
     assert "the last 96 met nothing new" in str(atlas)
     assert any(a.branch == other.label and a.starts == 16 for a in atlas.attractors)
-
-
-def test_the_default_scan_has_as_many_starts_as_the_values():
-    population = cv.MapProblem(lambda x, p: 0.5 * x, [0.0], 0.5).population(box=[(-2.0, 2.0)])
-    atlas = cv.atlas(population, within=(0.0, 1.0), values=3, starts=32)
-    assert atlas.settings["scan"] == atlas.settings["scanned"] == 6
-    rows = [line for line in str(atlas).splitlines() if line.startswith("1-cycle") or "attractor" in line]
-    assert rows[0].split()[0] == "attractor"
-    assert rows[1].split()[-2:] == ["100.00%", "100%"]

@@ -82,30 +82,6 @@ def test_parameters_stay_in_their_stable_interval(graph):
     assert low < 0.5 < high
 
 
-@pytest.mark.parametrize(
-    ("at", "ends", "lost"), [(1.8, (1.0, 2.7), (True, False)), (2.4, (1.2, 3.0), (False, True))]
-)
-def test_the_end_of_the_search_is_no_limit(at, ends, lost):
-    """Logistic map: the fixed point 1 - 1/p is stable for 1 < p < 3; the search goes half of p to either side."""
-    problem = cv.MapProblem(lambda u, p: np.array([p * u[0] * (1.0 - u[0])]), [0.5], 2.0)
-    branch = cv.diagram(problem, within=(1.5, 2.6), depth=0)["B1"]
-    found = cv.robustness(branch, at, starts=0, vary=("p",))
-    assert found.parameters["p"] == pytest.approx(ends, abs=1e-8)
-    assert found.lost["p"] == lost
-    told = found.to_dict()
-    assert told["parameters"]["p"] == pytest.approx(ends, abs=1e-8) and told["lost"] == {"p": list(lost)}
-    (line,) = (line for line in str(found).splitlines() if "stable and real for p" in line)
-    assert ("at most 1.2" in line) is not lost[0] and ("at least 2.7" in line) is not lost[1]
-
-
-def test_a_motion_that_the_search_does_not_lose_has_no_limits():
-    """x' = x / 2 + p: stable for every p."""
-    problem = cv.MapProblem(lambda u, p: 0.5 * u + p, [2.0], 1.0)
-    found = cv.robustness(cv.diagram(problem, within=(0.0, 2.0), depth=0)["B1"], 1.0, starts=0, vary=("p",))
-    assert found.parameters["p"] == pytest.approx((0.5, 1.5)) and found.lost["p"] == (False, False)
-    assert "not lost down to 0.5 and up to 1.5" in str(found)
-
-
 def test_an_erosion_curve_falls_to_zero_at_the_fold(graph):
     found = cv.erosion(graph["B1"], [0.2530, 0.26, 0.3, 0.4], starts=64)
     assert np.all(np.diff(found.distances) > 0.0)

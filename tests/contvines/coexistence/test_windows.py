@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.graph.persistence import same_graph
-from contvines.journal import MemoryJournal
-from orbits import Absorber, Cavity, Coupled
+from orbits import Absorber
 from orbits.attractors import find_attractor
 from tools.attractors.drawn import drawn
 from tools.attractors.isolas import window
@@ -52,25 +50,6 @@ def test_one_chaotic_value_leads_to_windows_that_no_start_meets():
         )
 
 
-def test_an_atlas_with_chaos_is_the_same_when_it_is_resumed():
-    def atlas(journal):
-        population = LOGISTIC.population(box=[(0.01, 0.99)])
-        return cv.atlas(
-            population, within=(3.93, 4.0), values=[3.97], starts=16, depth=0, scan=1, journal=journal
-        )
-
-    whole = MemoryJournal()
-    first = atlas(whole)
-    entries = list(whole.entries.items())
-    beside = [k for k, (key, _) in enumerate(entries) if key.startswith("apart/")]
-    assert len(beside) > 10  # cycles are followed apart from the graph
-    for written in (beside[len(beside) // 2], len(entries)):
-        journal = MemoryJournal()
-        journal.entries = dict(entries[:written])
-        assert same_graph(atlas(journal), first)
-        assert journal.entries.keys() == whole.entries.keys()
-
-
 @pytest.mark.parametrize(("friction", "amplitude"), [(0.5, 1.1441666666666668), (0.05, 1.0341666666666667)])
 def test_unstable_cycles_in_an_absorber_s_chaos_return(friction, amplitude):
     """Each is followed by the event-driven simulation for one cycle, which knows no equation of theirs, and comes back."""
@@ -98,26 +77,6 @@ def test_newton_from_drawn_starts_finds_henon_s_cycles():
     for points in cycles:
         images = np.array([henon(x, 1.4) for x in points])
         assert np.abs(images - np.roll(points, -1, axis=0)).max() < 1e-7
-
-
-@pytest.mark.parametrize(
-    ("machine", "over", "value"),
-    [
-        (Absorber(restitution=0.76, friction=0.05, gravity=0.211, mass_ratio=0.006), "amplitude", 1.0),
-        (Cavity(restitution_left=0.6, restitution_right=0.8, friction_left=0.05, friction_right=0.1, gravity=0.2, slope=0.05,
-                mass_ratio=0.006), "amplitude", 1.0),
-        (Coupled(forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211), "frequency", 0.9975),
-    ],
-    ids=["absorber", "cavity", "coupled"],
-)  # fmt: skip
-def test_newton_from_drawn_starts_finds_cycles_that_return(machine, over, value):
-    """Each is followed by the event-driven simulation for one cycle, and comes back; unstable ones are among them."""
-    population = machine.population(over)
-    cycles = population.returning(population.starts(8, 0, value), value)
-    orbits = [problem.orbit(u, value) for problem, u in cycles]
-    assert any(np.abs(orbit.multipliers).max() > 1.5 for orbit in orbits)
-    for orbit in orbits:
-        assert orbit.replay() < 1e-7
 
 
 def test_a_motion_that_hardly_any_start_meets_is_reached_from_afar():

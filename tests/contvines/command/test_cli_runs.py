@@ -3,7 +3,6 @@
 import csv
 import json
 import math
-import sqlite3
 from pathlib import Path
 
 import pytest
@@ -120,18 +119,6 @@ def test_switch_adds_the_branch_that_leaves_a_point(folder, capsys):
     assert (folder / "w.vines").read_bytes() == before
 
 
-def test_nothing_leaves_a_fold_or_an_end(folder, capsys):
-    for label, why in (("LP1", "no other branch leaves"), ("EP1", "the interval ends here")):
-        call("switch", folder / "s.vines", label)
-        told = capsys.readouterr().out
-        assert told.startswith(f"{label}: ") and why in told
-
-
-def test_orbit_says_where_it_is_drawn(folder, capsys):
-    call("orbit", folder / "s.vines", "SB1", "--plot", folder / "sb.png")
-    assert f"drawn in {folder / 'sb.png'}" in capsys.readouterr().err
-
-
 def test_a_saved_graph_can_be_used_like_the_computed_one(folder, tmp_path):
     graph = load(folder / "s.vines")
     assert graph.branches["B1"].problem is not None
@@ -207,11 +194,6 @@ def test_a_guess_that_leads_nowhere_is_not_dropped_silently(tmp_path, capsys):
     call("diagram", tmp_path / "g.toml", "-o", tmp_path / "g.vines", "--quiet")
     said = capsys.readouterr().err
     assert "the guess does not lead to an orbit 'LR'" in said and "found by simulation" in said
-
-
-def test_a_finished_file_has_no_free_pages(folder):
-    with sqlite3.connect(folder / "s.vines") as db:
-        assert db.execute("PRAGMA freelist_count").fetchone() == (0,)
 
 
 def test_export_has_the_measures_of_every_point(folder, monkeypatch):

@@ -9,7 +9,6 @@ import pytest
 import contvines as cv
 from contvines.command.compare import draw_compared, peaks_compared
 from contvines.command.compose import checked_study, first_orbit, machine
-from contvines.command.orbit import _number
 
 STUDY = """
 units = "si"
@@ -49,21 +48,6 @@ def test_the_bare_oscillator_of_a_shaken_base_in_millimetres(graph):
     wanted = np.abs((1 + 0.04j * r) / (1 - r**2 + 0.04j * r))
     np.testing.assert_allclose(response, wanted, rtol=0.02)
     assert values[0] == 2.9 and values[-1] == 3.1
-
-
-def test_lines_go_with_displacements_over_the_parameter_only(graph):
-    _, axes = plt.subplots()
-    for x, y in (("max_abs_q1", "max_abs_q1"), (None, "phase")):
-        with pytest.raises(ValueError, match="this goes with the displacement of an oscillator"):
-            draw_compared(axes, graph, ["bare"], x, y)
-    plt.close("all")
-
-
-@pytest.mark.parametrize(
-    "value, shown", [(3e-7, "3e-07"), (-2.5e-14, "-2.5e-14"), (4e-16, "0"), (0.5, "0.5")]
-)
-def test_only_rounding_is_shown_as_zero(value, shown):
-    assert _number(value) == shown
 
 
 def test_peaks_to_compare_with_are_those_of_two_oscillators_in_the_frequency_domain():

@@ -10,7 +10,6 @@ import pytest
 from contvines.command.place import held
 from contvines.graph.persistence import same_graph
 from contvines.store import load
-from contvines.store.turns import set_aside
 
 STUDY = """
 [model]
@@ -126,15 +125,6 @@ def test_a_survey_that_was_ended_before_its_last_file(run, tmp_path, study):
     (tmp_path / "s.nc.unfinished").write_text("")
     assert run("survey", study, "-o", "s.nc", "-q", "--workers", "1")[0] == 0
     assert {name: (tmp_path / name).read_bytes() for name in names(tmp_path) if name != "s.toml"} == whole
-
-
-def test_names_that_are_set_aside(tmp_path):
-    for name in ("a.b.vines", "a.b.vines-wal", "a.b.old.vines-wal"):
-        (tmp_path / name).write_text(name)
-    assert set_aside(tmp_path / "a.b.vines", tmp_path / "a.b.vines-wal") == tmp_path / "a.b.old2.vines"
-    assert (tmp_path / "a.b.old.vines-wal").read_text() == "a.b.old.vines-wal"
-    assert (tmp_path / "a.b.old2.vines-wal").read_text() == "a.b.vines-wal"
-    assert set_aside(tmp_path / "a.b.vines") is None
 
 
 HOLDING = """

@@ -3,7 +3,6 @@
 import csv
 import json
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -230,17 +229,6 @@ def test_the_amplitude_of_a_graph_in_frequency_counts(run, tmp_path):
     assert status == 1 and "amplitude = 0.55 there and 0.5 in the study" in err
 
 
-@pytest.mark.parametrize("field", ["count", "transient"])
-def test_endless_sweeps_are_refused(run, tmp_path, field):
-    path = study(REDUCED, tmp_path / "a.toml")
-    lines = [f"{field} = 1000000000" if x.startswith(field) else x for x in path.read_text().splitlines()]
-    path.write_text("\n".join(lines))
-    status, _, err = run("sweep", path)
-    assert status == 1
-    assert f"[sweep] {field} = 1000000000 is out of range" in err and "1000000" in err.split("range;")[1]
-    assert not Path("a-sweep.csv").exists()
-
-
 def test_a_folder_that_cannot_be_written_names_the_option(run, tmp_path, monkeypatch):
     path = study(REDUCED, tmp_path / "a.toml")
     plain = Path.open
@@ -254,28 +242,3 @@ def test_a_folder_that_cannot_be_written_names_the_option(run, tmp_path, monkeyp
     status, _, err = run("sweep", path)
     assert status == 1
     assert "a-sweep.csv: cannot be written there (Read-only file system); choose another place with -o" in err
-
-
-@pytest.mark.parametrize("width", [40, 80, 200])
-def test_the_table_of_a_sweep_fits_its_terminal_and_has_a_line_for_each_run(width, monkeypatch):
-    from contvines.command import sweep
-
-    monkeypatch.setattr(sweep, "terminal_width", lambda: width)
-    long = "LRtt" * 70  # 280 events
-    rows = [
-        SimpleNamespace(value=v, attractor=kind, word=word, periods=k)
-        for v, kind, word, k in [
-            (0.2, "periodic", "tt", 1),
-            (0.3, "periodic", "tt", 1),
-            (0.4, "periodic", long, 70),
-            (0.5, "chaotic", "", 0),
-        ]
-    ]
-    lines = sweep._summary(rows, "amplitude").splitlines()
-    assert max(map(len, lines)) <= width
-    table = [line.split() for line in lines]
-    periods, seventy = (["periods"], ["k=70"]) if width > 40 else ([], [])  # the first column to go
-    assert table[0] == ["amplitude", "settles", "on", *periods, "word"]
-    assert table[1][:4] == ["0.2", "to", "0.3", "periodic"] and table[1][-1] == "tt"
-    assert table[2] == ["0.4", "to", "0.4", "periodic", *seventy, "(LRtt)^70"]
-    assert table[3] == ["0.5", "to", "0.5", "chaotic"]

@@ -68,31 +68,6 @@ def test_resume_after_an_interruption_at_each_record():
         assert list(resumed.entries) == list(whole.entries)
 
 
-def test_resume_one_record_at_a_time():
-    entries: dict = {}
-    for _ in range(200):
-        try:
-            graph = cascade(journal=Fragile(entries, 1))
-        except Killed:
-            continue
-        break
-    assert_same(graph, cascade())
-
-
-def test_interrupt_keeps_a_checkpoint_and_says_how_to_go_on():
-    journal = MemoryJournal()
-
-    def stop(progress):
-        if progress.branches == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        cascade(journal=journal, progress=stop)
-    assert not journal.graph.finished and "again" in journal.graph.message and "B1" in journal.graph
-    assert_same(cascade(journal=journal), cascade())
-    assert journal.graph.finished
-
-
 def test_labels_run_along_the_branch():
     problem = cv.AlgebraicProblem(lambda x, p: p + x - x**3, [0.0], 0.0)
     graph = cv.diagram(problem, within=(-1.0, 1.0))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.graph.identity import Register, parts_further_on, same_form, same_vector
+from contvines.graph.identity import Register, parts_further_on, same_form
 from orbits import Absorber
 
 
@@ -42,34 +42,10 @@ def test_a_fixed_point_is_not_the_two_cycle():
     )
 
 
-def test_register_finds_a_branch_through_a_solution_and_only_then():
-    graph = cv.diagram(cv.MapProblem(logistic, [0.5], 2.5, parameter="r"), within=(2.0, 3.4), depth=1)
-    register = Register()
-    for branch in graph:
-        register.add(branch, Engine(branch.problem, (2.0, 3.4), Settings()))
-    found = register.find(PROBLEM, np.roll(two_cycle(3.3), 1), 3.3)
-    assert found is graph["B2"]
-    assert register.find(PROBLEM, np.full(2, 1.0 - 1.0 / 3.3), 3.3) is graph["B1"]
-    assert register.find(PROBLEM, two_cycle(3.3) + 1e-3, 3.3) is None
-    assert register.find(PROBLEM, two_cycle(3.5), 3.5) is None
-    assert register.find(PROBLEM, two_cycle(3.3), 3.3, real=False) is None
-
-
 def test_mirror_images_are_one():
     problem = cv.AlgebraicProblem(lambda x, p: p * x - x**3, [0.0], -0.5, mirror=lambda x: -x)
     assert same_form(problem.canonical(np.array([0.5]), 0.25), problem.canonical(np.array([-0.5]), 0.25))
     assert not same_form(problem.canonical(np.array([0.5]), 0.25), problem.canonical(np.array([0.0]), 0.25))
-
-
-def test_same_vector():
-    assert same_vector(np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-7]))
-    assert not same_vector(np.array([1.0, 2.0]), np.array([1.0, 2.001]))
-    assert not same_vector(np.array([1.0]), np.array([1.0, 2.0]))
-
-
-def test_forms_with_different_keys_are_different_solutions():
-    one = np.array([0.5])
-    assert same_form(("a", one), ("a", one.copy())) and not same_form(("a", one), ("b", one.copy()))
 
 
 def test_the_end_of_a_branch_belongs_to_it():

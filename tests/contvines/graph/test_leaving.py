@@ -69,17 +69,3 @@ def test_a_weakly_tilted_one_is_transcritical(tilt):
     """u' = p u - a u^2 - u^3."""
     (point, *_) = graph_of(lambda u, p: p * u - tilt * u**2 - u**3).of_kind("branch-point")
     assert "transcritical" in " ".join(point.remarks) and point.criticality is None
-
-
-def test_depth_counts_switches():
-    """u' = p u - u^3 has three ways out of the origin; without depth none of them is followed."""
-
-    def F(u, p):
-        return p * u - u**3
-
-    problem = cv.AlgebraicProblem(F, [0.0], -0.5, spectrum="flow", scale=1.0)
-    assert len(cv.diagram(problem, within=(-1.0, 1.0), depth=0).branches) == 1
-    graph = cv.diagram(problem, within=(-1.0, 1.0), depth=1)
-    assert len(graph.branches) == 2
-    side = graph["B2"]
-    np.testing.assert_allclose(side.points[:, 0] ** 2, side.values, atol=1e-12)

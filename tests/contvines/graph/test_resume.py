@@ -113,16 +113,6 @@ def test_whatever_is_recorded_is_recalled(tmp_path_factory, content, key):
             assert repr(again[name]) == repr(value)
 
 
-def test_what_another_run_replaced_is_written_again(tmp_path, alone):
-    """The slower of two runs on one file keeps its shorter graph between two checkpoints of the faster one."""
-    path = tmp_path / "two.vines"
-    with cv.resume(path) as fast, cv.resume(path) as slow:
-        fast.checkpoint(alone)
-        slow.checkpoint(type(alone)(parameter=alone.parameter))
-        fast.checkpoint(alone)
-    assert same_graph(cv.load(path, problems=False), alone)
-
-
 def test_a_branch_that_dies_at_its_start_leaves_no_file(tmp_path):
     """u = p solves the equation at p = 0 and nowhere else can it be computed."""
     problem = cv.AlgebraicProblem(

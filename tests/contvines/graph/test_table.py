@@ -1,38 +1,13 @@
 """The table that people read: names, short words."""
 
 import dataclasses
-import itertools
 
 import pytest
 
 import contvines as cv
-from contvines.graph.shortening import short_word, short_words
 from contvines.graph.table import table
 from tests.contvines import fakes
 from tests.contvines.graph.test_borders import Line, folding
-
-
-@pytest.mark.parametrize(
-    ("word", "short"),
-    [
-        ("LR", "LR"),
-        ("", ""),
-        ("LRLR", "LRLR"),
-        ("LtRLttR" * 8, "(LtRLttR)^8"),
-        ("s-s+" * 16, "(s-s+)^16"),
-        ("LR" * 100 + "tt", "LRLRLRLRLRLRLRLR... 202 events"),
-        ("LR" * 50 + "s+", "LRLRLRLRLRLRLRLR... 101 events"),
-        (("LtR" * 30 + "tt") * 2, "(LtRLtRLtRLtRLtRL... 92 events)^2"),
-    ],
-)
-def test_short_words(word, short):
-    assert short_word(word) == short
-
-
-def test_sentences_keep_their_short_words():
-    text = "a turn hits the wall: nonsmooth fold, the word becomes "
-    assert short_words(text + "LtLRLttR") == text + "LtLRLttR"
-    assert short_words(text + "LtLRLttR" * 16) == text + "(LtLRLttR)^16"
 
 
 def test_the_table_names_the_stuck_motion_and_stays_narrow():
@@ -53,11 +28,6 @@ def test_the_table_names_the_stuck_motion_and_stays_narrow():
     assert [b["word"] for b in graph.to_dict()["branches"]] == list(words)
 
 
-def test_short_words_of_different_powers_differ():
-    names = [short_word("LttR" * n) for n in range(1, 40)]
-    assert all(a != b for a, b in itertools.combinations(names, 2))
-
-
 @pytest.mark.parametrize("width", [60, 80, 100, 140])
 def test_a_table_fits_its_terminal_and_keeps_the_labels(width):
     graph = fakes.pitchfork_graph()
@@ -66,12 +36,6 @@ def test_a_table_fits_its_terminal_and_keeps_the_labels(width):
     assert max(map(len, text.splitlines())) <= width
     for label in (*graph.branches, *graph.special):
         assert any(line.startswith(label) for line in text.splitlines())
-
-
-def test_a_pipe_gets_everything():
-    graph = fakes.pitchfork_graph()
-    graph.switches[0] = dataclasses.replace(graph.switches[0], note="a long remark " * 20)
-    assert ("a long remark " * 20).strip() in table(graph)
 
 
 def test_ends_are_labels_and_zero_is_zero():

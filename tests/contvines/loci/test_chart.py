@@ -9,7 +9,6 @@ import contvines as cv
 from contvines.command.cli import app
 from contvines.continuation.settings import Settings
 from contvines.journal import MemoryJournal
-from contvines.loci.table import table
 
 
 def cubic(u, p):
@@ -143,10 +142,3 @@ def test_command_line(tmp_path, monkeypatch, capsys):
         app, ["locus", "study.vines", "LP9", "--over", "gravity", "--within", "0.1", "0.3"]
     )
     assert "LP9 is no label of it" in str(bad.exception)
-
-
-def test_a_chart_is_a_table_that_fits_the_page_and_one_for_notebooks(chart):
-    assert "CP1" in chart._repr_html_() and chart._repr_html_().count("<table>") == 3
-    narrow, wide = table(chart, 60).splitlines(), table(chart).splitlines()
-    assert max(map(len, narrow)) < max(map(len, wide))
-    assert "reaches the end" in table(chart) and "reaches the end" not in table(chart, 60)

@@ -6,14 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.loci.crossings import crossings, segments
-
-
-def test_polygons_cross_where_their_lines_do():
-    a = np.array([[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]])
-    b = np.array([[0.0, 0.5], [2.0, 0.5]])
-    places = [place for _, _, place in segments(a, b)]
-    assert np.allclose(places, [[0.5, 0.5], [1.5, 0.5]])
+from contvines.loci.crossings import crossings
 
 
 def test_two_folds_of_two_cells_cross_in_closed_form():
@@ -31,31 +24,6 @@ def test_two_folds_of_two_cells_cross_in_closed_form():
     values = [(c["value"]["a"], c["value"]["b"]) for c in chart.crossings]
     assert any(np.allclose(value, (second, b), atol=1e-9) for value in values), values
     assert chart.to_dict()["crossings"] == chart.crossings
-
-
-def test_crossings_are_on_the_segments_that_are_told():
-    """Two polygons drawn at random: each place lies on both of its segments, and the pairs are those whose ends lie on both sides."""
-    draw = np.random.default_rng(3)
-    a, b = draw.uniform(size=(9, 2)), draw.uniform(size=(7, 2))
-
-    def side(line, point):
-        return np.sign(np.linalg.det([line[1] - line[0], point - line[0]]))
-
-    wanted = {
-        (i, j)
-        for i in range(len(a) - 1)
-        for j in range(len(b) - 1)
-        if side(a[i : i + 2], b[j]) != side(a[i : i + 2], b[j + 1])
-        and side(b[j : j + 2], a[i]) != side(b[j : j + 2], a[i + 1])
-    }
-    found = segments(a, b)
-    assert len(wanted) > 3 and {(i, j) for i, j, _ in found} == wanted
-    for i, j, place in found:
-        for line, k in ((a, i), (b, j)):
-            along = line[k + 1] - line[k]
-            share = (place - line[k]) @ along / (along @ along)
-            assert 0.0 <= share <= 1.0
-            np.testing.assert_allclose(line[k] + share * along, place, atol=1e-12)
 
 
 @pytest.mark.parametrize(("first", "second", "count"), [(0, 0, 1), (1, 0, 0), (0, 1, 0)])

@@ -1,17 +1,10 @@
 """Kill -9 and Ctrl-C in the middle of `contvines chart`, then the same command again: the same chart; bad input answered in sentences."""
 
-import signal
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 from typer.testing import CliRunner
 
 from contvines.command.cli import app
-from contvines.store import Store, load
 
-KILLER = Path(__file__).parents[1] / "killer.py"
 STUDY = """
 [model]
 name = "absorber"
@@ -42,18 +35,6 @@ def diagram(tmp_path_factory):
     return path
 
 
-def words(diagram, target):
-    return ["chart", str(diagram), "--over", "friction", "--within", "0.4", "0.6", "-o", str(target)]
-
-
-@pytest.fixture(scope="module")
-def undisturbed(diagram):
-    target = diagram.with_name("u.vines")
-    result = CliRunner().invoke(app, [*words(diagram, target), "-q"])
-    assert result.exit_code == 0, result.output
-    return load(target, problems=False).to_dict()
-
-
 def same(one, other):
     """The same entries, numbers up to rounding: the borders of the bordered systems are found anew where work goes on."""
     if isinstance(one, dict):
@@ -68,40 +49,6 @@ def same(one, other):
         assert one == pytest.approx(other, abs=1e-11)
     else:
         assert one == other
-
-
-def test_a_chart_killed_twice_is_the_undisturbed_one(diagram, undisturbed, tmp_path):
-    target, log = tmp_path / "k.vines", tmp_path / "log.txt"
-    for writes, where in ((3, "inside"), (5, "after")):
-        done = subprocess.run(
-            [sys.executable, str(KILLER), str(writes), where, str(log), *words(diagram, target), "-q"]
-        )
-        assert done.returncode == -signal.SIGKILL
-        with Store.open(target) as store:
-            assert not store.finished
-            kept = {key for key, _ in store.entries("journal")}
-        assert set(log.read_text().split()) <= kept if log.exists() else True
-    result = CliRunner().invoke(app, words(diagram, target))
-    assert result.exit_code == 0, result.output
-    assert "is unfinished: going on after" in result.output
-    same(load(target, problems=False).to_dict(), undisturbed)
-
-
-def test_ctrl_c_says_how_to_go_on(diagram, undisturbed, tmp_path):
-    target = tmp_path / "c.vines"
-    code = (
-        "import sys\nfrom contvines.store import Store\nfrom contvines.command.cli import main\n"
-        "record = Store.record\n"
-        "def once(self, *a):\n    record(self, *a)\n    raise KeyboardInterrupt\n"
-        "Store.record = once\nmain(sys.argv[1:])"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words(diagram, target)], capture_output=True, text=True
-    )
-    assert done.returncode == 130 and "Traceback" not in done.stderr
-    assert f"all finished points are kept in {target}; the same command goes on from there" in done.stderr
-    assert CliRunner().invoke(app, [*words(diagram, target), "-q"]).exit_code == 0
-    same(load(target, problems=False).to_dict(), undisturbed)
 
 
 @pytest.mark.parametrize(

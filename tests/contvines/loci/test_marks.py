@@ -1,7 +1,5 @@
 """The points of codimension two that a locus itself holds, against the closed forms of the Henon map."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 
@@ -57,18 +55,6 @@ def test_a_locus_across_the_second_parameter_is_charted_once():
     (line,) = [locus for locus in chart.loci.values() if locus.kind == "neimark-sacker"]
     ends = sorted(chart.points[label].value[0] for _, label in line.marks)
     assert ends == pytest.approx([-1.0, 0.0, 1.25, 3.0], abs=1e-8)
-
-
-def test_progress_says_what_is_done_and_what_is_known():
-    problem = cv.MapProblem(henon, [0.2, 0.2], {"a": 0.3, "b": 0.5}, parameter="a")
-    graph = cv.diagram(problem, over="a", within=(-1.5, 3.5), depth=0)
-    told = []
-    chart = cv.chart(graph, over="b", within=(0.2, 1.5), depth=0, regions=False, progress=told.append)
-    assert all(one.done <= other.done for one, other in pairwise(told))
-    assert all(state.done + state.waiting <= state.known <= state.done + state.waiting + 1 for state in told)
-    assert told[0].done == 0 and told[0].known == 2  # the fold and the doubling of the diagram
-    assert told[-1].done == told[-1].known >= len(chart.loci) == told[-1].loci
-    assert "starts of loci" in told[-1].sentence
 
 
 def test_branches_that_cross_do_not_fold_there():

@@ -33,33 +33,6 @@ def test_loci_of_sparse_equations_are_those_of_dense_ones():
     assert found is not None
 
 
-def test_a_linear_operator_is_told_that_it_needs_a_transpose_unless_it_is_written_out():
-    """x^3 = a + b x folds at a = -+ 2 (b / 3)^(3/2); with a preconditioner there is no matrix, without one it is written out."""
-    from scipy.sparse.linalg import LinearOperator
-
-    def jacobian(u, p):
-        return LinearOperator(
-            (2, 2), matvec=lambda x: np.array([(p.b - 3 * u[0] ** 2) * x[0], -x[1]]), dtype=float
-        )
-
-    def folding(**options):
-        problem = cv.AlgebraicProblem(
-            lambda u, p: np.array([p.a + p.b * u[0] - u[0] ** 3, -u[1]]),
-            [-1.3247, 0.0],
-            {"a": -1.0, "b": 1.0},
-            parameter="a",
-            jacobian=jacobian,
-            **options,
-        )
-        graph = cv.diagram(problem, over="a", within=(-1.1, 0.6), depth=0)
-        return cv.locus(graph.of_kind("fold")[0], over="b", within=(0.5, 1.2))
-
-    with pytest.raises(ValueError, match="give it as an array or a sparse matrix"):
-        folding(preconditioner=lambda u, p: np.eye(2))
-    for a, b in folding().values:
-        assert abs(a) == pytest.approx(2 * (b / 3) ** 1.5, abs=1e-11)
-
-
 def test_loci_of_a_declared_machine_are_their_closed_forms():
     pytest.importorskip("heyoka")
     from contvines.loci.linear import Linearisation

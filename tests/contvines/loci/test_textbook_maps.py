@@ -43,32 +43,6 @@ def test_adaptive_control_map_is_its_closed_forms():
             assert float(exact) == pytest.approx(b, abs=1e-10)
 
 
-def test_bazykin_predator_and_prey():
-    # x' = x - x y / (1 + al x) - x^2 / 100, y' = -y + x y / (1 + al x) - de y^2; Kuznetsov's textbook, example 8.3 (epsilon = 0.01)
-    eps = 0.01
-
-    def flow(u, p):
-        x, y = u
-        eaten = x * y / (1 + p.al * x)
-        return np.array([x - eaten - eps * x * x, -y + eaten - p.de * y * y])
-
-    problem = cv.AlgebraicProblem(flow, [2.0, 1.6], {"al": 0.3, "de": 0.2}, parameter="de", spectrum="flow")
-    graph = cv.diagram(problem, over="de", within=(0.02, 0.6), depth=0)
-    start = next(point for kind in ("hopf", "fold") for point in graph.of_kind(kind))
-    locus = cv.locus(start, over="al", within=(0.05, 0.7), bounds=(0.005, 1.0))
-    for (de, al), u in zip(locus.values, locus.branch.points[:, :2]):
-
-        def system(x, y, de, al=al):
-            d = 1 + al * x
-            fx, fy = 1 - y / d**2 - 2 * eps * x, -x / d
-            gx, gy = y / d**2, -1 + x / d - 2 * de * y
-            last = fx + gy if start.kind == "hopf" else fx * gy - fy * gx
-            return [1 - y / d - eps * x, -1 + x / d - de * y, last]
-
-        exact = mp.findroot(system, [float(u[0]), float(u[1]), de])
-        assert float(exact[2]) == pytest.approx(de, abs=1e-9)
-
-
 def test_ricker_with_a_delay():
     # x' = x exp(r - a x - y), y' = x: fixed point x = r / (1 + a), trace 1 - a x, determinant x: Neimark-Sacker at x = 1, r = 1 + a
     def ricker(u, p):

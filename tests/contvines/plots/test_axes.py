@@ -21,7 +21,6 @@ from contvines.plots import (
     plot_survey,
     plot_sweep,
 )
-from contvines.plots.legends import _columns
 from contvines.plots.measured import plot_calibration, plot_transient
 from contvines.survey import Plan
 from contvines.survey.results import Survey
@@ -187,14 +186,6 @@ def test_a_legend_can_be_left_out_or_put_somewhere(functions, name):
         assert box.x0 - frame.x0 < frame.x1 - box.x1 and box.y0 - frame.y0 < 12
 
 
-def test_a_key_below_given_axes_stands_under_their_label():
-    figure, axes = plt.subplots(figsize=(5, 4))
-    plot_diagram(fakes.pitchfork_graph(), axes=axes, legend="below")
-    figure.canvas.draw()
-    assert axes.get_legend().get_window_extent().y1 < axes.xaxis.label.get_window_extent().y0 + 1
-    plt.close(figure)
-
-
 def test_a_transient_has_its_impacts_at_the_lower_edge_and_the_bare_motion_behind():
     hits = np.array([0.2, 0.4, 0.9])
     axes = plot_transient(DECAY, hits).axes[0]
@@ -230,26 +221,3 @@ def test_each_mirror_image_is_named_by_its_motion():
         legend = figure.axes[0].get_legend() or figure.legends[0]
         texts = [text.get_text() for text in legend.get_texts()]
         assert texts == ["LRtt: 50.0%", "LRtt, mirror image", "LRLt: 50.0%", "LRLt, mirror image"]
-
-
-def test_a_legend_below_has_as_many_columns_as_their_own_widths_allow():
-    """Nine entries, one of them long: by the widest one two columns would fit, and five rows squeeze the axes."""
-    wide = [40.0, 50.0, 60.0, 35.0, 80.0, 70.0, 65.0, 75.0, 90.0]
-    assert _columns(wide, 240.0) == 3  # 60 + 80 + 90
-    assert _columns(wide, 229.0) == 2
-    assert _columns(wide, 10.0) == 1
-    assert _columns([40.0] * 8, 290.0) == 4  # seven would fit: two rows are two rows with four, too
-
-
-def test_a_small_sweep_names_its_dots_shortly():
-    small = plot_sweep(DOTS, "amplitude", figsize=(3.4, 2.4))
-    assert [text.get_text() for text in small.legends[0].get_texts()] == ["simulated"]
-    large = plot_sweep(DOTS, "amplitude").axes[0].get_legend()
-    assert [text.get_text() for text in large.get_texts()] == ["simulated: B at every impact"]
-
-
-def test_repelling_circles_are_dashed_and_said_to_be(circles):
-    panels = plot_circles(circles).axes
-    dashed = any(line.get_linestyle() == "--" for line in panels[0].lines)
-    assert dashed == any(circle.stable is False for circle in circles.circles)
-    assert panels[0].get_title(loc="left") == ("dashed: repelling" if dashed else "")

@@ -4,9 +4,8 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from contvines.bifurcation.kinds import LABELS
 from contvines.plots import plot_diagram
-from contvines.plots.style import LINES, MARKS
+from contvines.plots.style import LINES
 from contvines.problems.protocol import ProblemDefaults
 from tests.contvines import fakes
 
@@ -93,35 +92,6 @@ def test_where_no_branch_has_the_measure_another_is_drawn():
     axes = plot_diagram(impactless(("ss", "", "tt"), (np.nan,) * 3)).axes[0]
     assert axes.get_ylabel() == "max abs w"
     assert not any("not drawn" in t.get_text() for t in axes.get_legend().get_texts())
-
-
-def test_labels_keep_out_of_the_legend(graph):
-    for y in ("norm", "p"):
-        figure = plot_diagram(graph, y=y, ends=True)
-        figure.canvas.draw()
-        legend = figure.axes[0].get_legend().get_window_extent()
-        texts = [t for t in figure.axes[0].texts if t.get_window_extent().overlaps(legend)]
-        assert not texts
-
-
-def test_a_legend_that_would_cover_curves_stands_beside_them(graph):
-    branch = graph.branches["B1"]  # a zigzag over the whole picture leaves no room
-    branch.points = np.where(np.arange(len(branch)) % 2, 2.0, 0.0)[:, None]
-    figure = plot_diagram(graph)
-    figure.canvas.draw()
-    axes = figure.axes[0]
-    legend = axes.get_legend().get_window_extent()
-    assert legend.x0 >= axes.get_window_extent().x1 - 1
-    assert legend.x1 <= figure.bbox.x1
-
-
-def test_every_kind_has_a_mark():
-    assert set(MARKS) == set(LABELS)
-
-
-def test_an_unfinished_graph_says_so():
-    axes = plot_diagram(fakes.pitchfork_graph(finished=False)).axes[0]
-    assert "unfinished" in [axes.get_title(loc=loc) for loc in ("left", "center", "right")]
 
 
 def test_an_unknown_measure_is_refused_with_those_that_can_be_had(graph):

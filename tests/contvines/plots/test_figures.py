@@ -95,13 +95,3 @@ def test_nothing_is_cut_at_any_size(graph, size):
         box = thing.get_window_extent()
         assert box.x0 >= page.x0 - 1 and box.x1 <= page.x1 + 1
         assert box.y0 >= page.y0 - 1 and box.y1 <= page.y1 + 1
-
-
-def test_ticks_stay_when_a_figure_is_drawn_again_outside_the_style(graph):
-    """The number of ticks follows the size of their labels, which must not be taken from the settings of the moment."""
-    figure = plot_diagram(graph, figsize=(3.4, 2.4))
-    axes = figure.axes[0]
-    before = [label.get_text() for label in axes.get_yticklabels()], axes.yaxis.label.get_window_extent().x0
-    with mpl.rc_context({"font.size": 20}):
-        figure.draw_without_rendering()
-    assert ([t.get_text() for t in axes.get_yticklabels()], axes.yaxis.label.get_window_extent().x0) == before

@@ -1,15 +1,10 @@
 """Names are the user's: the notation of built-in machines labels the axes of these machines only."""
 
 import matplotlib.pyplot as plt
-import numpy as np
 import pytest
 
 import contvines as cv
 import orbits
-from contvines.plots import plot_multipliers
-from contvines.survey import load_survey
-from contvines.survey.plan import Plan
-from contvines.survey.results import Survey
 from orbits.symbols import cos
 
 OF_MACHINES = ["w", "B", "phase", "amplitude", "friction", "frequency", "half_width", "max_abs_q1"]
@@ -36,22 +31,6 @@ def test_equations_of_the_users_own(fold):
     plain = name.replace("_", " ")
     assert labels(graph.plot()) == {plain, "u0"}
     assert labels(graph.plot(y=name)) == {plain}
-
-
-def test_two_parameters_of_the_users_own():
-    cusp = cv.AlgebraicProblem(
-        lambda u, p: p.friction + p.phase * u - u**3, [1.0], {"friction": 0.0, "phase": 1.0}
-    )
-    graph = cv.diagram(cusp, over="friction", within=(-1.0, 1.0), depth=0)
-    chart = cv.chart(graph, over="phase", within=(-1.0, 1.0))
-    assert labels(chart.plot()) == {"friction", "phase"}
-
-
-def test_a_map_of_the_users_own():
-    delayed = cv.MapProblem(lambda x, p: [p.B * x[0] * (1 - x[1]), x[0]], [0.4, 0.4], {"B": 1.7})
-    graph = cv.diagram(delayed, within=(1.2, 2.4))
-    assert labels(graph["NS1"].circles(to=2.02).plot()) == {"x0", "x1", "radius", "turns per period", "B"}
-    assert "B" in labels(plot_multipliers(graph["B1"]))
 
 
 def test_a_page_with_names_of_a_built_in_machine():
@@ -86,19 +65,3 @@ def test_a_built_in_machine_in_its_notation(tmp_path):
     low, high = figure.axes[0].get_xlim()
     assert low > high  # the left wall, w = +1, stands on the left
     assert labels(figure) == {"position $w$ of the start", "velocity $w'$ of the start"}
-
-
-def test_a_survey_keeps_its_notation(tmp_path):
-    plan = Plan({"friction": np.array([0.1, 0.2, 0.3])}, {})
-    for notation, label in (({}, "friction"), ({"friction": r"friction $\mu$"}, r"friction $\mu$")):
-        survey = Survey(
-            plan,
-            {"peak": np.array([3.0, 2.0, 1.0])},
-            np.full(3, ""),
-            {},
-            {"axes": ["friction"], "samples": []},
-            notation,
-        )
-        assert label in labels(survey.plot())
-        survey.save(tmp_path / "s.nc")
-        assert label in labels(load_survey(tmp_path / "s.nc").plot())

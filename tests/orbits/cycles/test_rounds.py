@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.cycles.rounds import Rounds, judged
+from orbits.cycles.rounds import Rounds
 
 ROUNDS = 8
 
@@ -84,49 +84,3 @@ def test_no_cycle_that_touches_once_is_given_up_and_most_that_are_torn_are(size)
                 missed += (rounds, 1) not in hopeless
     assert wanted > 40
     assert told > 9 * missed
-
-
-def test_determinants_of_another_sign_further_from_the_border_tell_nothing():
-    plain, changed = np.diag([0.5, 0.2]), np.array([[1e6, 1.0], [0.0, 0.1]])
-    near, other = np.array([plain, changed]), np.array([plain, np.diag([-0.1, 1.0]) @ changed])
-    assert Rounds(near, 1e-12, False, other).hopeless(3) == {(3, 1), (3, 2)}  # by their multipliers
-    small = np.array([plain, 1e-6 * changed])
-    assert not Rounds(small, 1e-12, False, other).hopeless(3)
-
-
-def test_maps_that_do_not_agree_on_the_border_are_judged_by_their_multipliers():
-    plain, changed = np.diag([0.5, 0.2]), np.array([[1.5, 1.0], [0.7, -3.0]])
-    maps = np.array([plain, changed])
-    judgement = judged([[(plain, 1e-15)] * 2, [(changed, 1e-15)] * 2])
-    assert judgement is not None and not judgement.linear
-    assert judgement.hopeless(ROUNDS) == {
-        (rounds, changed)
-        for rounds in range(3, ROUNDS + 1)
-        for changed in {1, rounds - 1}
-        if np.abs(np.linalg.eigvals(product(maps, rounds, changed))).max() > 1.5
-    }
-
-
-def product(maps, rounds, changed):
-    power = np.linalg.matrix_power
-    return power(maps[0], rounds - changed) @ power(maps[1], changed)
-
-
-def test_a_map_that_is_smooth_at_the_border_has_no_cycles_there():
-    plain = np.array([[0.3, 0.4], [-0.2, 0.1]])
-    maps = np.array([plain, plain])
-    assert {(2, 1), (3, 1), (3, 2), (8, 1), (8, 7)} <= Rounds(maps, 1e-14, linear=True).hopeless(ROUNDS)
-
-
-@pytest.mark.parametrize("size", [1, 2, 3])
-def test_maps_agree_on_a_border_where_they_differ_by_rank_one(size):
-    generator = np.random.default_rng(size)
-    for _ in range(50):
-        plain, other = generator.standard_normal((2, size, size))
-        values = np.append(np.linalg.svd(other - plain, compute_uv=False), 0.0)
-        small = bool(values[1] <= 0.05 * max(values[0], np.abs(plain).max()))
-        known = judged([[(plain, 1e-15)] * 2, [(other, 1e-15)] * 2])
-        assert known is not None and known.linear == small
-        kicked = plain + 1e3 * np.outer(*generator.standard_normal((2, size)))
-        touched = judged([[(plain, 1e-15)] * 2, [(kicked, 1e-15)] * 2])
-        assert touched is not None and touched.linear

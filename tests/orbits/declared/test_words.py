@@ -21,14 +21,6 @@ def test_one_friction_and_two_walls_read_as_the_built_in_words(text):
     assert mine.mirror_symmetric_halves == theirs.mirror_symmetric_halves
 
 
-def test_impossible_words_are_refused_as_the_built_in_ones_are():
-    for text in ("LL", "Lu", "LtR"):
-        with pytest.raises(ValueError, match=f"word '{text}'"):
-            page("absorber").word(text)
-        with pytest.raises(ValueError, match=f"word '{text}'"):
-            Word.parse(text)
-
-
 def test_switches_alternate_and_may_be_long():
     word = page("elastic_stop").word("stop+stop-")
     assert word.events == ("stop+", "stop-") and word.modes == ((1,), (-1,))

@@ -13,7 +13,6 @@ import contvines as cv
 from orbits import Absorber, Cavity, ParameterError
 from orbits.attractors import find_attractor
 from orbits.machines.absorber.closed_forms import (
-    fold_square,
     friction_number,
     restitution_ratio,
     symmetry_breaking_square,
@@ -45,34 +44,6 @@ def test_level_and_symmetric_it_is_the_absorber_bit_for_bit(
     ]
     assert runs[0].letters == runs[1].letters
     assert np.array_equal(runs[0].rows, runs[1].rows)
-
-
-def test_level_and_symmetric_it_has_the_absorbers_special_points():
-    points = []
-    for machine in (Absorber, Cavity):
-        orbit = machine(restitution=0.76, friction=0.5, **LEVEL).orbit("LR", amplitude=0.55)
-        graph = cv.diagram(orbit, over="amplitude", within=(0.2, 1.0), depth=2)
-        points.append([(s.kind, s.value) for s in graph.special.values()])
-    assert [kind for kind, _ in points[0]] == [kind for kind, _ in points[1]]
-    assert np.abs(np.array([v for _, v in points[0]]) - np.array([v for _, v in points[1]])).max() < 1e-12
-
-
-def test_level_with_unlike_distances_it_is_the_absorber_of_their_mean():
-    """Nothing but the walls knows the place of the origin: with the mean distance b of the walls as the unit of length, C and g count as C/b and g/b.
-
-    Its mirror image is taken about the middle between the walls. The orbit LR ends at a border from which simulation also goes on to
-    sliding, a symmetric motion.
-    """
-    b, mass_ratio = 0.95, 0.006
-    machine = Cavity(
-        restitution=0.5, friction=0.5, gravity=0.2, mass_ratio=mass_ratio, distance_left=2 * b - 1
-    )
-    graph = cv.diagram(machine.orbit("LR", amplitude=0.6), over="amplitude", within=(0.3, 1.0), depth=0)
-    R, H = restitution_ratio(0.5), friction_number(0.5, 0.2 / b, mass_ratio)
-    fold, pitchfork = b * np.sqrt(fold_square(R, H)), b * np.sqrt(symmetry_breaking_square(R, H))
-    assert graph["LP1"].value == pytest.approx(fold, abs=1e-12)
-    assert graph["SB1"].value == pytest.approx(pitchfork, abs=1e-12)
-    assert graph["WG1"].branch == "B1" and "failed" not in graph["WG1"].note
 
 
 def test_level_with_unlike_distances_its_graph_is_the_absorbers_in_other_units():

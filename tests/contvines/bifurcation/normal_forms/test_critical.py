@@ -7,8 +7,6 @@ import contvines as cv
 from contvines.bifurcation.normal_forms.coefficients import Forms
 from contvines.bifurcation.normal_forms.critical import normal_form
 
-RNG = np.random.default_rng(2)
-
 
 class Bend:
     """x -> x + quadratic and cubic parts of the coordinates before it, one coordinate after the other; linear part 1."""
@@ -139,21 +137,6 @@ def test_strong_resonances_three_and_four():
     found = normal_form("resonance-1-4", bent_map(fourth, 2), [1j])
     A = -1j * complex(*c) / np.hypot(*b)
     assert complex(found["A_re"], found["A_im"]) == pytest.approx(A, abs=1e-8)
-
-
-def test_fold_flip():
-    a, b, e, f, g = 0.8, -0.5, 0.6, 0.3, -0.9
-
-    def N(w):
-        x, y = w
-        return [
-            x + a / 2 * x**2 + b / 2 * y**2 + 0.2 / 6 * x**3 + 0.4 / 2 * x * y**2,
-            -y + e * x * y + f / 2 * x**2 * y + g / 6 * y**3,
-        ]
-
-    found = normal_form("fold-flip", bent_map(N, 2, 3), [])
-    for name, value in {"a": a, "b": b, "e": e}.items():
-        assert found[name] == pytest.approx(value, abs=1e-9)
 
 
 def test_fold_and_pair():

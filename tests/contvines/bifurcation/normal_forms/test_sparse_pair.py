@@ -106,26 +106,3 @@ def test_one_cell_among_damped_ones_in_other_coordinates_and_units(unit):
     q = vectors[:, np.argmax(values.imag)]
     length = np.linalg.norm(q) / np.linalg.norm(block @ q)
     assert point.coefficient * unit**2 == pytest.approx(of_one_cell(length), rel=1e-6)
-
-
-def test_a_jacobian_without_a_matrix_says_why_it_has_none():
-    F, jacobian, derivative = brusselator(40, A, 0.4, 0.3)
-
-    def operator(w, b):
-        matrix = jacobian(w, b)
-        return sp.linalg.LinearOperator(matrix.shape, matvec=lambda x: matrix @ x, dtype=float)
-
-    problem = cv.AlgebraicProblem(
-        F,
-        np.tile([A, 2.9 / A], 40),
-        2.9,
-        jacobian=operator,
-        derivative=derivative,
-        spectrum="flow",
-        leading=4,
-        preconditioner=lambda w, b: np.linalg.inv(jacobian(w, b).toarray()),
-    )
-    graph = cv.diagram(problem, within=(2.9, 3.6), depth=0)
-    point = graph.of_kind("hopf")[0]
-    assert point.criticality is None and "no first Lyapunov coefficient" in point.note
-    assert "no first Lyapunov coefficient" in str(graph)

@@ -9,9 +9,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
-from tests.contvines.loci.systems import R, generalized_henon, generalized_henon_at
 
 
 class Planar:
@@ -91,48 +89,6 @@ def agree(point, exact):
     found = coefficients(point)
     for name, value in exact.items():
         assert found[name] == pytest.approx(float(value), rel=1e-8, abs=1e-9), name
-
-
-def test_ricker_with_a_delay_at_its_resonances():
-    # x' = x exp(r - a x - y), y' = x: multipliers exp(+-i t) at x = 1, r = 1 + a, a = 1 - 2 cos t
-    def f(v, r, a):
-        return [v[0] * mp.exp(r - a * v[0] - v[1]), v[0]]
-
-    problem = cv.MapProblem(
-        lambda u, p: np.array([u[0] * np.exp(p.r - p.a * u[0] - u[1]), u[0]]),
-        [0.6, 0.6],
-        {"r": 0.8, "a": 0.3},
-        parameter="r",
-    )
-    graph = cv.diagram(problem, over="r", within=(0.5, 2.5), depth=0)
-    locus = cv.locus(graph.of_kind("neimark-sacker")[0], over="a", within=(0.05, 2.6), bounds=(0.5, 5.0))
-    points = {point.kind: point for _, point in find(locus)}
-    with mp.workdps(40):
-        for kind, a, angle in (("resonance-1-4", 1, mp.pi / 2), ("resonance-1-3", 2, 2 * mp.pi / 3)):
-            point = points[kind]
-            assert point.value == pytest.approx((1 + a, a), abs=1e-10)
-            agree(point, resonance(lambda v, a=a: f(v, mp.mpf(1 + a), mp.mpf(a)), [mp.mpf(1)] * 2, angle))
-
-
-def test_generalized_henon_at_its_resonances():
-    # x' = y, y' = al - be x - y^2 + R x y (Gonchenko's map): determinant be - R x = 1, trace R x - 2 x = 2 cos t at x = y
-    problem = generalized_henon()
-    graph = cv.diagram(problem, over="be", within=(0.1, 1.5), depth=0)
-    locus = cv.locus(graph["NS1"], over="al", within=(-0.5, 3.0), bounds=(0.1, 1.5))
-    points = {point.kind: point for _, point in find(locus)}
-    with mp.workdps(40):
-        for kind, trace, angle in (("resonance-1-3", -1, 2 * mp.pi / 3), ("resonance-1-4", 0, mp.pi / 2)):
-            if kind not in points:
-                continue
-            r = mp.mpf(str(R))
-            x, be, al = generalized_henon_at(mp.mpf(trace), r)
-            assert points[kind].value == pytest.approx((float(be), float(al)), abs=1e-9)
-
-            def f(v, be=be, al=al, r=r):
-                return [v[1], al - be * v[0] - v[1] ** 2 + r * v[0] * v[1]]
-
-            agree(points[kind], resonance(f, [x, x], angle))
-    assert "resonance-1-3" in points
 
 
 def bazykin(v, al, de):

@@ -8,8 +8,6 @@ from contvines.core.multipliers.periodic_schur import multipliers, reference
 from contvines.core.multipliers.product_of_any import product_of_any
 from contvines.core.multipliers.product_of_two import (
     CERTAIN,
-    _bound,
-    _simple_bound,
     dominant_of_two,
     product_of_two,
 )
@@ -77,15 +75,3 @@ def test_pairs_of_any_size_in_products_of_any_order(size):
     pair = size * np.exp(1j * angle * length)
     assert re[0] + 1j * im[0] == pytest.approx(complex(pair.real, abs(pair.imag)), rel=1e-8)
     assert re[1] - 1j * im[1] == pytest.approx(complex(pair.real, abs(pair.imag)), rel=1e-8)
-
-
-@pytest.mark.parametrize("twist", [1.0, -1.0])
-@pytest.mark.parametrize("length", [1, 3, 20])
-def test_the_simple_bound_is_no_smaller(length, twist):
-    """Sums of absolute entries of a product of matrices are at most the products of the sums."""
-    for seed in range(20):
-        A, D = np.random.default_rng(seed).normal(size=(2, length, 2, 2))
-        re, im, scratch = np.zeros(2), np.zeros(2), np.zeros(10 * length + 2)
-        product_of_two(A, D, twist, re, im, scratch)
-        exactly = _bound(length, twist, 0, scratch)[0]
-        assert _simple_bound(length, twist, scratch) >= exactly * (1 - 1e-12)
