@@ -52,8 +52,3 @@ def test_a_compiled_right_hand_side_gives_what_python_gives(tmp_path):
         difference = (field(x + step, 20.0) - field(x - step, 20.0)) / 2e-5
         assert np.allclose(field.jacobian(x, 20.0)[:, :, j], difference, atol=1e-9)
     assert np.allclose(field.slope(x, 20.0), np.column_stack([0 * x[:, 0], x[:, 0], 0 * x[:, 0]]))
-
-
-def test_libraries_that_are_not_there_are_refused(tmp_path):
-    with pytest.raises(ValueError, match="nowhere.so"):
-        cv.flows.CompiledRates(tmp_path / "nowhere.so")

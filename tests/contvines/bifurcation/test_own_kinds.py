@@ -97,26 +97,6 @@ def test_only_the_kinds_asked_for_are_looked_for():
     assert len(cv.diagram(problem, within=(-2.0, 2.0)).of_kind("fold")) == 2
 
 
-def test_wrong_kinds_are_refused_in_a_sentence():
-    problem = cv.AlgebraicProblem(lambda u, p: u - p, [0.0], 0.0)
-    with pytest.raises(ValueError, match="small letters"):
-        cv.Kind("Neutral saddle", "NSD", test=lambda point: 0.0)
-    with pytest.raises(ValueError, match="capital letters"):
-        cv.Kind("neutral-saddle", "nsd", test=lambda point: 0.0)
-    with pytest.raises(ValueError, match="no function"):
-        cv.Kind("neutral-saddle", "NSD", test=3.0)
-    for kinds, words in (
-        ([cv.Kind("mine", "LP", test=lambda point: 1.0)], "used by another"),
-        ([cv.Kind("mine", "MI")], "no test function"),
-        (["fold"], "contvines.Kind"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            cv.diagram(problem, within=(-1.0, 1.0), kinds=[*cv.KINDS, *kinds])
-    bad = cv.Kind("mine", "MI", test=lambda point: point.velocity)
-    with pytest.raises(ValueError, match="kind mine: its test fails at p"):
-        cv.diagram(problem, within=(-1.0, 1.0), kinds=[*cv.KINDS, bad])
-
-
 STUDY = """
 [model]
 name = "model.py:flow"
@@ -165,11 +145,3 @@ def test_a_kind_with_a_condition_is_followed_in_two_parameters():
     # both ways from the start: saddles at one end of the interval of delta, Hopf points at the other
     assert sorted(values[[0, -1], 1]) == pytest.approx([0.05, 0.05])
     assert values[:, 1].max() > 0.2
-
-
-def test_a_kind_without_a_condition_has_no_locus():
-    problem = cv.AlgebraicProblem(lambda u, p: u - p.a * p.b, [0.25], {"a": 0.5, "b": 0.5})
-    kind = cv.Kind("half", "HA", test=lambda point: point.u[0] - 0.3)
-    graph = cv.diagram(problem, over="a", within=(0.0, 1.0), kinds=[*cv.KINDS, kind])
-    with pytest.raises(ValueError, match="no condition to follow"):
-        cv.locus(graph["HA1"], over="b", within=(0.1, 1.0))

@@ -154,23 +154,6 @@ def test_the_modulated_response_of_the_coupled_absorber_attracts():
         assert distances[-1] < 0.1 * distances[0], distances
 
 
-def test_what_cannot_be_is_said_in_a_sentence(coupled):
-    with pytest.raises(ValueError, match="NS1 lie at frequency below 1.0254"):
-        coupled["NS1"].circles(to=1.03)
-    with pytest.raises(ValueError, match="EP1 is a point of kind end; invariant circles"):
-        coupled["EP1"].circles()
-    linear = cv.MapProblem(
-        lambda x, p: (
-            (1 + p) * np.array([np.cos(1) * x[0] - np.sin(1) * x[1], np.sin(1) * x[0] + np.cos(1) * x[1]])
-        ),
-        [0.0, 0.0],
-        -0.1,
-    )
-    graph = cv.diagram(linear, within=(-0.2, 0.2), depth=0)
-    with pytest.raises(ValueError, match="zero within its error"):
-        graph["NS1"].circles()
-
-
 def test_command_line(coupled, tmp_path, monkeypatch):
     from typer.testing import CliRunner
 

@@ -64,10 +64,3 @@ def test_a_machine_with_units_is_drawn_and_told_in_them():
     told = found.to_dict()
     assert told["fixed"]["v"] == pytest.approx(7.0) and told["units"]["v"] == "mm"
     assert told["units"]["frequency"] == "Hz"
-
-
-def test_saddles_of_another_interval_are_refused():
-    problem = cv.MapProblem(lambda u, p: np.array([p * u[0], 0.5 * u[1]]), [0.0, 0.0], 0.5)
-    graph = cv.diagram(problem, within=(0.2, 0.8), depth=0)
-    with pytest.raises(ValueError, match=r"at = 0\.9 lies outside the interval of saddles, 0\.2 to 0\.8"):
-        cv.basins(problem, at=0.9, points=2, saddles=graph)

@@ -118,15 +118,6 @@ def test_a_page_has_the_same_manifolds(absorber):
         assert half.points == pytest.approx(twin.points, abs=1e-6)
 
 
-def test_planes_that_will_not_do(absorber):
-    machine, graph = absorber
-    with pytest.raises(ValueError, match="choose the plane w, w_rate, with all other coordinates zero"):
-        cv.basins(machine, "amplitude", 0.3, points=4, saddles=graph, fixed={"phase": 1.0})
-    other = machine.population("friction", amplitude=0.55)
-    with pytest.raises(ValueError, match="the graph's parameter is amplitude, not friction"):
-        cv.basins(other, at=0.3, points=4, saddles=graph)
-
-
 def test_on_the_command_line(tmp_path, absorber):
     from contvines.command.cli import app
 

@@ -73,20 +73,3 @@ def test_shares_of_henons_basin_are_within_three_sigma_of_counts_from_elsewhere(
     share = np.mean(index == [m.kind for m in motions].index("chaotic"))
     assert abs(share - counted) < 3 * np.sqrt(counted * (1 - counted) / 8192)
     assert abs(share - 0.451) < 3 * np.sqrt(0.451 * 0.549 / 1000)
-
-
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        ({"values": 0}, "values = 0"),
-        ({"values": [9.0]}, "values: 9 lies outside"),
-        ({"starts": 0}, "starts = 0"),
-        ({"seed": -1}, "seed = -1"),
-        ({"scan": -1}, "scan = -1"),
-        ({"scan": 1.5}, "scan = 1.5"),
-    ],
-)
-def test_what_cannot_be_is_refused(options, says):
-    problem = cv.MapProblem(henon, [0.6, 0.2], 0.5, parameter="a")
-    with pytest.raises(ValueError, match=says):
-        cv.atlas(problem, within=(0.3, 0.8), **options)

@@ -7,7 +7,6 @@ import pytest
 from typer.testing import CliRunner
 
 import contvines as cv
-from contvines.coexistence.maps import MapPopulation
 from orbits import Absorber
 from orbits.machines.physical import physical
 
@@ -90,27 +89,6 @@ def test_an_erosion_curve_falls_to_zero_at_the_fold(graph):
     line = next(line for line in axes.lines if line.get_label() == "smallest kick that leads elsewhere")
     assert np.array_equal(line.get_xydata(), np.column_stack([found.values, found.distances]))
     assert "smallest kick" in str(found)
-
-
-def test_where_nothing_is_stable(graph):
-    with pytest.raises(
-        ValueError,
-        match=r"B1 has no stable real motion at amplitude = 1\.2; its stable intervals are 0\.252575 to 0\.726836",
-    ):
-        cv.robustness(graph["B1"], 1.2)
-
-
-def test_refusals_come_before_the_simulation(well, monkeypatch):
-    """Neither a value without a stable motion nor an unknown parameter costs a start."""
-
-    def settle(*_):
-        raise AssertionError("simulated before the refusal")
-
-    monkeypatch.setattr(MapPopulation, "settle", settle)
-    with pytest.raises(ValueError, match="no stable real motion at p = 55"):
-        cv.erosion(well, [1.0, 55.0], starts=8)
-    with pytest.raises(ValueError, match="mass"):
-        cv.robustness(well, 1.0, starts=0, vary=("mass",))
 
 
 def test_on_the_command_line(tmp_path, graph):

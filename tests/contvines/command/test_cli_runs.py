@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-import contvines as cv
 from contvines.command.cli import main
 from contvines.graph.persistence import same_graph
 from contvines.store import load
@@ -224,19 +223,3 @@ def test_multipliers_at_a_graze_are_their_limits(folder, capsys):
     grown, vanished = json.loads(capsys.readouterr().out)["multipliers"]
     assert grown == [None, 0.0]  # JSON has no infinity
     assert abs(complex(*vanished)) < 1e-9
-
-
-def test_python_refusals_are_sentences(folder):
-    graph = load(folder / "s.vines")
-    with pytest.raises(
-        ValueError, match=r"none/x.vines: there is no folder '.*none'; make it first, or choose another"
-    ):
-        graph.save(folder / "none" / "x.vines")
-    with pytest.raises(ValueError, match="this is a folder"):
-        graph.save(folder)
-    with pytest.raises(
-        TypeError, match="wants the label of a special point as text, for example 'SB1', the label of"
-    ):
-        cv.switch(graph, graph["SB1"])  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="for example 'SB1'$"):
-        cv.switch(graph, 3)  # type: ignore[arg-type]

@@ -141,12 +141,6 @@ def test_an_atlas_and_basins_of_a_page(study):
     }
 
 
-def test_sections_of_a_page_study_are_checked(study):
-    study.write_text(study.read_text() + '[chart]\nparameter = "gab"\nwithin = [0.0, 1.0]\n')
-    with pytest.raises(StudyError, match="gab.*did you mean 'gap'"):
-        read_study(study)
-
-
 def test_a_survey_of_a_page(study):
     """With the wall at zero the machine is as large as its forcing: twice the forcing, twice the speeds, at the same frequencies."""
     vary = '[survey]\nvary = {forcing = [1.0, 2.0, 4.0]}\noutcomes = ["peak", "stable:R"]\ngaps = 0\n'

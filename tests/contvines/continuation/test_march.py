@@ -118,34 +118,3 @@ def test_run_away_branch_ends():
 def test_largest_number_of_points():
     points = list(cv.trace(Ellipse(INTERPRETED), (-2.0, 2.0), settings={"max_points": 30, "first_chunk": 10}))
     assert "largest number of points" in points[-1].status
-
-
-@pytest.mark.parametrize(
-    "within, sentence",
-    [
-        ((1.0, 0.0), "empty or reversed"),
-        ((0.0, 0.0), "empty or reversed"),
-        ((0.0, np.inf), "finite"),
-        ((0.0, np.nan), "finite"),
-        ("ab", "two numbers"),
-        ((0.5, 1.0), "outside"),
-    ],
-)
-def test_bad_intervals_are_refused(within, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        list(cv.trace(Ellipse(INTERPRETED), within))
-
-
-def test_bad_settings_are_refused():
-    with pytest.raises(ValueError, match="there is no 'tolerence'"):
-        Settings.of({"tolerence": 1e-6})
-    with pytest.raises(ValueError, match="tolerance"):
-        Settings(tolerance=-1.0)
-    with pytest.raises(ValueError, match="min_step"):
-        Settings(min_step=0.5, max_step=0.1)
-
-
-def test_start_that_does_not_converge_says_so():
-    problem = cv.AlgebraicProblem(lambda u, p: u**2 + 1.0 + 0.0 * p, [0.3], 0.0)
-    with pytest.raises(ValueError, match="does not converge"):
-        list(cv.trace(problem, (-1.0, 1.0)))

@@ -99,13 +99,6 @@ def test_diagrams_take_a_rule_and_keep_its_name():
     assert Settings.kept(short.settings) == Settings()  # the function itself is no data
 
 
-def test_what_is_no_rule_is_refused():
-    with pytest.raises(ValueError, match=r"step_rule = 'angle' must be a contvines\.StepRule"):
-        Settings(step_rule="angle")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="must be a function of"):
-        cv.StepRule(3.0, "three")  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10, 1e-13])
 def test_the_tolerance_bounds_the_last_correction(tolerance):
     """With a slope that is a tenth too steep each correction is about an eleventh of the one before."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import islice
 
 import numpy as np
-import pytest
 
 import contvines as cv
 from orbits import Absorber
@@ -22,18 +21,6 @@ def test_trace_from_an_orbit():
     u, p = orbit.seed(problem)
     again = list(cv.trace(problem, (0.5, 0.7), u, p))
     np.testing.assert_array_equal([a.u for a in again], [b.u for b in points])
-
-
-def test_trace_says_what_is_missing():
-    orbit = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(
-        amplitude=0.6
-    )
-    with pytest.raises(ValueError, match="name the parameter"):
-        next(cv.trace(orbit, within=(0.5, 0.7)))
-    with pytest.raises(ValueError, match="no start of its own"):
-        next(cv.trace(orbit.problem("amplitude"), within=(0.5, 0.7)))
-    with pytest.raises(TypeError, match="must be an orbit or a problem"):
-        next(cv.trace("LR", within=(0.5, 0.7)))
 
 
 def test_trace_of_a_problem_keeps_its_start():

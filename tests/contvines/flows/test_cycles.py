@@ -139,28 +139,6 @@ def test_a_graph_with_cycles_is_read_back(tmp_path):
     assert again["HB1"].cycles().period == pytest.approx(2.0 * np.pi, abs=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"degree": 9}, "degree"),
-        ({"error": 2.0}, "error"),
-        ({"period": -1.0}, "period"),
-        ({"mirror": [[1, 0], [0, -1]]}, "mirror"),
-    ],
-)
-def test_bad_input_is_refused(change, words):
-    with pytest.raises(ValueError, match=words):
-        cv.FlowProblem(lambda x, p, *t: [x[1], -x[0] + p.m * x[0] ** 2], [0.1, 0.0], {"m": 1.0}, **change)
-
-
-def test_motions_that_do_not_recur_are_refused():
-    flow = cv.FlowProblem(lambda x, p: [p.a * x[0]], [1.0], {"a": -1.0})
-    with pytest.raises(ValueError, match="rest"):
-        flow.attractor()
-    with pytest.raises(ValueError, match="escapes"):
-        flow.attractor(a=1.0)
-
-
 def electronic(x, p):
     """The oscillator of AUTO's demo tor."""
     a, b, c = x

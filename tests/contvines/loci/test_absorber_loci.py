@@ -59,16 +59,3 @@ def test_a_border_that_jumps_is_followed_by_its_smooth_margin(graph):
     locus = cv.locus(graph["ST2"], over="friction", within=(0.3, 0.7))
     assert locus.ended[0].startswith("reaches the end of the interval, friction = 0.3")
     assert locus.ended[1].startswith("reaches the end of the interval, friction = 0.7")
-
-
-def test_a_bad_second_parameter_is_refused_in_a_sentence(graph):
-    with pytest.raises(ValueError, match="over = 'amplitude' is the parameter of the diagram itself"):
-        cv.locus(graph["LP1"], over="amplitude", within=(0.1, 0.9))
-    with pytest.raises(
-        ValueError, match="over = 'viscosity': the problem has no such parameter; it has amplitude"
-    ):
-        cv.locus(graph["LP1"], over="viscosity", within=(0.1, 0.9))
-    with pytest.raises(ValueError, match="was made at friction = 0.5, outside of within"):
-        cv.locus(graph["LP1"], over="friction", within=(0.6, 0.9))
-    with pytest.raises(ValueError, match="friction = -0.1 is out of range"):
-        cv.locus(graph["LP1"], over="friction", within=(-0.1, 0.9))

@@ -94,11 +94,6 @@ def test_where_no_branch_has_the_measure_another_is_drawn():
     assert not any("not drawn" in t.get_text() for t in axes.get_legend().get_texts())
 
 
-def test_an_unknown_measure_is_refused_with_those_that_can_be_had(graph):
-    with pytest.raises(ValueError, match="B1 has no measure 'speed'; choose one of norm, p"):
-        plot_diagram(graph, y="speed")
-
-
 def test_chosen_labels_only(graph):
     axes = plot_diagram(graph, labels=["BP1"]).axes[0]
     assert [t.get_text() for t in axes.texts] == ["BP1"]

@@ -75,9 +75,3 @@ def test_a_permutation_is_a_mirror_of_maps_too():
     for (x, y), mu in zip(side.points, side.values):  # x + y = 1 + 1/mu, x y = (1 + 1/mu) / mu
         assert x + y == pytest.approx(1 + 1 / mu, abs=1e-9)
         assert x * y == pytest.approx((1 + 1 / mu) / mu, abs=1e-9)
-
-
-def test_a_mirror_that_returns_too_few_numbers_is_refused_by_name():
-    problem = lambda: cv.AlgebraicProblem(lambda u, p: p * u - u**3, [0.0, 0.0], -1.0, mirror=lambda u: u[:1])  # noqa: E731
-    with pytest.raises(ValueError, match="mirror returns 1 numbers for 2 unknowns"):
-        cv.diagram(problem(), within=(-1.0, 1.0))

@@ -143,20 +143,6 @@ def test_coloured_differences(complex_step):
     assert np.count_nonzero(found.toarray()[np.abs(line.toarray()) == 0.0]) == 0
 
 
-def test_a_pattern_that_lacks_an_entry_is_refused():
-    line = second_difference(30)
-
-    def F(u, p):
-        found = line @ u + p
-        found[7] += u[20]
-        return found
-
-    with pytest.raises(ValueError, match=r"sparsity lacks an entry of F in row 7"):
-        cv.AlgebraicProblem(F, np.zeros(30), 0.0, sparsity=line != 0.0)
-    with pytest.raises(ValueError, match=r"\(3, 3\)"):
-        cv.AlgebraicProblem(F, np.zeros(30), 0.0, sparsity=np.ones((3, 3)))
-
-
 def test_banded_factors_are_those_of_numpy():
     """A shuffled band: solutions and the sign of the determinant."""
     draw = np.random.default_rng(6)

@@ -160,15 +160,6 @@ def test_rebuild_from_description():
         assert again.cycle == 1 and again.u0 == problem.u0
 
 
-def test_bad_input_is_refused():
-    with pytest.raises(ValueError, match="cycle"):
-        cv.MapProblem(logistic, [0.5], 3.0, cycle=0)
-    with pytest.raises(ValueError, match="returns 2 numbers for 1"):
-        cv.MapProblem(lambda x, r: [1.0, 2.0], [0.5], 3.0)
-    with pytest.raises(ValueError, match="needs"):
-        cv.MapProblem(logistic, [0.5, 0.6], 3.0, cycle=3, dimension=1)
-
-
 def test_area_preserving_map_has_no_spurious_events():
     """Henon's map with b = -1 preserves areas: elliptic multipliers stay on the circle until the flip.
 

@@ -223,13 +223,6 @@ def test_a_kink_is_told_from_noise(digits):
     assert all("end of the interval" in said for said in cv.diagram(smooth, within=(-2.0, 2.0))["B1"].ended)
 
 
-def test_a_start_far_from_any_solution_is_refused():
-    """Below 0.3 this F does not depend on u."""
-    problem = cv.AlgebraicProblem(lambda u, p: [p - abs(u[0] - 0.3) - u[0]], [-1.0], 1.6)
-    with pytest.raises(ValueError, match=r"largest entry of F is 1\.3\).*far away.*better guess"):
-        cv.diagram(problem, within=(0.0, 2.0))
-
-
 def noisy(sigma, draw=0):
     """p = u^2 with noise that does not repeat: a hash of the argument."""
 
@@ -284,28 +277,6 @@ def test_a_small_circle_through_two_branch_points_is_cheap(radius):
     assert calls[0] < 25 * sum(len(branch) for branch in graph)
 
 
-def straight(u, p):
-    return u - p
-
-
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: cv.AlgebraicProblem(straight, []), "u0 is empty"),
-        (lambda: cv.MapProblem(straight, [], 0.0), "u0 is empty"),
-        (lambda: cv.AlgebraicProblem(straight, np.zeros((2, 2))), r"give u0 of shape \(4,\)"),
-        (lambda: cv.AlgebraicProblem(straight, ["a"]), "must be numbers"),
-        (lambda: cv.AlgebraicProblem(lambda u, p: None, [0.0]), "F returns None; numbers are needed"),
-        (lambda: cv.AlgebraicProblem(3, [0.0]), r"F = 3 must be a function of \(u, p\)"),
-        (lambda: cv.AlgebraicProblem(straight, [0.0], jacobian="3-point"), "jacobian = '3-point' must be"),
-        (lambda: cv.AlgebraicProblem(straight, [0.0], jacobian=lambda u, p: None), "jacobian returns None"),
-    ],
-)
-def test_what_is_no_problem_is_refused_with_a_sentence(make, words):
-    with pytest.raises(ValueError, match=words):
-        make()
-
-
 def pair(u, p):
     return [u[0] ** 2 - p, u[1] - u[0]]
 
@@ -339,22 +310,6 @@ def test_a_derivative_may_be_a_column(form):
         within=(-0.5, 2.0),
     )
     assert [point.value for point in graph.of_kind("fold")] == pytest.approx([0.0], abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"derivative": {"q": straight}}, r"derivative\['q'\].* no parameter .* has p"),
-        ({"derivative": {"p": 3}}, r"derivative\['p'\] = 3 must be a function"),
-        ({"derivative": sp.csr_array([[1.0]])}, "derivative = a csr_array must be a function"),
-        ({"jacobian": {"p": straight}}, "jacobian = .* must be a function"),
-        ({"derivative": lambda u, p: 1 / 0}, "derivative raises ZeroDivisionError"),
-        ({"jacobian": lambda u, p: 1 / 0}, "jacobian raises ZeroDivisionError"),
-    ],
-)
-def test_what_is_no_derivative_is_refused_at_once(options, words):
-    with pytest.raises(ValueError, match=words):
-        cv.AlgebraicProblem(straight, [0.0], 0.0, **options)
 
 
 def test_a_jacobian_that_becomes_wrong_is_named_where_the_branch_ends():

@@ -38,18 +38,6 @@ def test_derivatives_by_name_and_files():
     assert again.parameter == "r" and again.parameters == {"h": 0.0, "r": 1.0}
 
 
-def test_mistakes_are_named():
-    problem = cv.AlgebraicProblem(cusp, [0.3], {"h": 0.0, "r": 1.0})
-    with pytest.raises(ValueError, match="there is no parameter 'q'; the problem has h, r"):
-        problem.against("q")
-    with pytest.raises(ValueError, match="'q'"):
-        cv.diagram(problem, over="q", within=(0.0, 1.0))
-    with pytest.raises(ValueError, match="r = 'x' must be a number"):
-        ParameterSet({"r": "x"}, "r")
-    with pytest.raises(ValueError, match="at least one"):
-        ParameterSet({}, "r")
-
-
 def odd(x, p):
     return p.a * x - p.c * x**3
 

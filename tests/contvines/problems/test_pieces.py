@@ -73,20 +73,3 @@ def test_the_same_from_the_other_side():
     left = next(b for b in graph.branches.values() if b.points.min() < -0.1)
     np.testing.assert_allclose(left.points[:, 0], left.values / 0.5, atol=1e-10)
     assert left.values.min() == -1.0
-
-
-def test_a_switch_that_is_no_number_at_the_start_is_refused():
-    with pytest.raises(ValueError, match="the switch wall is nan at the start"):
-        cv.AlgebraicProblem(lambda u, p, s: [p - u[0]], [1.0], 1.0, switches={"wall": lambda u, p: np.nan})
-
-
-def test_equations_that_do_not_take_the_signs_are_refused_in_a_sentence():
-    wall = {"wall": lambda u, p: u[0]}
-    with pytest.raises(ValueError, match=r"F cannot be called as F\(u, p, sign\): .* \(wall\) to \+1 or -1"):
-        cv.AlgebraicProblem(lambda u, p: p - u, [0.5], 1.0, switches=wall)
-    with pytest.raises(ValueError, match=r"jacobian cannot be called as jacobian\(u, p, sign\)"):
-        cv.AlgebraicProblem(
-            lambda u, p, sign: p - u, [0.5], 1.0, jacobian=lambda u, p: [[-1.0]], switches=wall
-        )
-    with pytest.raises(ValueError, match=r"no switch 'wal' \(did you mean 'wall'\?\); the problem has wall"):
-        cv.MapProblem(lambda x, p, sign: p - x * sign["wal"], [0.5], 1.0, switches=wall)

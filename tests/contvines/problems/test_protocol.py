@@ -51,19 +51,3 @@ def test_every_kind_of_problem_answers_all(problem):
     assert problem.scale_within((0.0, 1.0)).shape == (problem.dimension + 1,)
     direction = np.ones(problem.dimension)
     assert problem.amplitude(3.0 * direction) == pytest.approx(3.0 * problem.amplitude(direction))
-
-
-def test_a_problem_that_does_not_answer_all_is_refused_before_work():
-    class Line:
-        dimension, parameter, kernels = 1, "p", None
-
-    with pytest.raises(TypeError, match=r"Line does not say its .*spectrum.*contvines\.ProblemDefaults"):
-        cv.diagram(Line(), within=(0.0, 1.0))
-
-
-def test_one_parameter_cannot_be_replaced():
-    class Line(cv.ProblemDefaults):
-        dimension = 1
-
-    with pytest.raises(ValueError, match="gravity cannot vary: a Line has the one parameter 'p'"):
-        Line().against("gravity")

@@ -1,22 +1,8 @@
 """What is told of equations by a look round their start."""
 
 import numpy as np
-import pytest
 
 import contvines as cv
-
-
-@pytest.mark.parametrize(
-    ("F", "start", "row"),
-    [
-        (lambda u, p: 0.0 * u, [0.0], 0),
-        (lambda u, p: 0.0 * u, [0.3, 1.0], 0),
-        (lambda u, p: [u[0] - p, 0.0], [0.0, 1.0], 1),
-    ],
-)
-def test_an_equation_that_is_zero_everywhere_is_none(F, start, row):
-    with pytest.raises(ValueError, match=f"row {row} of F is zero .*: it is no equation"):
-        cv.AlgebraicProblem(F, start, 0.0)
 
 
 def test_equations_that_start_flat_are_equations():

@@ -119,11 +119,6 @@ def test_bands_and_maps_are_drawn(one):
         drawn.plot("weight")
 
 
-def test_unknown_outcomes_are_refused():
-    with pytest.raises(PlanError, match="'weight' is unknown"):
-        run(outcomes=("weight",))
-
-
 def test_axes_keep_their_order_in_a_file(tmp_path):
     """Not the alphabet's: an outcome over (z, a) has z first."""
     pytest.importorskip("xarray")

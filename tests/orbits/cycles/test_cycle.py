@@ -9,7 +9,6 @@ from orbits import Absorber, Cavity, Coupled, Orbit, OrbitProblem, Word
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.identity import canonical
 from orbits.factories import FACTORIES
-from orbits.flows.native.cycle_equations import equations
 from orbits.flows.solving import solved_at
 from orbits.problem import rebuild
 
@@ -108,11 +107,6 @@ def test_descriptions_of_every_version_open(name):
         told.pop(key)
     again = rebuild({**told, "factory": name})
     assert isinstance(again, OrbitProblem) and again.parameter == "frequency" and len(again.word) == 0
-
-
-def test_equations_refuse_what_has_no_symmetry():
-    with pytest.raises(ValueError, match="no symmetric orbits"):
-        equations(ABSORBER, Word.parse("RLtL"), 1, "amplitude", ABSORBER.vector({"amplitude": 0.5}), True)
 
 
 @pytest.mark.parametrize("periods", [1, 2, 3])

@@ -5,11 +5,7 @@ import math
 import pytest
 
 from orbits import DryFriction, Machine, Switch, Wall
-from orbits.machines.parameters import ParameterError
-from orbits.proofs.obstacles import ProofError
 from orbits.symbols import cos
-from orbits.words import WordError
-from tools.pages.pages import page
 
 
 def motion(state, phase, p, contact):
@@ -113,62 +109,3 @@ def test_refusals(case):
     changes, sentence = BAD[case]
     with pytest.raises((ValueError, TypeError), match=sentence):
         declared(**changes)
-
-
-def test_a_force_that_is_not_affine_is_refused():
-    with pytest.raises(ValueError, match="motion must be affine in contact.floor"):
-        declared(motion=lambda s, ph, p, c: (s.v, c.floor**2 - s.x), contacts=[floor()])
-
-
-def test_values_that_cannot_be():
-    machine = declared(contacts=[wall(restitution="gap")])
-    with pytest.raises(ParameterError, match="gap = 2 is out of range: the restitution of wall 'R'"):
-        machine.vector({"gap": 2.0})
-    rough = declared(motion=rubbing, contacts=[DryFriction("floor", lambda s, ph, p: s.v, "gap")])
-    with pytest.raises(
-        ParameterError, match="gap = -1 is out of range: the limit of friction 'floor' is 0 or above"
-    ):
-        rough.vector({"gap": -1.0})
-    with pytest.raises(ParameterError, match="frequency = -1: a forcing frequency is above 0"):
-        machine.vector({"frequency": -1.0})
-    with pytest.raises(ParameterError, match="mass is no parameter of the machine 'box'; it has forcing"):
-        machine.simulate(periods=1, mass=1.0)
-
-
-def test_a_negative_gap_at_the_start_is_refused():
-    with pytest.raises(ValueError, match="the gap of wall 'R' is -1 at the start: bodies overlap"):
-        declared().simulate({"x": 2.0}, periods=1)
-    with pytest.raises(ValueError, match="start has no entry 'y'; it may have x, v, phase"):
-        declared().simulate({"y": 2.0}, periods=1)
-    with pytest.raises(ValueError, match="neither periods, time nor events are given"):
-        declared().simulate()
-
-
-def test_words_that_cannot_be():
-    machine = declared(motion=rubbing, contacts=[floor(), wall()])
-    with pytest.raises(
-        WordError, match="the letter 'L': this machine has t .turn., s .stick., u .slip., R .impact."
-    ):
-        machine.word("RL")
-    with pytest.raises(WordError, match="only a stick or a slip takes a sign"):
-        machine.word("R+")
-
-
-def test_a_switch_towards_which_both_flows_lead_is_refused():
-    machine = Machine(
-        name="sliding",
-        states=("x", "v"),
-        parameters={},
-        motion=lambda state, phase, p, contact: (state.v, -5 * contact.side - 0.1 * state.v),
-        contacts=[Switch("side", lambda state, phase, p: state.v + state.x)],
-    )
-    with pytest.raises(
-        ValueError, match="switch 'side': both flows lead to its surface, so the motion would slide"
-    ):
-        machine.simulate({"x": 0.01, "v": 0.05}, time=100.0)
-
-
-def test_orbits_of_pages_have_no_proofs():
-    orbit = page("impact_oscillator").orbit("R", 1, frequency=2.0)
-    with pytest.raises(ProofError, match="offers no proofs, for flights on a page have no closed form"):
-        orbit.prove()

@@ -142,26 +142,6 @@ def test_starts_lie_outside_the_walls_and_in_the_ranges_of_the_page():
     assert [m.kind for m in motions] == ["impossible", "stuck"] and list(index) == [0, 1]
 
 
-@pytest.mark.parametrize(
-    ("starts", "sentence"),
-    [
-        ({"y": (0, 1)}, "no state"),
-        ({"x": (1, 0)}, "no interval"),
-        ({"x": "wide"}, "two numbers"),
-    ],
-)
-def test_ranges_that_are_none(starts, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        Machine(
-            name="free",
-            states=("x", "v"),
-            parameters={"damping": 0.1},
-            motion=lambda s, phase, p, contact: (s.v, -s.x - p.damping * s.v),
-            contacts=[Wall("R", lambda s, phase, p: 1.0 - s.x, {"v": -1.0})],
-            starts=starts,
-        )
-
-
 @pytest.mark.parametrize("way", ["in the chaos", "by Newton's method"])
 def test_cycles_of_a_bouncing_ball_are_those_of_the_closed_form(way):
     """One impact in k periods: the table moves with k pi g (1 - r) / (1 + r) there (P. J. Holmes, J. Sound Vib. 84 (1982) 173)."""

@@ -200,19 +200,6 @@ def test_eigenvalues_are_those_of_a_numerical_jacobian(x, phase, sigma, kind):
     assert np.prod(found) == pytest.approx(np.prod(expected), rel=1e-4, abs=1e-4)
 
 
-def test_bad_fields_are_refused_by_name():
-    with pytest.raises(ValueError, match=r"restitution = 1\.2"):
-        ms.SlowFlow(restitution=1.2)
-    with pytest.raises(ValueError, match=r"friction = -0\.1"):
-        ms.SlowFlow(friction=np.array([0.1, -0.1]))
-    with pytest.raises(ValueError, match="closure is 'rough'"):
-        ms.SlowFlow(closure="rough")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="one parameter set"):
-        ms.equilibria(ms.SlowFlow(), np.array([0.0, 1.0]))  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="C_min"):
-        ms.integrate(ms.SlowFlow(), 0.0, 0.1, 0.0, 1.0)
-
-
 def test_trajectories_settle_on_equilibria_or_say_why_they_end():
     flow = ms.SlowFlow()
     states = {(s.manifold, s.attracting): s for s in ms.equilibria(flow, -2.58)}

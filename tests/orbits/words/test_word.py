@@ -29,22 +29,6 @@ def test_events_and_maps_are_read(text, events, modes):
     assert word.modes == modes
 
 
-@pytest.mark.parametrize(
-    ("text", "says"),
-    [
-        ("LL", "turn"),
-        ("LX", "letter 'X'"),
-        ("L", "turn"),
-        ("LtR", "cannot come next"),
-        ("LR LR RL", "cannot"),
-        ("u", "follows no stick"),
-    ],
-)
-def test_words_that_cannot_be_are_refused(text, says):
-    with pytest.raises(WordError, match=says):
-        Word.parse(text)
-
-
 def test_without_friction_flights_reverse_freely():
     assert Word.parse("LL", frictionless=True).events == ("L", "L")
     assert Word.parse("LL LR RL", frictionless=True).events == ("L", "L", "R")

@@ -189,11 +189,6 @@ def test_eigenvectors_solve_the_cycle(length, twist):
                 assert np.linalg.norm(left + right) <= 1e-6 * (np.linalg.norm(left) + np.linalg.norm(right))
 
 
-def test_eigenvector_refuses_zero():
-    with pytest.raises(ValueError, match="finite and not zero"):
-        eigenvector(np.ones((1, 2, 2)), np.ones((1, 2, 2)), 1.0, 0.0)
-
-
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 6])
 def test_small_eigenvalues(n):
     """Of one factor: Francis' double shifts in the native core."""
