@@ -79,7 +79,8 @@ def box(**changes):
     given = {
         "name": "box",
         "states": ("x", "v"),
-        "parameters": {"gap": 1.0, "forcing": 0.5},
+        "parameters": {"gap": 1.0, "forcing": 0.5, "frequency": 1.0},
+        "phase_rate": "frequency",
         "motion": lambda s, phase, p, contact: (s.v, p.forcing * orbits.symbols.cos(phase) - s.x),
         "contacts": [Wall("R", lambda s, phase, p: p.gap - s.x, {"v": -1.0})],
     }
