@@ -289,7 +289,9 @@ REFUSED = {
     "the gap of wall 'R' is -1 at the start: bodies overlap": lambda: box().simulate({"x": 2.0}, periods=1),
     "start has no entry 'y'; it may have x, v, phase": lambda: box().simulate({"y": 2.0}, periods=1),
     "neither periods, time nor events are given": lambda: box().simulate(),
-    "'L' begins no letter of this machine; it has t, s, u, R": lambda: rough().word("RL"),
+    "has the letter 'L': this machine has t (turn), s (stick), u (slip), R (impact)": lambda: rough().word(
+        "RL"
+    ),
     "only a stick or a slip takes a sign": lambda: rough().word("R+"),
     "switch 'side': both flows lead to its surface, so the motion would slide": lambda: (
         sliding_switch().simulate({"x": 0.01, "v": 0.05}, time=100.0)

@@ -48,23 +48,6 @@ def test_the_frame_and_the_csv_file_agree(graph, tmp_path):
         assert [float(row[name]) for row in rows] == frame[name].tolist()
 
 
-def test_the_name_chooses_the_format(graph, tmp_path):
-    assert graph.export(tmp_path / "g.json").read_text().startswith("{")
-    with pytest.raises(
-        ValueError, match=r"g.doc: a file for other programs ends in .csv, .json, .graphml, .mat"
-    ):
-        graph.export(tmp_path / "g.doc")
-    with pytest.raises(ValueError, match="no such format"):
-        graph.export(tmp_path / "g.csv", to="doc")
-
-
-def test_notebooks_show_tables(graph):
-    assert "<table>" in graph._repr_html_() and "B2" in graph._repr_html_()
-    assert "B2" in graph["B2"]._repr_html_()
-    point = graph.of_kind("symmetry-breaking")[0]
-    assert point.label in point._repr_html_() and "symmetry-breaking" in point._repr_html_()
-
-
 def test_a_graph_as_a_data_set_has_every_point_of_every_branch():
     xarray = pytest.importorskip("xarray")
     graph = fakes.pitchfork_graph()

@@ -105,24 +105,6 @@ def test_nonsmooth_fold_is_a_switch():
     assert "depth" not in graph["VG1"].note
 
 
-class Brief(Line):
-    """Tells what goes on behind its border apart from what leaves there."""
-
-    every = True
-
-    def beyond(self, point):
-        self.asked = [*getattr(self, "asked", []), self.every]
-        return super().beyond(point)[: None if self.every else 1]
-
-
-def test_what_would_not_be_followed_is_not_looked_for():
-    for depth, asked in ((0, [False]), (1, [True])):
-        start = Brief("a", 0.0, 1.0, [-1.0], [0.5], [persistent, folding])
-        graph = cv.diagram(start, within=(0.0, 1.0), depth=depth)
-        assert start.asked == asked
-        assert len(graph) == 2 + depth and graph["VG1"].note == ""
-
-
 def test_virtual_part_is_a_branch_of_its_own():
     graph = cv.diagram(Line("a", 0.0, 1.0, [-1.0], [0.5], [persistent]), within=(0.0, 1.0), virtual=True)
     assert [b.real for b in graph] == [True, True, False]

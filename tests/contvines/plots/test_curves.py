@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import contvines as cv
 from contvines.plots import plot_diagram
 from contvines.problems.protocol import ProblemDefaults
 from tests.contvines import fakes
@@ -39,18 +38,6 @@ def test_an_angle_is_not_drawn_across_the_picture_where_it_wraps():
     assert gaps == 5
     texts = {t.get_text() for t in plot_diagram(graph, y="turn").axes[0].texts}
     assert {"B1", "B2", "B3"} & texts  # broken lines have their labels, too
-
-
-def test_a_cycle_is_drawn_with_all_its_points():
-    """The logistic map's 2-cycle at p = 3.3: both points, by hand (1 + p +- sqrt((p - 3)(p + 1)))/(2 p)."""
-    problem = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 2.8)
-    graph = cv.diagram(problem, within=(2.7, 3.4), depth=1)
-    axes = plot_diagram(graph, y="x0", xlim=(2.7, 3.4)).axes[0]
-    for sign in (-1, 1):
-        x = (1 + 3.3 + sign * np.sqrt(0.3 * 4.3)) / 6.6
-        lines = [line.get_xydata() for line in axes.lines if len(line.get_xdata()) > 1]
-        near = [np.interp(3.3, *xy[np.argsort(xy[:, 0])].T) for xy in lines if np.ptp(xy[:, 0]) > 0.1]
-        assert np.abs(np.array(near) - x).min() < 1e-4
 
 
 def test_a_branch_that_runs_away_does_not_set_the_scale(graph):

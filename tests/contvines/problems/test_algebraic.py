@@ -123,22 +123,6 @@ def test_brusselator(a):
     assert np.abs(graph["HB1"].multipliers.imag) == pytest.approx([a, a], abs=1e-10)
 
 
-def test_two_eigenvalues_cross_at_once():
-    """Two uncoupled pitchforks at one parameter value: both are seen, and all four branches through the point."""
-
-    def two(u, p):
-        return np.array([p * u[0] - u[0] ** 3, p * u[1] - 2.0 * u[1] ** 3])
-
-    graph = cv.diagram(
-        cv.AlgebraicProblem(two, [0.0, 0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0), depth=1
-    )
-    assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-13)
-    assert "two multipliers" in graph["BP1"].note
-    ends = sorted(tuple(np.round(np.abs(b.points[-1]), 9)) for b in list(graph)[1:])
-    half = round(np.sqrt(0.5), 9)
-    assert ends == [(0.0, half), (1.0, 0.0), (1.0, half), (1.0, half)]
-
-
 @pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-7])
 def test_two_eigenvalues_cross_close_together(gap):
     """Between two points of the branch, at 0 and at ``gap``: a product of tests would not change sign."""
@@ -185,19 +169,6 @@ def test_derivatives_given_or_not():
     assert of_kind(graph, "fold") == pytest.approx([-exact, exact], abs=1e-12)
 
 
-def test_callable_without_complex_derivative_is_noticed():
-    problem = cv.AlgebraicProblem(lambda x, p: np.abs(x) * x - p, [1.0], 1.0)
-    assert not problem.functions.complex_step
-    assert problem.functions.jacobian(np.array([0.7]), 0.3)[0, 0] == pytest.approx(1.4, rel=1e-10)
-
-
-def test_importable_problems_can_be_rebuilt():
-    from contvines.problems.registry import rebuild
-
-    problem = cv.AlgebraicProblem(lambda x, p: x - p, [0.0])
-    assert problem.describe()["factory"] is None and rebuild(problem.describe()) is None
-
-
 def test_lorenz():
     """sigma = 10, b = 8/3: pitchfork at r = 1, Hopf at r = 470/19 (Strogatz, section 9.2); C+ and C- are one branch."""
 
@@ -230,16 +201,3 @@ def test_lemniscate_crosses_itself():
     assert of_kind(graph, "fold") == pytest.approx([-1.0, 1.0], abs=1e-12)
     assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-12)
     assert len(graph) == 1 and graph["B1"].closed
-
-
-def test_a_long_exception_is_short_in_the_table_and_whole_on_the_branch():
-    words = "the inner iteration has not converged; " * 20 + "\nsee the log"
-
-    def fails(u, p):
-        if p > 1.5:
-            raise RuntimeError(words)
-        return p - u
-
-    graph = cv.diagram(cv.AlgebraicProblem(fails, [1.0], 1.0), within=(0.0, 2.0))
-    assert max(map(len, str(graph).splitlines())) < 200
-    assert words in graph["B1"].ended[1] and words in graph.to_dict()["branches"][0]["ended"][1]

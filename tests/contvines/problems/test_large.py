@@ -9,8 +9,6 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, splu
 
 import contvines as cv
-from contvines.problems.factors import BandFactors, Method, SuperLUFactors
-from contvines.problems.sparse import SparseWork, bordered
 from tools.benchmarks.large import bratu as bratu_2d
 from tools.brusselator import brusselator
 
@@ -98,28 +96,6 @@ def test_two_dimensional_bratu():
     assert not graph.of_kind("branch-point")
 
 
-@pytest.mark.parametrize("beyond", [0.0, 1e-3])
-def test_signs_with_the_factors_of_a_jacobian_on_the_other_side_of_a_fold(beyond):
-    """The sign of a bordered determinant is that of numpy, though det F_u has changed its own since the factors were made."""
-    n, rng = 12, np.random.default_rng(4)
-    values = np.linspace(1.0, 2.0, n)
-    basis = np.linalg.qr(rng.standard_normal((n, n)))[0]
-    vector = basis[:, 0]
-    border, slope = np.append(vector, 0.3), vector + 0.1 * rng.standard_normal(n)
-
-    class Bare:
-        scales = None
-
-    work = SparseWork(np.zeros(n), slope, keep=True)
-    for first in (1e-3, -beyond):
-        values[0] = first
-        work.jacobian = sp.csc_matrix(basis @ np.diag(values) @ basis.T)
-        work.near, work.factors, work.failed = work.factors, None, False
-        sign = bordered(Bare(), work, border, 0.0, np.zeros(n + 1), np.zeros(n + 1))
-        whole = np.block([[work.jacobian.toarray(), slope[:, None]], [border[None, :]]])
-        assert sign == np.linalg.slogdet(whole)[0]
-
-
 @pytest.mark.parametrize("complex_step", [True, False])
 def test_coloured_differences(complex_step):
     """A chain of 60 without a Jacobian: one call (or six) for each of three colours, and the fold of the dense problem."""
@@ -141,27 +117,6 @@ def test_coloured_differences(complex_step):
     exact = line + sp.diags_array(2.0 * np.exp(u))
     assert abs(found - exact).max() < 1e-9 * abs(exact).max()
     assert np.count_nonzero(found.toarray()[np.abs(line.toarray()) == 0.0]) == 0
-
-
-def test_banded_factors_are_those_of_numpy():
-    """A shuffled band: solutions and the sign of the determinant."""
-    draw = np.random.default_rng(6)
-    n = 40
-    for k in range(6):
-        matrix = np.zeros((n, n))
-        for d in (-2, -1, 0, 1):
-            matrix += np.diag(draw.standard_normal(n - abs(d)), d)
-        order = np.arange(n) if k % 2 else draw.permutation(n)
-        matrix = matrix[order][:, order]
-        method, sides = Method(), draw.standard_normal((n, 2))
-        factors = method.factorise(sp.csc_matrix(matrix))
-        assert isinstance(factors, BandFactors)
-        np.testing.assert_allclose(factors.solve(sides), np.linalg.solve(matrix, sides), rtol=1e-6)
-        np.testing.assert_allclose(
-            factors.solve(sides[:, 0]), np.linalg.solve(matrix, sides[:, 0]), rtol=1e-6
-        )
-        assert factors.sign == SuperLUFactors(sp.csc_matrix(matrix), "COLAMD").sign
-        assert factors.sign == np.linalg.slogdet(matrix)[0]
 
 
 def test_without_a_matrix_from_the_start_through_the_fold():
@@ -222,40 +177,6 @@ def test_branch_points_without_a_matrix(start):
     assert len(graph) == (3 if start == 0.5 else 1)
 
 
-def test_a_preconditioner_is_worth_it_whatever_the_size():
-    """Bratu on a square: the products a point takes do not grow with the number of unknowns, and the border adds none."""
-    taken = []
-    for n in (6, 12):
-        F, jacobian, derivative = bratu_2d(n)
-        N, count = n * n, [0]
-        laplace = jacobian(np.zeros(N), 0.0)
-        nearly = splu(laplace)
-
-        def counted(u, p, jacobian=jacobian, count=count, N=N):
-            matrix = jacobian(u, p)
-
-            def product(x):
-                count[0] += 1
-                return matrix @ np.ravel(x)
-
-            return LinearOperator((N, N), matvec=product, dtype=float)
-
-        problem = cv.AlgebraicProblem(
-            F,
-            np.zeros(N),
-            0.0,
-            jacobian=counted,
-            derivative=derivative,
-            preconditioner=lambda u, p, nearly=nearly, N=N: LinearOperator(
-                (N, N), matvec=nearly.solve, dtype=float
-            ),
-        )
-        points = sum(1 for _ in cv.trace(problem, within=(0.0, 5.0)))
-        taken.append(count[0] / points)
-    assert max(taken) < 100.0
-    assert taken[1] < 1.2 * taken[0]
-
-
 def test_a_matrix_free_problem_that_gmres_cannot_solve_says_so():
     """A cyclic shift of 2500 unknowns: nothing is gained before the 2500th product, and 80 vectors are kept."""
     n = 2500
@@ -292,20 +213,3 @@ def test_double_points_without_a_matrix_and_without_a_preconditioner(spectrum):
     assert [point.value for point in points] == pytest.approx([2.0 * one, one + two], rel=1e-10)
     if spectrum == "flow":
         np.testing.assert_allclose(graph["B1"].stable_intervals(), [(15.0, 2.0 * one)], rtol=1e-10)
-
-
-def test_an_operator_is_written_out_where_solving_with_it_is_more_work():
-    """Of 600 unknowns GMRES solves with 1 + a sum in two products, and with a cyclic shift in 600; up to 300 a matrix is never more work."""
-    from contvines.problems.written_out import worth_it, written_out
-
-    draw = np.random.default_rng(2)
-    easy = lambda x: x + np.sum(x) / 600.0  # noqa: E731
-    hard = lambda x: np.roll(x, 1)  # noqa: E731
-    for n, product, wanted in ((600, easy, False), (600, hard, True), (300, easy, True), (2500, hard, False)):
-        assert (
-            worth_it(LinearOperator((n, n), matvec=lambda x, f=product: f(np.ravel(x)), dtype=float), n)
-            is wanted
-        )
-    matrix = draw.standard_normal((230, 230))
-    written = written_out(LinearOperator((230, 230), matvec=lambda x: matrix @ np.ravel(x), dtype=float), 230)
-    np.testing.assert_array_equal(written.toarray(), np.column_stack([matrix @ e for e in np.eye(230)]))

@@ -48,14 +48,6 @@ def test_flip_coefficient_of_the_logistic_map(cascade):
     assert cascade["PD1"].coefficient == pytest.approx(9.0, rel=1e-6)
 
 
-def test_evidence(cascade):
-    for point in cascade.of_kind("period-doubling"):
-        assert np.abs(point.multipliers + 1.0).min() < 1e-9
-        assert point.residual < 1e-14 and point.replay < 1e-14 and point.location_error < 1e-12
-        low, high = sorted(point.bracket)
-        assert low <= point.value <= high
-
-
 def test_henon_cascade():
     """b = 0.3: fold -(1-b)^2/4, doublings 3(1-b)^2/4 and (1-b)^2 + (1+b)^2/4 exactly; then 1.02585541, 1.05112566
     (Derrida, Gervois, Pomeau, J. Phys. A 12 (1979) 269)."""
@@ -141,23 +133,6 @@ def test_a_two_cycle_run_through_three_times_is_followed_as_a_two_cycle():
     graph = cv.diagram(problem, within=(3.1, 3.5), depth=0)
     assert graph["B1"].description["cycle"] == 2
     assert [p.value for p in graph.of_kind("period-doubling")] == pytest.approx([1 + np.sqrt(6)], abs=1e-12)
-
-
-def test_canonical_form():
-    problem = cv.MapProblem(logistic, [0.5130445, 0.7994555, 0.5130445, 0.7994555], 3.2, cycle=4)
-    key, vector = problem.canonical(np.array([0.8, 0.5, 0.8, 0.5]), 3.2)
-    assert key[1] == 2 and vector.tolist() == [0.5, 0.8]
-
-
-def test_rebuild_from_description():
-    from contvines.problems.registry import rebuild
-
-    problem = cv.MapProblem(np.multiply, [1.0], 1.0)
-    description = problem.describe()
-    assert description["cycle"] == 1
-    if description["factory"]:
-        again = rebuild(description)
-        assert again.cycle == 1 and again.u0 == problem.u0
 
 
 def test_area_preserving_map_has_no_spurious_events():

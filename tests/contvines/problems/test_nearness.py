@@ -5,8 +5,6 @@ import pytest
 import scipy.sparse as sp
 
 import contvines as cv
-from contvines.continuation.engine import Engine
-from contvines.continuation.settings import Settings
 
 
 def hidden(local, slopes, n, seed=0):
@@ -87,20 +85,3 @@ def test_two_null_vectors_at_once(make):
     graph = cv.diagram(problem, within=(0.0, 1.0), depth=1)
     assert [point.value for point in graph.of_kind("branch-point")] == pytest.approx([0.5], abs=1e-8)
     assert len(graph) == 5
-
-
-def test_the_distance_is_that_of_the_bordered_matrix():
-    """1/|M^-1 b| in units of the scales, dense and sparse, against numpy."""
-    F, jacobian = bands(transcritical, transcritical_slopes, 30)
-    found = []
-    for make in (jacobian, lambda u, p: jacobian(u, p).toarray()):
-        problem = cv.AlgebraicProblem(F, np.zeros(30), 0.0, jacobian=make, scale=2.0)
-        engine = Engine(problem, (0.0, 1.0), Settings())
-        border = np.linspace(1.0, 2.0, 31)
-        point = engine.solve(np.zeros(30), 0.3, border, 0.6)
-        assert point is not None and problem.scales is not None
-        inner = np.column_stack([make(point.u, point.p) @ np.eye(30), np.zeros(30)])
-        image = np.linalg.solve(np.vstack([inner, border]), problem.side) / problem.scales.vector
-        assert -point.row[0] == pytest.approx(np.sqrt(31.0) / np.linalg.norm(image), rel=1e-9)
-        found.append(point.row[0])
-    assert found[0] == pytest.approx(found[1], rel=1e-9)

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from scipy.sparse.linalg import LinearOperator, aslinearoperator
+from scipy.sparse.linalg import aslinearoperator
 
 import contvines as cv
 
@@ -126,64 +126,6 @@ def test_errors_are_one_sentence_and_keep_the_graph():
     assert "RuntimeError: the table ends" in graph["B1"].ended[1]
 
 
-def bratu(n):
-    """u'' + p exp(u) = 0 on n inner points; the Jacobian in sparse form."""
-    h = 1.0 / (n + 1)
-    laplace = (
-        sp.diags_array([np.ones(n - 1), -2.0 * np.ones(n), np.ones(n - 1)], offsets=[-1, 0, 1]).tocsr() / h**2
-    )
-    return lambda u, p: laplace @ u + p * np.exp(u), lambda u, p: (
-        laplace + sp.diags_array(p * np.exp(u))
-    ).tocsr()
-
-
-def test_sparse_jacobians_give_what_dense_ones_give():
-    f, jacobian = bratu(40)
-    dense = cv.AlgebraicProblem(
-        f, np.zeros(40), 0.0, jacobian=lambda u, p: jacobian(u, p).toarray(), scale=1.0
-    )
-    sparse = cv.AlgebraicProblem(
-        f,
-        np.zeros(40),
-        0.0,
-        jacobian=jacobian,
-        derivative=lambda u, p: np.exp(u),
-        scale=1.0,
-        spectrum="flow",
-        leading=4,
-    )
-    folds = [
-        of_kind(cv.diagram(problem, within=(0.0, 4.0), settings={"escape": 8.0}), "fold")
-        for problem in (dense, sparse)
-    ]
-    assert folds[0] == pytest.approx(folds[1], abs=1e-12) and len(folds[0]) == 1
-    assert folds[0][0] == pytest.approx(3.5138307, rel=2e-3)  # the differential equation's own fold
-
-
-def test_matrix_free():
-    f, jacobian = bratu(12)
-    inverse = np.linalg.inv(jacobian(np.zeros(12), 0.0).toarray())
-
-    def operator(u, p):
-        matrix = jacobian(u, p)
-        return LinearOperator((12, 12), matvec=lambda x: matrix @ x)
-
-    problem = cv.AlgebraicProblem(
-        f,
-        np.zeros(12),
-        0.0,
-        jacobian=operator,
-        derivative=lambda u, p: np.exp(u),
-        preconditioner=lambda u, p: inverse,
-        scale=1.0,
-    )
-    dense = cv.AlgebraicProblem(f, np.zeros(12), 0.0, scale=1.0)
-    folds = [
-        of_kind(cv.diagram(q, within=(0.0, 4.0), settings={"escape": 4.0}), "fold") for q in (problem, dense)
-    ]
-    assert folds[0] == pytest.approx(folds[1], abs=1e-9) and len(folds[1]) == 1
-
-
 def test_outputs_are_measures():
     problem = cv.AlgebraicProblem(
         lambda u, p: u - p**2, [0.0], 0.0, outputs={"energy": lambda u, p: 0.5 * u[0] ** 2 + p}
@@ -297,21 +239,6 @@ def test_a_jacobian_given_as_derivative_is_refused_with_the_way_out(form, named)
     assert "sequence" not in str(raised.value)
 
 
-@pytest.mark.parametrize("form", [np.array, sp.csr_array])
-def test_a_derivative_may_be_a_column(form):
-    graph = cv.diagram(
-        cv.AlgebraicProblem(
-            pair,
-            [1.0, 1.0],
-            1.0,
-            jacobian=lambda u, p: form(pair_by_unknowns(u, p)),
-            derivative=lambda u, p: form([[-1.0], [0.0]]),
-        ),
-        within=(-0.5, 2.0),
-    )
-    assert [point.value for point in graph.of_kind("fold")] == pytest.approx([0.0], abs=1e-12)
-
-
 def test_a_jacobian_that_becomes_wrong_is_named_where_the_branch_ends():
     def jacobian(u, p):
         return [[2.0 * u[0] if p > 0.5 else -u[0]]]
@@ -341,25 +268,3 @@ def test_a_branch_may_end_where_its_equations_do():
         cv.AlgebraicProblem(lambda u, p: np.emath.sqrt(u) - p - 1.0, [1.0], 0.0), within=(-1.0, 1.0)
     )
     assert all("end of the interval" in said for said in graph["B1"].ended)
-
-
-@pytest.mark.parametrize("draw", range(6))
-def test_too_much_noise_is_named(draw):
-    # the draw decides, and with it the last bits of the sine, whether a branch takes no step or a few
-    try:
-        graph = cv.diagram(cv.AlgebraicProblem(noisy(1e-2, draw), [1.0], 1.0), within=(-1.0, 1.5), depth=0)
-    except ValueError as error:
-        said = (str(error),)
-    else:
-        said = graph["B1"].ended
-    assert all("F has noise of" in sentence for sentence in said)
-
-
-@pytest.mark.parametrize("sigma", [1e-4, 1e-2])
-def test_noise_does_not_change_the_length_over_which_equations_bend(sigma):
-    """p - u^2 at u = 1: the square is as large as the linear part where u has changed by 1 to 2."""
-    for draw in range(6):
-        problem = cv.AlgebraicProblem(noisy(sigma, draw), [1.0], 1.0)
-        assert 0.5 < problem.functions.lengths[0] < 4.0
-        # uniform within +- sigma: a standard deviation of sigma / sqrt(3)
-        assert problem.functions.noise[0] == pytest.approx(sigma / math.sqrt(3.0), rel=1.2)

@@ -10,7 +10,6 @@ import pytest
 import contvines as cv
 from contvines.command.cli import main
 from contvines.problems.registry import UnknownFactory, factory, rebuild
-from contvines.store import Store, StoreError
 
 EVIL = "open('marker', 'w').close()\ndef F(u, p):\n    return u - p\n"
 
@@ -102,37 +101,6 @@ def test_no_reader_runs_what_a_file_names(folder, attack, capsys):
     assert not (folder / "marker").exists() and "evil" not in sys.modules
 
 
-def test_a_journal_that_names_a_function_does_not_call_it(folder):
-    """What a killed run has kept of the far side of a border is rebuilt, too, when it goes on."""
-    from contvines.graph.schedule_branches import _seeds  # the reader of such records
-
-    class Far:
-        def beyond(self, point):
-            return []
-
-    class Kept:
-        def recall(self, key):
-            return {
-                "problems": [ATTACKS["a process"]],
-                "p": [0.0],
-                "note": [""],
-                "persistence": [True],
-                "u0": np.zeros(1),
-            }
-
-    class Run:
-        serial, journal = 1, Kept()
-
-        def attempt(self, label, what, work, otherwise):
-            return work()
-
-    class Point:
-        label, problem = "ST1", Far()
-
-    assert _seeds(Run(), Point()) == []
-    assert not (folder / "marker").exists()
-
-
 @pytest.mark.parametrize(
     "words", [["orbit", "x.vines", "B1:1", "--json"], ["export", "x.vines", "--to", "csv"]]
 )
@@ -161,21 +129,6 @@ def test_in_python_trust_and_known_functions(folder):
     assert cv.load("x.vines").branches["B1"].problem.functions.f is trusted.functions.f
 
 
-def test_trust_does_not_open_the_list_of_factories(folder):
-    graph_with(ATTACKS["a process"]).save("x.vines")
-    assert cv.load("x.vines", trust=True).branches["B1"].problem is None
-    assert not (folder / "marker").exists()
-
-
-def test_a_function_that_cannot_be_imported_has_its_sentence(folder):
-    callables = {**CALLABLES, "F": "nowhere_at_all:F"}
-    graph_with(described("contvines.algebraic:from_description", callables=callables, **NAMES)).save(
-        "x.vines"
-    )
-    with pytest.raises(StoreError, match="'nowhere_at_all:F' that the file names cannot be imported"):
-        cv.load("x.vines", trust=True)
-
-
 def test_a_program_registers_its_own_factory():
     made = []
     with pytest.raises(UnknownFactory, match=r"contvines\.register"):
@@ -191,12 +144,3 @@ def test_a_program_registers_its_own_factory():
 )  # fmt: skip
 def test_factories_of_version_0_1_are_known(name):
     assert callable(factory(name))
-
-
-def test_a_description_that_is_none_gets_a_sentence(tmp_path):
-    graph = graph_with({"factory": "orbits.problem:rebuild", "word": 3})
-    graph.save(tmp_path / "x.vines")
-    with pytest.raises(StoreError, match="does not hold a graph"):
-        cv.load(tmp_path / "x.vines")
-    with Store.open(tmp_path / "x.vines") as store:
-        assert len(store.graph(problems=False)) == len(graph)

@@ -20,15 +20,6 @@ def test_the_transition_matrix_is_the_exponential(tau):
     assert plain("transition")(ALPHA, BETA, tau)[:4] == pytest.approx([float(x) for x in matrix], rel=1e-14)
 
 
-@pytest.mark.parametrize("excitation", [0.0, 0.4, 1.0])
-def test_the_response_solves_the_forced_oscillator(excitation):
-    """K X - c Y = f and c X + K Y = chi f c for q = X sin Psi + Y cos Psi, drag c, and f (sin + chi c cos) on the right."""
-    force, drag, stiffness = 0.31, 0.12, -0.45
-    X, Y = plain("harmonic")(force, excitation, drag, stiffness)
-    assert stiffness * X - drag * Y == pytest.approx(force, rel=1e-14)
-    assert drag * X + stiffness * Y == pytest.approx(excitation * drag * force, abs=1e-15)
-
-
 def test_a_wave_and_its_derivatives():
     numbers = {"Omega": OMEGA, "alpha": ALPHA, "beta": BETA}
     P, Q, A, B, phase = 0.3, -0.2, 0.5, 0.1, 0.8
@@ -47,21 +38,3 @@ def test_a_wave_and_its_derivatives():
         again = plain("wave")(0.0, *once, *numbers.values(), phase, 1.3)
         assert again[0] == pytest.approx(float(mp.diff(value, mp.mpf(1.3))), rel=1e-13)
         assert again[1] == pytest.approx(float(mp.diff(value, mp.mpf(1.3), 2)), rel=1e-13)
-
-
-@pytest.mark.parametrize(("y", "rate"), [(0.3, 0.2), (0.3, -0.2), (1e-9, -1e-3), (0.5, 0.0)])
-def test_the_certain_time_is_the_first_zero_of_the_worst_parabola(y, rate):
-    """y + y' h - bound h^2/2 = 0 at h > 0."""
-    h = plain("certain")(y, rate, 0.7)
-    assert h > 0.0 and y + rate * h - 0.35 * h * h == pytest.approx(0.0, abs=1e-15)
-
-
-def test_damped_and_overdamped():
-    alpha, beta = plain("rates")(1.3, 0.4)
-    assert 1.3 * (alpha**2 + beta**2) == pytest.approx(1.0) and 2.0 * 1.3 * alpha == pytest.approx(0.4)
-    assert plain("rates")(1.0, 2.1)[1] != plain("rates")(1.0, 2.1)[1]  # not a number
-
-
-def test_the_start_of_an_oscillation():
-    A, B = plain("oscillation")(ALPHA, BETA, 0.3, -0.2)
-    assert A == 0.3 and pytest.approx(-0.2) == BETA * B - ALPHA * A
