@@ -11,6 +11,8 @@ from tools.benchmarks.loci import WITHIN, Loci
 from tools.benchmarks.ours import Core, PublicAPI
 from tools.benchmarks.starts import Starts, places
 
+pytestmark = pytest.mark.slow
+
 needs_compiler = pytest.mark.skipif(library() is None, reason="no C compiler")
 
 

@@ -12,6 +12,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.slow
+
 PAGE = (Path(__file__).parents[1] / "docs/coming_from.md").read_text(encoding="utf-8")
 
 

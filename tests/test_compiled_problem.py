@@ -11,6 +11,8 @@ import pytest
 import contvines as cv
 from contvines.core.library import library
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[1]
 needed = pytest.mark.skipif(
     shutil.which("cc") is None or library() is None, reason="no C compiler, or no native core"

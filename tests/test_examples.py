@@ -9,6 +9,8 @@ import pytest
 
 from tools.fuzz.many_digits import exact
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
 SCRIPTS = {"pitchfork", "henon", "absorber", "neutral_saddle"}
 STUDIES = {"friction", "friction_low", "frequency", "bouncing_ball"}

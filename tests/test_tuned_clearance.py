@@ -13,6 +13,8 @@ import contvines as cv
 from orbits import Coupled
 from orbits import multiple_scales as ms
 
+pytestmark = pytest.mark.slow
+
 RESTITUTION, SHARE, DAMPING_RATIO = (
     0.8,
     0.02,

@@ -13,6 +13,8 @@ from contvines.command.study import read_study
 from contvines.command.survey_study import plan_and_machine
 from orbits.attractors.sweep import sweep
 
+pytestmark = pytest.mark.slow
+
 STUDY = Path(__file__).parents[1] / "examples" / "design" / "absorber.toml"
 
 

@@ -10,6 +10,8 @@ import contvines as cv
 from orbits import Absorber
 from orbits.design import Design
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("seed", range(8))
 def test_bounds_are_the_special_points_of_the_branch(seed):

@@ -13,6 +13,8 @@ from orbits import multiple_scales as ms
 from orbits.design import Design
 from orbits.starts.find import polish
 
+pytestmark = pytest.mark.slow
+
 STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211}
 R, H = 0.24 / 1.76, 0.5 * np.pi * 0.5 * 0.211
 

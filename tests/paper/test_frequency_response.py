@@ -17,6 +17,8 @@ import contvines as cv
 from orbits.simulation import simulate
 from tests.orbits.machines.coupled.equations_of_motion import MACHINE, TIGHT, right_side
 
+pytestmark = pytest.mark.slow
+
 WITHIN = (0.94, 1.07)
 BORDERS = ("velocity-graze", "wall-graze", "stick")
 # what the integration below gives; the compiled maps agree to 1e-11

@@ -15,6 +15,8 @@ from orbits.attractors.sweep import sweep
 from orbits.cycles.identity import canonical
 from orbits.starts.find import polish
 
+pytestmark = pytest.mark.slow
+
 MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 WITHIN = (0.94, 1.07)
 # where a sweep has to jump; from integration, see test_frequency_response.py

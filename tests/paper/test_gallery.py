@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 GALLERY = Path(__file__).parents[2] / "examples" / "gallery"
 HELPERS = {"paper", "two_impacts"}
 SCRIPTS = sorted(p.stem for p in GALLERY.glob("*.py") if p.stem not in HELPERS)

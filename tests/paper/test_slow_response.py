@@ -9,6 +9,8 @@ import pytest
 import contvines as cv
 from orbits import multiple_scales as ms
 
+pytestmark = pytest.mark.slow
+
 
 def problem(flow, start, regular, manifold="impacting"):
     response = ms.SlowResponse(flow, "detuning", manifold, regular=regular)

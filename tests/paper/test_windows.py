@@ -12,6 +12,8 @@ from orbits import Absorber
 from orbits.attractors import find_attractor
 from tests.paper.brute import Machine, eigenvalues, secant
 
+pytestmark = pytest.mark.slow
+
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 # amplitudes C

@@ -22,6 +22,7 @@ def test_a_branch_point_beside_an_eigenvalue_that_has_grown(growth):
     assert abs(point.value - 0.3) <= point.location_error < 1e-8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [50, 400, 1500])
 def test_stiff_fields_on_a_line(m):
     """The first Turing point of a brusselator: entries of D/h^2 are rounded, and the stated error grows with them.

@@ -90,6 +90,7 @@ def test_no_border_on_another_branch():
     assert graph["B1"].points[-1, 0] == pytest.approx(np.sqrt(1.0 + 1e-6), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_resumed_at_every_record():
     """Wherever a run was interrupted, before or after a leap was noticed, it ends in the same graph."""
 

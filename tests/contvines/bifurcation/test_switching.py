@@ -61,6 +61,7 @@ def test_a_matrix_that_is_singular_to_the_last_bit():
         assert not side.problem.symmetric and side.stable[1:-1].all()
 
 
+@pytest.mark.slow
 def test_a_branch_that_stands_upright_has_no_criticality():
     # p u = 0: at p = 0 every u solves
     graph = cv.diagram(

@@ -47,6 +47,7 @@ def test_circles_are_those_of_the_closed_form(sign):
         assert found[3].simulated == pytest.approx(found[3].rotation, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_circles_of_the_delayed_logistic_map_by_iteration():
     problem = cv.MapProblem(lambda x, p: np.array([p * x[0] * (1 - x[1]), x[0]]), [0.4, 0.4], 1.9)
     graph = cv.diagram(problem, within=(1.8, 2.2), depth=0)
@@ -92,6 +93,7 @@ def bodies(machine):
     return to_bodies, [list(machine.states).index(name) for name in ("q1", "v1", "q2", "v2")]
 
 
+@pytest.mark.slow
 def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
     pytest.importorskip("heyoka")
     from orbits.simulation.section import section_of_page
@@ -115,6 +117,7 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
         assert np.linalg.inv(to_bodies) @ there == pytest.approx(image, abs=1e-7)
 
 
+@pytest.mark.slow
 def test_the_modulated_response_of_the_coupled_absorber_attracts():
     """With little forcing the pair leaves the unit circle supercritically: another simulator settles on the circle, which beats slowly."""
     pytest.importorskip("heyoka")
@@ -154,6 +157,7 @@ def test_the_modulated_response_of_the_coupled_absorber_attracts():
         assert distances[-1] < 0.1 * distances[0], distances
 
 
+@pytest.mark.slow
 def test_command_line(coupled, tmp_path, monkeypatch):
     from typer.testing import CliRunner
 
@@ -180,6 +184,7 @@ def iterated(al, be, v, count):
     return found
 
 
+@pytest.mark.slow
 def test_circles_near_a_resonance_end_at_a_homoclinic_orbit_as_iteration_does():
     """Beside R1 of the generalized Henon map: fixed point x^2 (1 - R) + x (1 + be) = al, R1 at x = 2 / (R - 2)."""
     al = generalized_henon_at(2.0)[2] + 0.03
@@ -204,6 +209,7 @@ def test_circles_near_a_resonance_end_at_a_homoclinic_orbit_as_iteration_does():
     assert len(beyond) < 60_000
 
 
+@pytest.mark.slow
 def test_circles_that_live_within_a_billionth_of_the_frequency():
     """Beside a motion with two turns that nearly graze a wall multipliers change by e^(1.3 10^6 dp): the circle attracts, rotates as simulated."""
     machine = Coupled(

@@ -10,6 +10,8 @@ from contvines.graph.persistence import same_graph
 from contvines.store import Store
 from orbits import Absorber
 
+pytestmark = pytest.mark.slow
+
 MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 

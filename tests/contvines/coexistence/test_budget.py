@@ -1,12 +1,15 @@
 """The budget of an atlas: what most starts reach comes first, what is left out is said, results depend on nothing else."""
 
 import numpy as np
+import pytest
 
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import recurrence
 from orbits.attractors.recurrence import LONGEST, settle
 from orbits.simulation.driver import machine
+
+pytestmark = pytest.mark.slow
 
 
 def logistic():

@@ -86,6 +86,7 @@ def test_the_motion_beyond_a_fold_is_found():
         assert counted.u is not None and counted.u[0] == pytest.approx(upper, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_an_atlas_goes_down_a_cascade_of_its_own_accord():
     """Starts at 2.6 alone: the doublings at 3, 1 + sqrt(6) and 3.5440903596 (published to ten digits) are on the atlas."""
     population = cv.MapProblem(logistic, [0.6], 2.6).population(box=[(0.01, 0.99)])
@@ -97,6 +98,7 @@ def test_an_atlas_goes_down_a_cascade_of_its_own_accord():
     assert all(a.starts or a.share == 0.0 for a in graph.attractors)
 
 
+@pytest.mark.slow
 @given(st.lists(st.booleans(), min_size=2, max_size=12), st.integers(0, 100))
 def test_where_chaos_begins_and_ends_is_asked_until_it_is_known(kinds, seed):
     """The values at which a kind is met and those at which it is not come as near as is promised, whatever it does between."""
@@ -115,6 +117,7 @@ def test_where_chaos_begins_and_ends_is_asked_until_it_is_known(kinds, seed):
     assert len(unresolved({"chaotic": [0.2, 0.6]}, [0.0, 0.2, 0.4, 0.6], (0.0, 1.0), 2)) == 2
 
 
+@pytest.mark.slow
 def test_the_machine_hands_over_what_a_start_of_its_own_finds():
     """Past the fold at which `LR` is born (amplitude 0.2526) the motion slides: so says a simulation of its own there."""
     machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)

@@ -4,6 +4,8 @@ import pytest
 
 from tools.attractors.isolas import ISOLAS
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("isola", [isola for isola in ISOLAS if isola.quick], ids=lambda isola: isola.name)
 def test_an_isola_is_found(isola):

@@ -8,6 +8,8 @@ from contvines.coexistence.missing import look, told
 from orbits import Absorber
 from orbits.attractors import find_attractor
 
+pytestmark = pytest.mark.slow
+
 MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 

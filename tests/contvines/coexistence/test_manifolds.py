@@ -11,6 +11,8 @@ from contvines.coexistence.manifolds import stable_manifolds
 from orbits import Absorber
 from tools.pages.pages import page
 
+pytestmark = pytest.mark.slow
+
 PLANE = np.array([[-3.0, 3.0], [-2.0, 2.0]])
 
 

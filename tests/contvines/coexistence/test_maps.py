@@ -5,6 +5,8 @@ import pytest
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 
 def henon(x, p):
     return np.array([1 - p * x[0] ** 2 + x[1], 0.3 * x[0]])

@@ -54,6 +54,7 @@ def windows(x, p):
     return np.where(np.abs(x - 1.0) < 0.5, near, 0.5 * x)
 
 
+@pytest.mark.slow
 def test_a_window_narrower_than_the_distance_of_the_values_is_found():
     population = cv.MapProblem(windows, [0.0], 0.5).population(box=[(-2.0, 2.0)])
     few = cv.atlas(population, within=(0.0, 1.0), values=8, starts=32, depth=0, scan=0)

@@ -10,6 +10,8 @@ import contvines as cv
 from orbits import Absorber
 from orbits.machines.physical import physical
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def well():

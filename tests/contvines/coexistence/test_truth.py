@@ -9,7 +9,7 @@ from orbits import Absorber, Cavity, Coupled
 from tools.attractors.drawn import drawn
 from tools.attractors.truth import listed_twice, on_atlas, shares, witness
 
-pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is needed")
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is needed")]
 
 
 @pytest.mark.parametrize(

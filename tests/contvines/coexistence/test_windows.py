@@ -9,6 +9,8 @@ from orbits.attractors import find_attractor
 from tools.attractors.drawn import drawn
 from tools.attractors.isolas import window
 
+pytestmark = pytest.mark.slow
+
 LOGISTIC = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 3.5)
 
 

@@ -8,6 +8,8 @@ from matplotlib.image import imread
 
 from tests.orbits.design.laboratory import STUDY, measurement
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def study(tmp_path):

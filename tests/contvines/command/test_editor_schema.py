@@ -73,6 +73,7 @@ def test_what_the_commands_refuse_the_schema_refuses(study, section, field, valu
         check_study(data)
 
 
+@pytest.mark.slow
 @given(
     field=st.sampled_from(["restitution", "friction", "gravity", "mass_ratio", "frequency"]),
     value=st.floats(-3, 3) | st.sampled_from([0.0, 1e-6, 1.0, 1e6, 1e7, -1e-9]),

@@ -11,6 +11,8 @@ import pytest
 from contvines.graph.persistence import same_graph
 from contvines.store import Store, StoreError, load
 
+pytestmark = pytest.mark.slow
+
 HERE = Path(__file__).parents[1]
 STUDY = HERE.parents[1] / "examples" / "friction.toml"
 COMMAND = [sys.executable, "-m", "contvines.command", "diagram", str(STUDY), "--quiet", "-o"]

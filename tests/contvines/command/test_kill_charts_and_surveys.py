@@ -10,6 +10,8 @@ import pytest
 
 from contvines.survey import load_survey
 
+pytestmark = pytest.mark.slow
+
 STUDY = """
 [model]
 name = "absorber"

@@ -111,6 +111,7 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     assert "does not hold" not in str(done.exception)
 
 
+@pytest.mark.slow
 def test_robustness_of_a_page(study, monkeypatch):
     run("diagram", study, "-q", "--no-look")
     with monkeypatch.context() as patch:
@@ -126,6 +127,7 @@ def test_robustness_of_a_page(study, monkeypatch):
     assert "share of starts" in done.output and "kick" in done.output, done.output
 
 
+@pytest.mark.slow
 def test_an_atlas_and_basins_of_a_page(study):
     study.write_text(study.read_text() + "[atlas]\nvalues = [2.3]\nstarts = 6\nscan = 0\n")
     done = run("atlas", study, "-q", "-o", "a.vines")
@@ -141,6 +143,7 @@ def test_an_atlas_and_basins_of_a_page(study):
     }
 
 
+@pytest.mark.slow
 def test_a_survey_of_a_page(study):
     """With the wall at zero the machine is as large as its forcing: twice the forcing, twice the speeds, at the same frequencies."""
     vary = '[survey]\nvary = {forcing = [1.0, 2.0, 4.0]}\noutcomes = ["peak", "stable:R"]\ngaps = 0\n'
@@ -189,6 +192,7 @@ def struck(restitution, count, forcing=1.0, frequency=2.3, damping=0.05, gap=0.0
     return times
 
 
+@pytest.mark.slow
 def test_a_page_is_calibrated(study):
     (study.parent / "hits.csv").write_text(
         "time\n" + "".join(f"{t!r}\n" for t in map(float, struck(0.66, 8)))

@@ -88,6 +88,7 @@ def test_fresh_sets_aside_what_cannot_be_read(run, tmp_path, study):
     assert (tmp_path / "s.old.vines").read_bytes() == b"mine"
 
 
+@pytest.mark.slow
 def test_fresh_of_sweeps_and_surveys(run, tmp_path, study):
     for command, kind, others in (("sweep", "csv", ()), ("survey", "nc", ("csv",))):
         assert run(command, study, "-o", f"{command}.{kind}", "-q")[0] == 0
@@ -100,6 +101,7 @@ def test_fresh_of_sweeps_and_surveys(run, tmp_path, study):
         }
 
 
+@pytest.mark.slow
 def test_rows_of_another_study_are_not_lost(run, tmp_path, study, monkeypatch):
     """An edited study neither replaces a finished survey nor throws the rows of an unfinished one away."""
     assert run("survey", study, "-o", "s.nc", "-q", "--workers", "1")[0] == 0
@@ -117,6 +119,7 @@ def test_rows_of_another_study_are_not_lost(run, tmp_path, study, monkeypatch):
         assert '"row": 1' in (tmp_path / f"t.old.{target[2:]}.unfinished").read_text()
 
 
+@pytest.mark.slow
 def test_a_survey_that_was_ended_before_its_last_file(run, tmp_path, study):
     """Its NetCDF file is there, the CSV is not, and its rows are still beside it."""
     assert run("survey", study, "-o", "s.nc", "-q", "--workers", "1")[0] == 0
@@ -137,6 +140,7 @@ with held(Path(sys.argv[1]), quiet=False):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("end", ["by itself", "killed"])
 def test_a_second_run_waits_until_the_first_has_ended(tmp_path, end):
     target = tmp_path / "x.vines"

@@ -11,6 +11,8 @@ from contvines.command.cli import main
 from contvines.report.contents import contents
 from orbits import Absorber
 
+pytestmark = pytest.mark.slow
+
 STUDY = Path(__file__).parents[3] / "examples" / "friction.toml"
 
 

@@ -87,6 +87,7 @@ def test_a_negative_factor_rejects_the_step_and_shortens_it():
     assert steps[:3] * np.sqrt(2.0) == pytest.approx([0.0075, 0.0075 * 0.75, 0.0075 * 0.75**2], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_diagrams_take_a_rule_and_keep_its_name():
     problem = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1.0, [1.0], 0.0)
     usual = cv.diagram(problem, within=(-2.0, 2.0), depth=0)

@@ -75,6 +75,7 @@ def test_interrupted_at_any_call_of_its_loading_it_is_loaded_by_the_next():
     assert run(INTERRUPTED).stdout.split() == ["True", run(ASK).stdout.strip()]
 
 
+@pytest.mark.slow
 def test_a_build_elsewhere_gives_libraries_of_these_sources(tmp_path):
     if build.compiler() is None:
         pytest.skip("no compiler")

@@ -10,6 +10,8 @@ import pytest
 from contvines.core.build import variants
 from contvines.core.library import native
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 DIGESTS = """
 import hashlib

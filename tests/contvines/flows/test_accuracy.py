@@ -8,6 +8,8 @@ import contvines as cv
 from contvines.flows import mesh
 from contvines.flows.newton import solved
 
+pytestmark = pytest.mark.slow
+
 B = 2.5
 
 

@@ -5,6 +5,8 @@ import pytest
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 
 def chemical(s0):
     """Demo plp of AUTO-07p."""

@@ -75,6 +75,7 @@ def test_a_cascade_begins_where_simulation_has_a_multiplier_of_minus_one():
     assert graph["B3"].measure("period")[0] == pytest.approx(2.0 * orbit.period, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_lorenz_cycles_end_as_a_homoclinic_orbit():
     side = np.sqrt(8 / 3 * 19)
     flow = cv.FlowProblem(lorenz, [side, side, 19.0], {"r": 20.0}, mirror=lambda x: x * np.array([-1, -1, 1]))
@@ -164,6 +165,7 @@ def test_the_torus_demo_of_auto():
     assert np.abs(found.imag).max() == pytest.approx(np.abs(orbit.multipliers.imag).max(), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_relaxation_oscillations_in_one_branch():
     flow = cv.FlowProblem(
         lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]],
@@ -195,6 +197,7 @@ def test_a_closed_branch_of_cycles():
     assert np.abs((radius - 2.0) ** 2 + graph["B1"].values ** 2 - 1.0).max() < 1e-6
 
 
+@pytest.mark.slow
 def test_cycles_explode_through_canards_on_one_branch():
     flow = cv.FlowProblem(
         lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, 0.08 * (x[0] + 0.7 - 0.8 * x[1])],

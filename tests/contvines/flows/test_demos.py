@@ -11,6 +11,8 @@ import pytest
 from tools.flow_demos.listed import DEMOS, PRINTED, UNFINISHED
 from tools.flow_demos.make_table import TABLE, points_of, shooting_of, solved
 
+pytestmark = pytest.mark.slow
+
 EXPECTED = json.loads(TABLE.read_text(encoding="utf-8"))
 BY_NAME = {demo.name: demo for demo in DEMOS}
 QUICK = ["hopf", "langford", "adaptx", "bistable", "frc", "kpr", "pneta", "morris-lecar", "ops", "torBPC"]
@@ -41,7 +43,6 @@ def test_quick_demo(name):
     compared(name)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in BY_NAME if name not in QUICK])
 def test_demo(name):
     compared(name)

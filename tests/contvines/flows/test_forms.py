@@ -5,6 +5,8 @@ import pytest
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 
 def twisted(rates, turn, shear):
     """A cycle, the unit circle, beside which the plane across it turns by `turn` times the angle while `rates` act in it."""

@@ -6,6 +6,8 @@ from scipy.sparse import csc_matrix, issparse
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 CELLS = 16
 
 

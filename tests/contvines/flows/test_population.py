@@ -7,6 +7,8 @@ from scipy.integrate import solve_ivp
 import contvines as cv
 from contvines.flows.march import March
 
+pytestmark = pytest.mark.slow
+
 
 def radial(x, p):
     """r' = r (m + r^2 - r^4), angle' = 1: at rest and a cycle, parted by r^2 = (1 - sqrt(1 + 4 m)) / 2."""

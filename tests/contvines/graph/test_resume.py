@@ -11,6 +11,8 @@ import contvines as cv
 from contvines.graph.persistence import same_graph
 from contvines.store import Store
 
+pytestmark = pytest.mark.slow
+
 
 def logistic():
     """The graph of the logistic map's fixed point and its cascade; its period doubling lies at r = 3 (Feigenbaum)."""

@@ -29,6 +29,7 @@ def test_a_multiplier_that_jumps_over_the_circle_is_no_special_point(before, aft
     assert graph["B1"].stable_intervals() == [pytest.approx(stable[0], abs=1e-6)]
 
 
+@pytest.mark.slow
 def test_it_is_in_tables_files_and_pictures(tmp_path):
     graph = jumping(-0.5, -1.5)
     assert "unresolved on B1 at p = 0.3" in str(graph)

@@ -8,6 +8,8 @@ from orbits import Absorber
 from orbits.attractors import find_attractor
 from tests.contvines.loci.many_digits import solved
 
+pytestmark = pytest.mark.slow
+
 MACHINE = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
 SPANS = {"friction": (0.3, 0.9), "restitution": (0.55, 0.95)}
 LONGEST = 8  # events of a word that is solved anew here; the longer ones were, once, and agree to 1e-13

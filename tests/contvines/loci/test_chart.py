@@ -85,6 +85,7 @@ def test_a_chart_is_kept_in_a_file(chart, tmp_path):
     assert str(other) == str(chart)
 
 
+@pytest.mark.slow
 def test_a_killed_chart_goes_on_where_it_stopped(graph, chart):
     class Stop(Exception):
         pass
@@ -114,6 +115,7 @@ def test_a_chart_is_drawn(chart, tmp_path):
     assert figure.axes[0].get_xlabel() == "b"
 
 
+@pytest.mark.slow
 def test_command_line(tmp_path, monkeypatch, capsys):
     from typer.testing import CliRunner
 

@@ -118,6 +118,7 @@ def test_fitzhugh_nagumo():
     these(chart, expected)
 
 
+@pytest.mark.slow
 def test_predator_and_prey_in_discrete_time():
     """x' = r x (1 - x) - x y, y' = d x y (Danca, Codreanu and Bako 1997): trace 2 - r/d, determinant r - 2 r/d at x = 1/d.
 
@@ -155,6 +156,7 @@ def test_predator_and_prey_in_discrete_time():
     assert not [p for p in found if p[0] == "branch-point"]
 
 
+@pytest.mark.slow
 def test_zero_hopf_of_roessler():
     """x' = -y - z, y' = x + a y, z' = b x - c z + x z at rest, a = 0.4: l^3 + (c - a) l^2 + (1 + b - a c) l + c - a b.
 
@@ -186,6 +188,7 @@ def test_zero_hopf_of_roessler():
                     assert p[1:] == pytest.approx((a, 1.0), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_double_hopf_of_two_oscillators():
     """Two rotations, sheared: growth p + q - 1 and p - 2 q + 1/2, so both vanish at p = q = 1/2; cubic damping with known ratios."""
     rng = np.random.default_rng(4)
@@ -238,6 +241,7 @@ def test_generalized_period_doubling_at_a_known_place():
     assert found[0][3] == pytest.approx({"c": 0.0, "d": 0.7}, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_chenciner_at_a_known_place():
     """z -> e^(0.9 i) z (1 + p + q/3 + (q - 2 p) r^2 - r^4) in bent coordinates: p = q = 0, second coefficient -1 (r^2 counts twice, squared 4)."""
     bend = Bend(2, 3)
@@ -293,6 +297,7 @@ def square(y):
     return y[0] * y[0] + y[1] * y[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "n", "g", "along"),
     [

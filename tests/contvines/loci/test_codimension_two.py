@@ -97,6 +97,7 @@ def _co_mp(v):
     return F, J
 
 
+@pytest.mark.slow
 def test_co_oxidation_bogdanov_takens_is_a_double_zero(oxidation):
     # characteristic polynomial l^3 - t l^2 + m l - d: d = m = 0 at a Bogdanov-Takens point
     found = oxidation.of_kind("bogdanov-takens")

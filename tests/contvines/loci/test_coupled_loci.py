@@ -9,6 +9,8 @@ from contvines.loci.codimension_two import find
 from contvines.loci.known_motions import KnownMotions, together
 from orbits import Coupled
 
+pytestmark = pytest.mark.slow
+
 MACHINE = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
 BOUNDS = (0.92, 1.09)
 

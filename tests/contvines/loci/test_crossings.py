@@ -8,6 +8,8 @@ import pytest
 import contvines as cv
 from contvines.loci.crossings import crossings
 
+pytestmark = pytest.mark.slow
+
 
 def test_two_folds_of_two_cells_cross_in_closed_form():
     # x' = a + b x - x^3 folds at a = 2 (b/3)^(3/2); y' = a - 0.3 + y - y^3 folds at a = 0.3 + 2/27^(1/2), whatever b is:

@@ -9,6 +9,8 @@ import pytest
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 
 def ring(x):
     growth = 1 - x[0] ** 2 - x[1] ** 2
@@ -71,7 +73,6 @@ def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable():
         assert not region.others
 
 
-@pytest.mark.slow
 def test_loci_of_cycles_meet_at_a_resonance():
     flow = cv.FlowProblem(resonant, [1.0, 0, 0, 0], {"b1": -0.05, "b2": -0.3}, scale=1.0)
     orbit = ring_orbit(flow, (0.3 - np.sqrt(0.29)) / 2, 0.0)
@@ -108,7 +109,6 @@ def test_homoclinic_orbits_of_a_long_period_come_from_a_bogdanov_takens_point():
         cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2), period=50.0)
 
 
-@pytest.mark.slow
 def test_period_doublings_of_a_reversible_flow_meet_at_no_damping():
     def lure(x, p):  # no damping: volume is kept, and time can be reversed
         return [x[1], x[2], -p.alpha * x[2] - p.beta * x[1] - x[0] + x[0] ** 2]

@@ -7,6 +7,8 @@ from scipy.sparse.linalg import spsolve
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 
 def extended(line, u, p, e, v):
     """p and u of the fold of line u + p exp(u / (1 + e u)) near (u, p), with a null vector near v."""

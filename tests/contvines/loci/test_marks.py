@@ -5,6 +5,8 @@ import pytest
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 
 def henon(x, p):
     return np.array([x[1], p.a - p.b * x[0] - x[1] ** 2])

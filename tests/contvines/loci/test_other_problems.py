@@ -6,6 +6,8 @@ import scipy.sparse as sp
 
 import contvines as cv
 
+pytestmark = pytest.mark.slow
+
 
 def test_loci_of_sparse_equations_are_those_of_dense_ones():
     # N cells that do not know one another: u_i' = a + b u_i - u_i^3 - i/10; each fold is a fold of one cell in closed form

@@ -7,6 +7,8 @@ import pytest
 import contvines as cv
 from contvines.loci.codimension_two import find
 
+pytestmark = pytest.mark.slow
+
 
 def test_adaptive_control_map_is_its_closed_forms():
     # Golden and Ydstie (Syst. Control Lett. 11 (1988) 413); Frouzakis, Adomaitis and Kevrekidis (Int. J. Bifurc. Chaos 1 (1991) 83)

@@ -7,6 +7,8 @@ import pytest
 import contvines as cv
 from contvines.loci.codimension_two import find
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_touched_border_in_many_digits():
     # u + 0.3 u^3 = p^2 + p^3 / 2 - q with a wall at h = u + sin(p) / 5 + u q / 10

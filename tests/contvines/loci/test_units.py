@@ -12,6 +12,8 @@ from orbits.machines.physical import physical
 from tests.contvines.loci.systems import generalized_henon
 from tests.contvines.loci.test_absorber_loci import closed_form
 
+pytestmark = pytest.mark.slow
+
 powers = st.floats(-6.0, 6.0).map(lambda exponent: 10.0**exponent)
 
 

@@ -13,6 +13,8 @@ from tools.demos import listed, maps
 from tools.demos.make_page import PAGE, render
 from tools.demos.make_table import TABLE, graph_of, points_of, solved
 
+pytestmark = pytest.mark.slow
+
 DEMOS = [*listed.DEMOS, *maps.DEMOS]
 EXPECTED = json.loads(TABLE.read_text(encoding="utf-8"))
 

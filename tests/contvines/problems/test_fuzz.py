@@ -7,6 +7,8 @@ import pytest
 import contvines as cv
 from tools.fuzz.systems import System, suitable
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(("seed", "system"), list(islice(suitable(0), 12)), ids=lambda value: str(value)[:6])
 def test_all_branches_and_branch_points_and_no_others(seed, system):

@@ -12,6 +12,8 @@ import contvines as cv
 from tools.benchmarks.large import bratu as bratu_2d
 from tools.brusselator import brusselator
 
+pytestmark = pytest.mark.slow
+
 
 def second_difference(m):
     return sp.diags_array([np.ones(m - 1), -2.0 * np.ones(m), np.ones(m - 1)], offsets=[-1, 0, 1]).tocsc()

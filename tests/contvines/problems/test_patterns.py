@@ -10,6 +10,8 @@ from scipy.sparse.linalg import splu
 import contvines as cv
 from tools.brusselator import brusselator
 
+pytestmark = pytest.mark.slow
+
 
 def neumann(n, h):
     """Second difference with no flux at the ends, on nodes that lie on them."""

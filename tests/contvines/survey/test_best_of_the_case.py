@@ -1,8 +1,11 @@
 """The best clearance of the worked case is that of a brute-force scan, here a small one; `tools/benchmarks/best.py` has the large one."""
 
 import numpy as np
+import pytest
 
 from tools.benchmarks.best import chosen, scanned
+
+pytestmark = pytest.mark.slow
 
 
 def test_the_best_clearance_is_that_of_a_scan():

@@ -5,6 +5,8 @@ import pytest
 
 from tools.benchmarks.survey import made, on_a_cluster, same
 
+pytestmark = pytest.mark.slow
+
 MACHINES = 6
 
 

@@ -19,6 +19,8 @@ from contvines.survey.outcomes import (
 )
 from orbits import Coupled
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def found():

@@ -12,6 +12,8 @@ from orbits.machines.physical import physical
 from tests.contvines.survey.circles import Circles
 from tools.benchmarks.peaks import judged
 
+pytestmark = pytest.mark.slow
+
 M, HERTZ, ZETA, BASE, FRICTION, G = 3.2, 8.0, 0.01, 2e-3, 0.1553939, 9.81
 SMALL = 0.032
 CASE = {

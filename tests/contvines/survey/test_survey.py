@@ -11,6 +11,8 @@ import pytest
 from contvines.survey import PlanError, load_survey, survey
 from tests.contvines.survey.circles import Circles, size
 
+pytestmark = pytest.mark.slow
+
 VARY = {"radius": [0.5, 1.0, 1.5, 2.0, 4.0], "scale": [1.0, 4.0]}
 ASKED = {"over": "p", "within": (-3.0, 3.0), "outcomes": (size, "peak", "covered")}
 

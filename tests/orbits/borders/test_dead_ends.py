@@ -11,6 +11,8 @@ from orbits.attractors import find_attractor
 from orbits.borders.dead_ends import AT_REST, piled_up
 from orbits.simulation import simulate
 
+pytestmark = pytest.mark.slow
+
 
 def test_on_a_slope_a_motion_at_rest_creeps_to_a_wall():
     """A little beyond the border the simulated absorber slips downhill in every period, until it leans on a wall."""

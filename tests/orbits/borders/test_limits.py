@@ -13,6 +13,8 @@ from orbits.simulation.driver import machine as engine_of
 from orbits.simulation.return_map import monodromy
 from orbits.starts.find import polish
 
+pytestmark = pytest.mark.slow
+
 FIRST = 1.5e-2  # farthest orbit: speed of the impact, or duration of the stick, that vanishes
 
 

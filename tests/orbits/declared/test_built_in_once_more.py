@@ -11,6 +11,8 @@ from orbits.borders.neighbours import margins_of, placed, turned
 from tools.pages.pages import page
 from tools.pages.same_graph import both, compared, drawn
 
+pytestmark = pytest.mark.slow
+
 COUPLED = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
 
 

@@ -11,6 +11,8 @@ import pytest
 
 from tools.pages.pages import page
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = """
 import json, sys
 import contvines as cv

@@ -10,6 +10,8 @@ from tools.pages.draws import RANGES, drawn, examined
 from tools.pages.gallery import deviations, gallery
 from tools.pages.pages import PAGES
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def drawing():

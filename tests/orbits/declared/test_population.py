@@ -8,6 +8,8 @@ from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import Stepper
 from tools.pages.pages import page
 
+pytestmark = pytest.mark.slow
+
 
 def spelled(text):
     """One spelling for one motion; a page's own begins anywhere."""

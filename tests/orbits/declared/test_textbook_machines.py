@@ -5,10 +5,14 @@ side, and between the two crossings of a side the motion turns. Two blocks on a 
 (after Galvanetto and Bishop, Int. J. Mech. Sci. 36 (1994) 683): self-excited, with two frictions, a wall between two masses and a switch.
 """
 
+import pytest
+
 import contvines as cv
 from orbits import DryFriction, Machine, Switch, Wall
 from orbits.symbols import cos
 from tools.pages.independent import deviation
+
+pytestmark = pytest.mark.slow
 
 
 def gear_pair():

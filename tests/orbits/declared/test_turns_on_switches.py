@@ -12,6 +12,8 @@ import contvines as cv
 from orbits import DryFriction, Machine, Switch
 from orbits.symbols import cos
 
+pytestmark = pytest.mark.slow
+
 
 def oscillator(**changed):
     def motion(state, phase, p, contact):

@@ -8,6 +8,8 @@ import contvines as cv
 from orbits import Machine, Wall
 from orbits.symbols import cos
 
+pytestmark = pytest.mark.slow
+
 DAMPING, FREQUENCY = 0.15, 1.2
 PERIOD = 2.0 * np.pi / FREQUENCY
 

@@ -19,6 +19,8 @@ from tools.fuzz.motion import apart
 from tools.fuzz.searching import LIMITS
 from tools.fuzz.tally import Tally
 
+pytestmark = pytest.mark.slow
+
 SALT = 404
 CHECKS = {"link", "jump", "doubled", "repeated", "limit", "stability", "margin", "no reason"}
 FOUND = [

@@ -8,6 +8,8 @@ from tools.fuzz.approached import comes_to, grow_without_bound
 from tools.fuzz.between import Between
 from tools.fuzz.many_digits import exact, rounds_apart
 
+pytestmark = pytest.mark.slow
+
 STEPPED_OVER = (
     "the first step of the doubled branch passes 1e-8 of it that are stable, and its next period doubling"
 )

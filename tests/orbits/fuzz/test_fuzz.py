@@ -15,6 +15,8 @@ from tools.fuzz.motion import alike, apart, shortest
 from tools.fuzz.searching import search
 from tools.fuzz.tally import Tally
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(("kind", "seed"), [("absorber", 0), ("absorber", 3), ("cavity", 8), ("coupled", 1)])
 def test_a_short_search_finds_nothing(kind, seed):

@@ -8,6 +8,8 @@ from orbits.proofs.equations import Motif
 from orbits.proofs.special import AtBorder, Vanishing
 from orbits.proofs.varying import Varying
 
+pytestmark = pytest.mark.slow
+
 COUPLED = {
     "forcing": 2.1, "damping": 0.8, "restitution": 0.7, "excitation": 0.6, "friction": 0.4,
     "gravity": 0.3, "mass_ratio": 0.15, "frequency": 0.97,

@@ -16,6 +16,8 @@ from orbits.proofs.equations import Motif, System
 from orbits.proofs.jets import Jet, exp, sin_cos, sqrt
 from orbits.proofs.obstacles import Obstacle
 
+pytestmark = pytest.mark.slow
+
 
 class Polynomial(System):
     """One unknown, one equation: a polynomial with given coefficients."""

@@ -10,6 +10,8 @@ from orbits.orbit import Orbit
 from orbits.proofs.checker import Refused, check
 from orbits.proofs.subjects import of_orbit
 
+pytestmark = pytest.mark.slow
+
 # to the right friction is stronger than the shaking: the stuck absorber can slip to the left only
 MACHINE = Cavity(
     restitution=0.95, friction_left=0.134, friction_right=0.6324, gravity=0.211, mass_ratio=0.006

@@ -14,6 +14,8 @@ from orbits.proofs.balls import ball, precision
 from orbits.proofs.jets import Jet, power
 from orbits.proofs.obstacles import ProofError
 
+pytestmark = pytest.mark.slow
+
 STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
 
 

@@ -16,6 +16,8 @@ from orbits.proofs.obstacles import Obstacle, ProofError, Remedy
 from orbits.proofs.subjects import of_orbit
 from tools.proofs import fifty_digits, tampering
 
+pytestmark = pytest.mark.slow
+
 KNOWN = json.loads(fifty_digits.FILE.read_text())
 ABSORBER = tampering.ABSORBER
 

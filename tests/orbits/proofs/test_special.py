@@ -16,6 +16,8 @@ from orbits.proofs.obstacles import ProofError
 from orbits.proofs.prove import prove_special
 from orbits.proofs.varying import Varying
 
+pytestmark = pytest.mark.slow
+
 ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 ERRATA = Path(__file__).parents[3] / "examples" / "certificates" / "errata.json"
 

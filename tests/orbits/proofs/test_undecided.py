@@ -11,6 +11,8 @@ import contvines as cv
 from orbits import Absorber
 from orbits.proofs.checker import check, det, solved
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def strict(monkeypatch):

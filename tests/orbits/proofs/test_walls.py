@@ -9,6 +9,8 @@ from mpmath import cos, findroot, mp, mpf, pi, sin, sqrt
 from orbits import Absorber, Cavity
 from orbits.proofs.checker import Refused, check
 
+pytestmark = pytest.mark.slow
+
 
 def verified(proof):
     certificate = json.loads(json.dumps(proof.certificate()))

@@ -12,10 +12,13 @@ from orbits.design import record
 from orbits.machines.catalogue import stepper, usual
 from orbits.simulation.driver import first_state, skip
 
-pytestmark = pytest.mark.skipif(
-    not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread(),
-    reason="needs a timer that interrupts the main thread",
-)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread(),
+        reason="needs a timer that interrupts the main thread",
+    ),
+]
 
 
 def many_starts(name, workers):

@@ -11,6 +11,8 @@ from orbits.attractors.observation import lasting, observe
 from orbits.machines.stepping import HOLD
 from orbits.simulation import simulate
 
+pytestmark = pytest.mark.slow
+
 # strongly modulated: the oscillator grows without impacts for tens of periods, then the absorber brakes it
 MODULATED = Coupled(
     damping=0.8, mass_ratio=0.01, restitution=0.7, friction=0.3, gravity=0.25, frequency=1.0, forcing=0.9412

@@ -2,6 +2,7 @@
 
 import mpmath as mp
 import numpy as np
+import pytest
 
 from orbits import Absorber, Coupled
 from orbits.orbit import Orbit
@@ -11,6 +12,8 @@ from orbits.simulation.replay import _returns
 from orbits.simulation.return_map import go_round
 from orbits.words import Word
 from tools.fuzz.many_digits import exact
+
+pytestmark = pytest.mark.slow
 
 R, AMPLITUDE, PERIODS = 0.6134455719320618, 1.249753219146763, 8
 WORD = "LRRLRRLRRLRRLRLRRLRRLRR"

@@ -8,6 +8,8 @@ import pytest
 from orbits import multiple_scales as ms
 from orbits.theory.multiple_scales.polynomials import real_roots
 
+pytestmark = pytest.mark.slow
+
 
 def drawn_flows(n, seed):
     rng = np.random.default_rng(seed)

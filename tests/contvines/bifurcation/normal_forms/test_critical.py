@@ -139,6 +139,7 @@ def test_strong_resonances_three_and_four():
     assert complex(found["A_re"], found["A_im"]) == pytest.approx(A, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_fold_and_pair():
     omega, b, c, D = 1.4, 0.6, -0.7, (0.5, 0.2)
 
@@ -164,6 +165,7 @@ def test_fold_and_pair():
     assert found["theta"] == pytest.approx(D[0] / b, abs=1e-9) and found["s"] == -1.0
 
 
+@pytest.mark.slow
 def test_two_amplitudes():
     p = np.array([[-0.4, 0.7], [0.3, 0.5]])
     angles = (0.8, 2.3)

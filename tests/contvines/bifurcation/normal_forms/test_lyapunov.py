@@ -9,6 +9,7 @@ from contvines.bifurcation.normal_forms.coefficients import Forms
 COUNT, STEPS, RADIUS = 100, 6000, 0.004
 
 
+@pytest.mark.slow
 def test_sign_of_100_drawn_maps_is_that_of_their_simulation():
     rng = np.random.default_rng(11)
     # angles away from the strong resonances

@@ -8,6 +8,8 @@ from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Coupled
 
+pytestmark = pytest.mark.slow
+
 REDUCED = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 

@@ -19,6 +19,8 @@ from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
 from tests.contvines.loci.systems import generalized_henon, generalized_henon_at
 
+pytestmark = pytest.mark.slow
+
 
 class Expansion:
     """Derivatives of a function of n numbers at a point, as multilinear forms."""

@@ -12,6 +12,8 @@ import sympy
 import contvines as cv
 from tools.brusselator import brusselator
 
+pytestmark = pytest.mark.slow
+
 
 def in_the_plane(rates, place, q, omega):
     """l1 of two equations, polynomials in two symbols, for a critical vector q."""

@@ -11,6 +11,8 @@ import pytest
 import contvines as cv
 from contvines.loci.coefficients_at import coefficients
 
+pytestmark = pytest.mark.slow
+
 
 class Planar:
     """Derivatives of a function of the plane at a point, as multilinear forms, by mpmath's numerical differentiation in many digits."""

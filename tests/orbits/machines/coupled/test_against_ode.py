@@ -12,6 +12,8 @@ from orbits.machines.coupled.closed_forms import stuck_state, symmetric_discrimi
 from orbits.simulation import simulate
 from tests.orbits.machines.coupled.equations_of_motion import MACHINE, TIGHT, event, integrate, right_side
 
+pytestmark = pytest.mark.slow
+
 CASES = {
     "impacts": ({"frequency": 0.985}, {"q1": 1.0, "q2": 0.0}),
     "sliding": ({"frequency": 0.975}, {}),
