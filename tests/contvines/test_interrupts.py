@@ -13,7 +13,7 @@ import contvines as cv
 from contvines import interrupts
 from contvines.graph.persistence import same_graph
 from contvines.interrupts import HELD, OPEN, listening
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 PROGRAM = """
 import ctypes, signal, sys
@@ -105,9 +105,7 @@ def test_a_handler_of_the_users_own_is_left_alone():
 @pytest.mark.parametrize("where", ["memory", "file"])
 def test_interrupted_at_many_moments_a_diagram_ends_as_the_undisturbed_one(tmp_path, where):
     """Every interrupt ends the run; what was recorded until then is right; the last run has the same graph, bit for bit."""
-    orbit = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(
-        amplitude=0.6
-    )
+    orbit = ABSORBER.symmetric_orbit(amplitude=0.6)
     options = {"over": "amplitude", "within": (0.17, 1.27), "depth": 2}
     whole = cv.diagram(orbit, **options)
     journal = cv.MemoryJournal() if where == "memory" else cv.resume(tmp_path / "x.vines")

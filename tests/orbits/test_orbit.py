@@ -21,8 +21,8 @@ from orbits.machines.absorber.closed_forms import (
     symmetry_breaking_square,
 )
 from orbits.starts.find import StartError, polish
+from tests.machines import ABSORBER
 
-PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 machines = st.builds(
     Absorber,
     restitution=st.floats(0.15, 1.0),
@@ -80,7 +80,7 @@ def test_determinant_of_alternating_impacts(machine, above):
 
 def test_determinant_with_turns():
     """det A = prod r^2 over impacts * prod (|v''| - a)/(|v''| + a) over turns."""
-    orbit = PAPER.orbit("LRtt", amplitude=0.95)
+    orbit = ABSORBER.orbit("LRtt", amplitude=0.95)
     a = 1.006 * 0.5 * 0.211
     shaking = [
         abs(0.95 * np.sin(psi)) for psi, letter in zip(orbit.nodes[:, 0], orbit.word.events) if letter == "t"
@@ -90,14 +90,14 @@ def test_determinant_with_turns():
 
 
 def test_a_stick_forgets():
-    orbit = PAPER.orbit("LRs", amplitude=np.sqrt(0.74))
+    orbit = ABSORBER.orbit("LRs", amplitude=np.sqrt(0.74))
     assert np.abs(orbit.multipliers).min() == 0.0
     assert orbit.real
 
 
 @pytest.mark.parametrize("times", [2, 16, 256])
 def test_long_words_lose_nothing(times):
-    orbit = PAPER.symmetric_orbit(0.55)
+    orbit = ABSORBER.symmetric_orbit(0.55)
     long = orbit.repeat(times)
     assert long.residual < 1e-12
     # powers in logarithms: the numbers themselves underflow
@@ -123,7 +123,7 @@ def test_long_words_lose_nothing(times):
 @settings(max_examples=25, deadline=None)
 @given(st.floats(0.3, 1.2), st.integers(0, 3))
 def test_descriptions_of_one_orbit_agree(amplitude, places):
-    orbit = PAPER.symmetric_orbit(amplitude)
+    orbit = ABSORBER.symmetric_orbit(amplitude)
     for other in (orbit.mirror(), orbit.rotate(places), orbit.repeat(3)):
         assert other.residual < 1e-11
         problem, twin = orbit.problem(), other.problem(symmetric=False)
@@ -135,7 +135,7 @@ def test_descriptions_of_one_orbit_agree(amplitude, places):
 
 def test_losses_balance_the_work_of_the_cavity():
     """Work of the shaking on the relative motion, by quadrature of the samples, against the losses."""
-    orbit = PAPER.symmetric_orbit(0.6)
+    orbit = ABSORBER.symmetric_orbit(0.6)
     s = orbit.sample(40001)
     inside = np.diff(s["segment"]) == 0
     # d(w'^2/2)/dtau = w' v'' - a |w'|; per unit of m/(1 + eps)
@@ -147,7 +147,7 @@ def test_losses_balance_the_work_of_the_cavity():
 
 
 def test_losses_per_forcing_period_do_not_depend_on_how_often_an_orbit_is_written():
-    orbit = PAPER.symmetric_orbit(0.6)
+    orbit = ABSORBER.symmetric_orbit(0.6)
     once, thrice = orbit.measures(), orbit.repeat(3).measures()
     assert "input_work_mean" not in once  # the reduced machine's oscillator is prescribed
     for name in ("impact_loss", "friction_loss"):
@@ -164,7 +164,7 @@ def test_sliding_and_stick_slip_closed_forms_are_real_orbits():
         (0.99 * low, "ss"),
         (0.5 * low, "ss"),
     ):
-        orbit = PAPER.orbit(word, amplitude=np.sqrt(square))
+        orbit = ABSORBER.orbit(word, amplitude=np.sqrt(square))
         assert orbit.real and orbit.symmetric and orbit.residual < 1e-12
         assert len(orbit.multipliers) == 1
         assert abs(orbit.multipliers[0]) < 1.0
@@ -185,14 +185,11 @@ def test_without_friction_words_need_no_turns():
 
 
 def test_polish_returns_the_orbit_itself():
-    orbit = PAPER.symmetric_orbit(0.55)
+    orbit = ABSORBER.symmetric_orbit(0.55)
     moved = type(orbit)(orbit.model, orbit.word, 1, orbit.nodes + 0.02, orbit.params)
     again = polish(moved)
     assert again is not None
     np.testing.assert_allclose(again.nodes, orbit.nodes, atol=1e-12)
-
-
-SLIDING = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
@@ -202,7 +199,7 @@ def test_a_guess_tells_the_direction_of_a_sliding_motion(way):
     turning = np.sqrt(0.3 - (0.5 * np.pi * 1.006 * 0.5 * 0.211) ** 2)
     phase = 4.403 if way > 0.0 else 4.403 + np.pi
     guess = [[phase, -0.5 * way], [phase + np.pi, 0.5 * way]]
-    orbit = SLIDING.orbit("tt", amplitude=amplitude, guess=guess)
+    orbit = ABSORBER.orbit("tt", amplitude=amplitude, guess=guess)
     assert orbit.real
     assert orbit.nodes[:, 1] == pytest.approx([-way * turning, way * turning], abs=1e-12)
 
@@ -211,27 +208,27 @@ def test_a_guess_whose_phases_and_positions_belong_to_two_motions_is_not_taken_i
     """The mirror image has the same positions half a period later: with the phases of the one, those of the other reverse."""
     amplitude = np.sqrt(0.3)
     turning = np.sqrt(0.3 - (0.5 * np.pi * 1.006 * 0.5 * 0.211) ** 2)
-    right = SLIDING.orbit("tt", amplitude=amplitude, guess=[[4.403, -turning], [4.403 + np.pi, turning]])
+    right = ABSORBER.orbit("tt", amplitude=amplitude, guess=[[4.403, -turning], [4.403 + np.pi, turning]])
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        orbit = SLIDING.orbit("tt", amplitude=amplitude, guess=[[4.403, turning], [4.403 + np.pi, -turning]])
+        orbit = ABSORBER.orbit("tt", amplitude=amplitude, guess=[[4.403, turning], [4.403 + np.pi, -turning]])
     assert orbit.real or any("no machine follows" in str(warning.message) for warning in caught)
     if orbit.real:
         assert np.sort(orbit.nodes[:, 1]) == pytest.approx(np.sort(right.nodes[:, 1]), abs=1e-12)
 
 
 def test_a_guess_against_stated_directions_is_refused():
-    orbit = SLIDING.orbit("s+s-", amplitude=0.115)
+    orbit = ABSORBER.orbit("s+s-", amplitude=0.115)
     with pytest.raises(StartError, match="the other way"):
-        SLIDING.orbit("s-s+", amplitude=0.115, guess=orbit.nodes)
+        ABSORBER.orbit("s-s+", amplitude=0.115, guess=orbit.nodes)
 
 
 def test_a_stick_slip_motion_is_pinned_in_the_middle_from_whichever_event_it_is_read():
-    orbit = SLIDING.orbit("ss", amplitude=0.115)
+    orbit = ABSORBER.orbit("ss", amplitude=0.115)
     for place in range(4):
         turned = orbit.rotate(place)
         moved = turned.nodes + [0.0, 0.05]
-        found = SLIDING.orbit("ss", amplitude=0.115, guess=moved)
+        found = ABSORBER.orbit("ss", amplitude=0.115, guess=moved)
         assert found.word == turned.word
         assert found.nodes[:, 1] == pytest.approx(turned.nodes[:, 1], abs=1e-12)
         assert sum(found.nodes[:, 1]) == pytest.approx(0.0, abs=1e-13)
@@ -239,19 +236,19 @@ def test_a_stick_slip_motion_is_pinned_in_the_middle_from_whichever_event_it_is_
 
 @pytest.mark.parametrize("written", ["LRLt", "LtLR", "RLtL", "tLRL", "LRtR", "RtRL"])
 def test_any_spelling_goes_with_any_reading_of_the_guess(written):
-    orbit = SLIDING.orbit("LRLt", amplitude=1.2)
+    orbit = ABSORBER.orbit("LRLt", amplitude=1.2)
     for place in range(4):
         for guess in (orbit.rotate(place), orbit.rotate(place).mirror()):
-            found = SLIDING.orbit(written, amplitude=1.2, guess=guess.nodes + 1e-3)
+            found = ABSORBER.orbit(written, amplitude=1.2, guess=guess.nodes + 1e-3)
             assert found.word == guess.word
             assert found.events.w == pytest.approx(guess.events.w, abs=1e-10)
 
 
 def test_an_orbit_shows_its_own_parameters():
     """Not the machine's defaults: the frequency of the special point, the amplitude of the reduced absorber."""
-    orbit = SLIDING.orbit("LR", amplitude=0.625)
+    orbit = ABSORBER.orbit("LR", amplitude=0.625)
     assert "amplitude=0.625," in repr(orbit)
-    assert "amplitude=0.05," in repr(SLIDING.orbit("", amplitude=0.05))
+    assert "amplitude=0.05," in repr(ABSORBER.orbit("", amplitude=0.05))
     machine = Coupled(
         restitution=0.76,
         friction=0.5,
@@ -266,10 +263,10 @@ def test_an_orbit_shows_its_own_parameters():
 
 
 def test_diagrams_sweeps_and_attractors_spell_a_motion_alike():
-    orbit = SLIDING.orbit("RLtL", amplitude=1.2)
+    orbit = ABSORBER.orbit("RLtL", amplitude=1.2)
     graph = cv.diagram(orbit, over="amplitude", within=(1.19, 1.21), depth=0)
-    found = find_attractors(SLIDING, [{"w_rate": 1.0}, {"w_rate": -1.0}, None], amplitude=1.2)
-    rows = sweep(SLIDING, "amplitude", [1.2, 1.201])
+    found = find_attractors(ABSORBER, [{"w_rate": 1.0}, {"w_rate": -1.0}, None], amplitude=1.2)
+    rows = sweep(ABSORBER, "amplitude", [1.2, 1.201])
     spellings = {graph["B1"].description["word"], orbit.to_dict()["word"], orbit.spelling}
     spellings |= {attractor.text for attractor in found} | {row.word for row in rows}
     assert spellings == {"LRLt"}

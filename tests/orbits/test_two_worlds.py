@@ -14,6 +14,7 @@ from orbits import Absorber
 from orbits.attractors import find_attractor
 from orbits.simulation import simulate
 from orbits.starts.find import polish
+from tests.machines import ABSORBER
 
 LARGE = bool(os.environ.get("CONTVINES_LARGE"))
 BLOCKS = (
@@ -147,7 +148,7 @@ def test_no_orbit_reported_real_and_stable_is_left(block):
 
 def test_the_tests_would_notice():
     """Unstable orbits are left, and so is an orbit of the bare maps that no machine follows."""
-    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    absorber = ABSORBER
     unstable = absorber.symmetric_orbit(amplitude=np.sqrt(0.6))
     assert unstable.real
     assert not unstable.stable

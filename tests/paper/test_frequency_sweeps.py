@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Coupled
 from orbits.attractors.sweep import sweep
 from orbits.cycles.identity import canonical
 from orbits.starts.find import polish
+from tests.machines import COUPLED
 
 pytestmark = pytest.mark.slow
 
-MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 WITHIN = (0.94, 1.07)
 # where a sweep has to jump; from integration, see test_frequency_response.py
 UP = (0.9934295505152, 1.0254097153168)  # wall graze of the sliding motion, Neimark-Sacker point
@@ -85,8 +84,8 @@ def stable_at(branch, value):
 @pytest.fixture(scope="module")
 def atlas():
     """The diagram from the symmetric orbit, and that of an isola of asymmetric orbits that no switch leads to."""
-    graph = cv.diagram(MACHINE.orbit("LR", frequency=1.01), over="frequency", within=WITHIN, depth=4)
-    (row,) = sweep(MACHINE, "frequency", [0.994], start={"w": 0.5})
+    graph = cv.diagram(COUPLED.orbit("LR", frequency=1.01), over="frequency", within=WITHIN, depth=4)
+    (row,) = sweep(COUPLED, "frequency", [0.994], start={"w": 0.5})
     isola = cv.diagram(row.detail.orbit, over="frequency", within=WITHIN, depth=2)
     return Atlas(graph, isola)
 
@@ -94,7 +93,7 @@ def atlas():
 @pytest.mark.parametrize("direction", [1, -1])
 def test_sweeps_follow_stable_branches_and_jump_where_these_end(atlas, direction):
     values = np.linspace(*WITHIN, 521)[::direction]
-    rows = sweep(MACHINE, "frequency", values)
+    rows = sweep(COUPLED, "frequency", values)
     places = []
     for row in rows:
         assert row.attractor in ("periodic", "sliding", "chaotic")

@@ -13,11 +13,11 @@ from mpmath import eye, mp, mpf
 
 import contvines as cv
 from orbits import Absorber
+from tests.machines import ABSORBER
 from tests.paper.brute import Machine, eigenvalues, secant
 
 pytestmark = pytest.mark.slow
 
-ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 H = mpf("1.006") * mpf("0.5") * mpf("0.211") * mp.pi / 2
 
 BREAKING = "0.5282903125517541"  # symmetric LR, half map's multiplier -1

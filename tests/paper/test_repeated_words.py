@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
-ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 R = (1 - 0.76) / (1 + 0.76)
 H = 0.5 * np.pi * (1 + 0.006) * 0.5 * 0.211
 

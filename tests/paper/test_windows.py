@@ -8,13 +8,12 @@ import pytest
 from mpmath import eye, mp, mpf
 
 import contvines as cv
-from orbits import Absorber
 from orbits.attractors import find_attractor
+from tests.machines import ABSORBER
 from tests.paper.brute import Machine, eigenvalues, secant
 
 pytestmark = pytest.mark.slow
 
-ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 # amplitudes C
 THREE = {"fold": "1.0037342178", "period-doubling": "1.4125623672", "velocity-graze": "1.9824794254"}

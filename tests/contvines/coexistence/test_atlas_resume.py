@@ -8,17 +8,15 @@ import pytest
 import contvines as cv
 from contvines.graph.persistence import same_graph
 from contvines.store import Store
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
-
-MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 
 def of_the_absorber(journal):
     """Several roots, branches that meet a border, cycles followed apart, an end of stability."""
     return cv.atlas(
-        MACHINE,
+        ABSORBER,
         over="amplitude",
         within=(0.5, 0.62),
         values=2,

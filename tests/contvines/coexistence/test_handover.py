@@ -14,8 +14,8 @@ from contvines.continuation.settings import Settings
 from contvines.graph.builder import adopt
 from contvines.graph.run import Run
 from contvines.journal import NullJournal
-from orbits import Absorber
 from orbits.attractors import find_attractor
+from tests.machines import ABSORBER
 
 
 def logistic(x, p):
@@ -120,7 +120,7 @@ def test_where_chaos_begins_and_ends_is_asked_until_it_is_known(kinds, seed):
 @pytest.mark.slow
 def test_the_machine_hands_over_what_a_start_of_its_own_finds():
     """Past the fold at which `LR` is born (amplitude 0.2526) the motion slides: so says a simulation of its own there."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     graph = cv.diagram(machine.orbit("LR", amplitude=0.5), over="amplitude", within=(0.2, 0.55), depth=0)
     handover = Handover(run_on(graph), machine.population("amplitude"))
     (end,) = [end for end in handover.left() if abs(end.value - 0.2526) < 1e-4]

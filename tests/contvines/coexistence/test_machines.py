@@ -5,23 +5,21 @@ import pytest
 
 import contvines as cv
 from contvines.coexistence.missing import look, told
-from orbits import Absorber
 from orbits.attractors import find_attractor
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
-
-MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 
 @pytest.fixture(scope="module")
 def graph():
-    return cv.atlas(MACHINE, over="amplitude", within=(1.0, 1.3), values=5, starts=96, depth=1)
+    return cv.atlas(ABSORBER, over="amplitude", within=(1.0, 1.3), values=5, starts=96, depth=1)
 
 
 def test_the_orbit_that_no_diagram_has_is_on_the_atlas(graph):
     """`LRtR` attracts from 1.146 to 1.27 and hangs together with no other branch: a simulation of its own finds it."""
     words = {a.word for a in graph.attractors if a.kind == "periodic"}
-    found = find_attractor(MACHINE, {"phase": 0.0, "w": 0.3, "w_rate": 1.9}, amplitude=1.2)
+    found = find_attractor(ABSORBER, {"phase": 0.0, "w": 0.3, "w_rate": 1.9}, amplitude=1.2)
     orbit = found.orbit
     problem = orbit.problem("amplitude")
     u, p = orbit.seed(problem)
@@ -46,19 +44,19 @@ def test_every_periodic_attractor_lies_on_a_stable_real_branch(graph):
 
 def test_shares_agree_with_a_count_one_by_one():
     """40 of the drawn starts are simulated alone by `find_attractor`: the same motions, the same counts."""
-    population = MACHINE.population("amplitude")
+    population = ABSORBER.population("amplitude")
     starts = population.starts(40, 3, 1.1)
     motions, index, _ = population.settle(starts, 1.1)
     alone = []
     for phase, w, rate in starts:
-        found = find_attractor(MACHINE, {"phase": phase, "w": w, "w_rate": rate}, amplitude=1.1)
+        found = find_attractor(ABSORBER, {"phase": phase, "w": w, "w_rate": rate}, amplitude=1.1)
         alone.append((found.kind, found.periods, found.impacts))
     mine = [(motions[k].kind, motions[k].periods, motions[k].problem.word.impacts) for k in index]
     assert mine == alone
 
 
 def test_results_do_not_depend_on_the_number_of_threads():
-    one, two = MACHINE.population("amplitude"), MACHINE.population("amplitude")
+    one, two = ABSORBER.population("amplitude"), ABSORBER.population("amplitude")
     one.workers, two.workers = 1, 2
     starts = one.starts(1500, 0, 0.6)
     first, second = one.settle(starts, 0.6), two.settle(starts, 0.6)
@@ -69,7 +67,7 @@ def test_results_do_not_depend_on_the_number_of_threads():
 def test_atlases_with_one_seed_are_equal_to_the_last_bit_on_one_core_and_on_two():
     graphs = []
     for workers in (1, 2, 2):
-        population = MACHINE.population("amplitude")
+        population = ABSORBER.population("amplitude")
         population.workers = workers
         graphs.append(cv.atlas(population, within=(1.05, 1.15), values=[1.1], starts=1100, depth=0, scan=2))
     first, *others = graphs
@@ -82,7 +80,7 @@ def test_atlases_with_one_seed_are_equal_to_the_last_bit_on_one_core_and_on_two(
 
 
 def test_mirror_twins_are_one_motion_with_two_shares():
-    population = MACHINE.population("amplitude")
+    population = ABSORBER.population("amplitude")
     starts = population.starts(400, 0, 0.8)
     motions, index, mirrored = population.settle(starts, 0.8)
     twins = next(k for k, m in enumerate(motions) if m.word == "LR" and not m.problem.symmetric)
@@ -99,9 +97,9 @@ def test_mirror_twins_are_one_motion_with_two_shares():
 
 
 def test_the_look_says_what_a_diagram_lacks():
-    seed = MACHINE.symmetric_orbit(0.6)
+    seed = ABSORBER.symmetric_orbit(0.6)
     graph = cv.diagram(seed, over="amplitude", within=(0.5, 1.3), depth=3)
-    found = look(graph, MACHINE.population("amplitude"))
+    found = look(graph, ABSORBER.population("amplitude"))
     assert any(a.value > 1.1 for a in found)
     assert "contvines atlas x.toml" in told(graph, "contvines atlas x.toml adds it")
     assert graph.to_dict()["missing"][0]["share"] > 0
@@ -109,7 +107,7 @@ def test_the_look_says_what_a_diagram_lacks():
 
 def test_an_atlas_is_kept_and_goes_on_after_a_stop(tmp_path):
     options = {"over": "amplitude", "within": (1.05, 1.15), "values": 3, "starts": 32, "depth": 0}
-    whole = cv.atlas(MACHINE, **options)
+    whole = cv.atlas(ABSORBER, **options)
 
     class Stop(Exception):
         pass
@@ -120,17 +118,17 @@ def test_an_atlas_is_kept_and_goes_on_after_a_stop(tmp_path):
 
     path = tmp_path / "a.vines"
     with pytest.raises(Stop), cv.resume(path) as journal:
-        cv.atlas(MACHINE, journal=journal, progress=until, **options)
+        cv.atlas(ABSORBER, journal=journal, progress=until, **options)
     with cv.resume(path) as journal:
-        again = cv.atlas(MACHINE, journal=journal, **options)
+        again = cv.atlas(ABSORBER, journal=journal, **options)
     assert repr(again.attractors) == repr(whole.attractors)
     assert repr(cv.load(path).attractors) == repr(whole.attractors)
 
 
 def test_graphs_are_merged_without_doubles(graph):
-    seed = MACHINE.symmetric_orbit(1.1, stable=True)
+    seed = ABSORBER.symmetric_orbit(1.1, stable=True)
     one = cv.diagram(seed, over="amplitude", within=(1.0, 1.3), depth=0, virtual=False)
-    two = cv.atlas(MACHINE, over="amplitude", within=(1.0, 1.3), values=[1.2], starts=16, depth=0)
+    two = cv.atlas(ABSORBER, over="amplitude", within=(1.0, 1.3), values=[1.2], starts=16, depth=0)
     before = len(one.branches)
     called = one.merge(two)
     assert len(one.branches) > before and set(called.values()) <= {*one.branches, *one.special}
@@ -141,7 +139,7 @@ def test_graphs_are_merged_without_doubles(graph):
     with pytest.raises(ValueError, match="two machines"):
         one.merge(
             cv.atlas(
-                MACHINE.changed(friction=0.4),
+                ABSORBER.changed(friction=0.4),
                 over="amplitude",
                 within=(1.1, 1.2),
                 values=1,
@@ -152,12 +150,12 @@ def test_graphs_are_merged_without_doubles(graph):
 
 
 def test_basins_name_their_motions():
-    found = cv.basins(MACHINE, "amplitude", 0.6, points=40)
+    found = cv.basins(ABSORBER, "amplitude", 0.6, points=40)
     words = {a.word for a in found.attractors}
     assert "LR" in words
     assert sum(a.share for a in found.attractors) == pytest.approx(1.0)
     with pytest.raises(ValueError, match="'q' is no coordinate"):
-        cv.basins(MACHINE, "amplitude", 0.6, plane=("w", "q"))
+        cv.basins(ABSORBER, "amplitude", 0.6, plane=("w", "q"))
     figure = found.plot(figsize=(3.4, 3.0))
     low, high = figure.axes[0].get_xlim()
     assert low > high  # the left wall, w = +1, stands on the left

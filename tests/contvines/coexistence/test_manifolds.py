@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 import contvines as cv
 from contvines.coexistence.manifolds import stable_manifolds
-from orbits import Absorber
+from tests.machines import ABSORBER
 from tools.pages.pages import page
 
 pytestmark = pytest.mark.slow
@@ -66,7 +66,7 @@ def test_points_of_henons_manifold_fall_into_the_saddle():
 
 @pytest.fixture(scope="module")
 def absorber():
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0)
+    machine = ABSORBER
     return machine, cv.diagram(
         machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.17, 0.8), depth=1
     )
@@ -137,7 +137,7 @@ def test_on_the_command_line(tmp_path, absorber):
 
 
 def test_a_graph_that_begins_with_the_absorber_at_rest():
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0)
+    machine = ABSORBER
     resting = cv.diagram(machine.orbit("", amplitude=0.05), over="amplitude", within=(0.04, 0.06), depth=0)
     with pytest.raises(ValueError, match="the graph has no motions that can be simulated period by period"):
         cv.basins(machine, "amplitude", 0.05, points=4, saddles=resting)

@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 import contvines as cv
 from orbits import Absorber
 from orbits.machines.physical import physical
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -40,7 +41,7 @@ def test_units_change_what_is_near(well):
 
 @pytest.fixture(scope="module")
 def graph():
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0)
+    machine = ABSORBER
     return cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=1)
 
 
@@ -57,7 +58,7 @@ def test_another_unit_of_time_gives_the_same_kick(graph):
 
 def test_a_kick_leads_elsewhere_and_a_smaller_one_does_not(graph):
     found = cv.robustness(graph["B1"], 0.3, starts=2000)
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0)
+    machine = ABSORBER
     for part, word in ((0.98, "LR"), (1.02, found.reaches)):
         w, rate = found.place + part * found.kick
         reached = machine.attractor({"w": w, "w_rate": rate}, amplitude=0.3)

@@ -5,7 +5,8 @@ import shutil
 import pytest
 
 import contvines as cv
-from orbits import Absorber, Cavity, Coupled
+from orbits import Cavity, Coupled
+from tests.machines import ABSORBER
 from tools.attractors.drawn import drawn
 from tools.attractors.truth import listed_twice, on_atlas, shares, witness
 
@@ -15,7 +16,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(shutil.which("gcc") is None, 
 @pytest.mark.parametrize(
     ("machine", "over", "within", "values", "starts"),
     [
-        (Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006), "amplitude", (0.5, 1.2),
+        (ABSORBER, "amplitude", (0.5, 1.2),
          (0.5758, 0.9058, 1.0892), 400),
         (Cavity(restitution_left=0.6, restitution_right=0.8, friction_left=0.1, friction_right=0.3, gravity=0.2, slope=0.1,
                 mass_ratio=0.006), "amplitude", (0.5, 1.2), (0.55, 0.8, 1.05), 200),

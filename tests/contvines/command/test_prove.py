@@ -9,7 +9,7 @@ import pytest
 import contvines as cv
 from contvines.command.cli import main
 from contvines.report.contents import contents
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +29,7 @@ def run(capsys, *words):
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory):
     path = tmp_path_factory.mktemp("prove") / "a.vines"
-    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    absorber = ABSORBER
     graph = cv.diagram(absorber.symmetric_orbit(amplitude=0.6), over="amplitude", within=(0.4, 0.75), depth=0)
     graph.save(path)
     return path

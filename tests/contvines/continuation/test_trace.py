@@ -7,13 +7,11 @@ from itertools import islice
 import numpy as np
 
 import contvines as cv
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 
 def test_trace_from_an_orbit():
-    orbit = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(
-        amplitude=0.6
-    )
+    orbit = ABSORBER.symmetric_orbit(amplitude=0.6)
     points = list(cv.trace(orbit, within=(0.5, 0.7), over="amplitude"))
     assert points[-1].value == 0.7 and points[-1].status.startswith("reaches the end of the interval")
     assert points[0].value == 0.6 and all(point.stable for point in points)

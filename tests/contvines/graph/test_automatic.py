@@ -7,7 +7,7 @@ import pytest
 
 import contvines as cv
 from contvines.journal import MemoryJournal
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 
 def logistic(x, r):
@@ -221,7 +221,7 @@ def test_special_points_do_not_depend_on_tolerance_or_step(tolerance, angle):
 @pytest.mark.parametrize("word, periods, times", [("LRtt", 1, 2), ("LR", 1, 3), ("LRtt", 1, 4)])
 def test_a_repeated_start_gives_the_graph_of_its_root(word, periods, times):
     """P_l^k written twice is P_l^k: the labels, the special points and the stable pieces are those of the word itself."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     root = machine.orbit(word, periods, amplitude=1.0)
     options = {"over": "amplitude", "within": (0.9, 1.1), "depth": 1}
     one, other = cv.diagram(root, **options), cv.diagram(root.repeat(times), **options)

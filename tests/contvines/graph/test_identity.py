@@ -10,7 +10,7 @@ import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from contvines.graph.identity import Register, parts_further_on, same_form
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 
 def logistic(x, r):
@@ -63,7 +63,7 @@ def test_the_end_of_a_branch_belongs_to_it():
 
 def test_a_symmetric_branch_does_not_part_from_itself():
     """Its motions are compared as whole cycles, of which the unknowns are a half."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     problem = machine.symmetric_orbit(amplitude=0.6).problem("amplitude")
     graph = cv.diagram(machine.symmetric_orbit(amplitude=0.6), over="amplitude", within=(0.55, 0.65), depth=0)
     engine = Engine(problem, (0.55, 0.65), Settings())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 
 @pytest.mark.parametrize("width", [1e-1, 2e-2])
@@ -24,7 +24,7 @@ def test_window_between_two_neighbouring_folds(width):
 
 
 def test_marginal_end_takes_the_stability_of_its_neighbour():
-    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    absorber = ABSORBER
     seed = absorber.symmetric_orbit(amplitude=0.6)
     graph = cv.diagram(seed, over="restitution", within=(0.3, 1.0), depth=0)
     assert graph["B1"].stable_intervals() == [(0.3, 1.0)]
@@ -32,7 +32,7 @@ def test_marginal_end_takes_the_stability_of_its_neighbour():
 
 
 def test_window_between_fold_and_doubling():
-    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    absorber = ABSORBER
     seed = absorber.symmetric_orbit(amplitude=0.55)
     graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
     for branch in graph:
@@ -49,7 +49,7 @@ def test_window_between_fold_and_doubling():
 
 def test_one_border_reached_from_two_branches():
     """At the depth limit neither branch crosses the border at which both end; it still is one point."""
-    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    absorber = ABSORBER
     seed = absorber.symmetric_orbit(amplitude=0.55)
     graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
     (point,) = [p for p in graph.special.values() if abs(p.value - 1.14411783723) < 1e-9]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 EDGE = 1.3
 
@@ -30,7 +30,7 @@ def _words(graph: cv.Graph) -> set:
 
 @pytest.mark.parametrize("upper", [1e4, 1e6])
 def test_silly_interval(upper):
-    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    absorber = ABSORBER
     seed = absorber.symmetric_orbit(amplitude=0.55)
     narrow = cv.diagram(seed, over="amplitude", within=(0.2, EDGE), depth=1)
     wide = cv.diagram(seed, over="amplitude", within=(0.2, upper), depth=1)

@@ -12,7 +12,7 @@ from contvines.loci.plane_point import PlanePoint
 from contvines.loci.regions import Region
 from contvines.report.page import write_report
 from contvines.survey import Survey, planned
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 QUIET = [
@@ -30,7 +30,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(CHROMIUM is None, reason="no 
 
 @pytest.fixture(scope="module")
 def page_file(tmp_path_factory):
-    seed = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(0.55)
+    seed = ABSORBER.symmetric_orbit(0.55)
     graph = cv.diagram(seed, over="amplitude", within=(0.2, 0.9), depth=1)
     return write_report(graph, tmp_path_factory.mktemp("report") / "page.html", "x.vines")
 
@@ -47,7 +47,7 @@ def browser():
 @pytest.fixture(scope="module")
 def chart_file(tmp_path_factory):
     """A locus of symmetry breakings, a point and two regions."""
-    seed = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(0.7)
+    seed = ABSORBER.symmetric_orbit(0.7)
     graph = cv.diagram(seed, over="amplitude", within=(0.7, 0.75), depth=0)
     locus = cv.locus(graph["SB1"], over="friction", within=(0.4, 0.5))
     below = np.add.outer(np.arange(40), -np.arange(40)) < 0
@@ -72,7 +72,7 @@ def chart_file(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def atlas_file(tmp_path_factory, page_file):
-    seed = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(0.55)
+    seed = ABSORBER.symmetric_orbit(0.55)
     graph = cv.diagram(seed, over="amplitude", within=(0.4, 0.6), depth=0)
     graph.attractors += [
         Attractor(0.5, "LR", 1, "periodic", "B1", 0.75, starts=16),

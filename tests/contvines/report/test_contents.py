@@ -12,13 +12,13 @@ import contvines as cv
 from contvines.report.contents import contents
 from contvines.report.numbers import told_of
 from contvines.report.page import page, write_report
-from orbits import Absorber
 from tests.contvines import fakes
+from tests.machines import ABSORBER
 
 
 @pytest.fixture(scope="module")
 def graph():
-    seed = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(0.55)
+    seed = ABSORBER.symmetric_orbit(0.55)
     return cv.diagram(seed, over="amplitude", within=(0.4, 0.8), depth=1)
 
 

@@ -2,16 +2,14 @@
 
 import numpy as np
 
-from orbits import Absorber
 from orbits.attractors import batches
 from orbits.attractors.batches import AT_REST, SETTLED, settle_all
 from orbits.simulation import driver
-
-MACHINE = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+from tests.machines import ABSORBER
 
 
 def run(states, amplitude, **options):
-    params = MACHINE.vector({"amplitude": amplitude})
+    params = ABSORBER.vector({"amplitude": amplitude})
     settings = {"transients": (300.0,), "longest": 4, "tolerance": 1e-9, "workers": 1} | options
     return params, settle_all("absorber", states, params, **settings)
 
@@ -28,7 +26,7 @@ def test_motions_recur_as_the_simulator_says():
     params, found = run(states, 0.55)
     assert np.all(found["outcome"] == SETTLED)
     for state, periods, impacts in zip(states, found["periods"], found["impacts"]):
-        trajectory = driver.simulate(MACHINE, state.copy(), periods=float(periods), amplitude=0.55)
+        trajectory = driver.simulate(ABSORBER, state.copy(), periods=float(periods), amplitude=0.55)
         assert np.sum(trajectory.codes < 2) == impacts
         np.testing.assert_allclose(trajectory.end[[1, 2, 3]], state[[1, 2, 3]], atol=1e-7)
 

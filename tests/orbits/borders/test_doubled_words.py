@@ -9,8 +9,6 @@ from orbits.attractors import find_attractor
 from orbits.simulation.replay import replay
 from orbits.starts.find import polish
 
-PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
-
 
 def switches(graph, point):
     return [switch for switch in graph.switches if switch.point == point.label]

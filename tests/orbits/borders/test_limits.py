@@ -12,6 +12,7 @@ from orbits.attractors import find_attractor
 from orbits.simulation.driver import machine as engine_of
 from orbits.simulation.return_map import monodromy
 from orbits.starts.find import polish
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -134,7 +135,7 @@ def test_limits_at_borders(start):
 
 def test_at_a_graze_a_multiplier_is_infinite_and_the_other_one_is_none():
     """Towards a wall that is touched without speed that of half the motion grows as the speed's inverse; their product is bounded."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     graph = cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 1.1), depth=0)
     end = graph["WG1"].orbit
     grown, gone = end.multipliers

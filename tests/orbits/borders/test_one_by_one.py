@@ -8,8 +8,7 @@ from orbits import Absorber
 from orbits.attractors import find_attractor
 from orbits.simulation.replay import replay
 from orbits.starts.find import polish
-
-PAPER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+from tests.machines import ABSORBER
 
 
 def switches(graph, point):
@@ -70,7 +69,9 @@ def test_the_same_border_from_the_symmetric_side(pitchfork):
 
 def test_persistence_is_told_from_a_fold():
     """The note of each crossing agrees with the ranges of the two branches."""
-    graph = cv.diagram(PAPER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=3)
+    graph = cv.diagram(
+        ABSORBER.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=3
+    )
     checked = 0
     for switch in graph.switches:
         point = graph.special[switch.point]
@@ -96,7 +97,7 @@ def _ends(branch, value):
 @pytest.mark.parametrize("rotation", range(6))
 def test_borders_do_not_depend_on_how_the_word_is_read(rotation):
     """Every rotation of `LsR`, `LtsR` and `LttR` meets the same borders, also where the change straddles its end."""
-    found = find_attractor(PAPER, {"w_rate": 1.0}, amplitude=0.88)
+    found = find_attractor(ABSORBER, {"w_rate": 1.0}, amplitude=0.88)
     orbit = found.orbit
     places = [k for k, letter in enumerate(orbit.word.events) if letter != "u"]
     turned = polish(orbit.rotate(places[rotation % len(places)]))

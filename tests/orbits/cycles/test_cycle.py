@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orbits import Absorber, Cavity, Coupled, Orbit, OrbitProblem, Word
+from orbits import Cavity, Coupled, Orbit, OrbitProblem, Word
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.identity import canonical
 from orbits.factories import FACTORIES
 from orbits.flows.solving import solved_at
 from orbits.problem import rebuild
+from tests.machines import ABSORBER
 
-ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 COUPLED = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.9, forcing=2.0)
 WORDS = ["LR", "RLtL", "LRLR", "LRs", "tt", "LttR"]
 

@@ -6,6 +6,7 @@ import pytest
 from orbits import Absorber, Machine, Wall, Word
 from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import Stepper
+from tests.machines import ABSORBER
 from tools.pages.pages import page
 
 pytestmark = pytest.mark.slow
@@ -18,7 +19,7 @@ def spelled(text):
 
 @pytest.mark.parametrize("amplitude", [0.55, 1.2])
 def test_the_declared_absorber_sorts_the_starts_of_the_built_in_one(amplitude):
-    own = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).population("amplitude")
+    own = ABSORBER.population("amplitude")
     declared = page("absorber").population("amplitude")
     starts = own.starts(24, 3, amplitude)
     ours, index, sides = own.settle(starts, amplitude)

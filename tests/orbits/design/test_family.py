@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from orbits import Absorber, Orbit
+from orbits import Orbit
 from orbits.design import Family
+from tests.machines import ABSORBER
 
 
 def closed_form(amplitude, restitution):
@@ -15,7 +16,7 @@ def closed_form(amplitude, restitution):
 
 @pytest.mark.parametrize("restitution", [0.7, 0.76])
 def test_its_orbits_are_those_of_the_closed_form_and_can_be_continued(restitution):
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     family = Family(machine, word="LR", loose={"amplitude": 0.55})
     orbit = family({"restitution": restitution})
     assert isinstance(orbit, Orbit)

@@ -7,6 +7,7 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber, Coupled
+from tests.machines import ABSORBER
 from tools.fuzz import finer, neighbours, simulated, structure
 from tools.fuzz.approached import comes_to, grow_without_bound
 from tools.fuzz.drawing import draw
@@ -35,7 +36,7 @@ def test_the_same_seed_draws_the_same_machine():
 @pytest.fixture(scope="module")
 def graph():
     """LR with a fold, its symmetry breaking, and borders where sticks and turns appear; the rest of LR beyond its border is kept."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     orbit = machine.symmetric_orbit(amplitude=0.7)
     return cv.diagram(orbit, over="amplitude", within=(0.2, 0.92), depth=1, virtual=True)
 

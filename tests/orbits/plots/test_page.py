@@ -4,12 +4,12 @@ import re
 
 import pytest
 
-from orbits import Absorber
+from tests.machines import ABSORBER
 
 
 @pytest.mark.parametrize("word", ["LR", ""])
 def test_an_orbit_shows_itself_as_a_table(word):
-    absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    absorber = ABSORBER
     orbit = absorber.symmetric_orbit(0.55) if word else absorber.orbit("", amplitude=0.05)
     rows = dict(re.findall(r"<tr><th[^>]*>(.*?)</th><td[^>]*>(.*?)</td></tr>", orbit._repr_html_()))
     assert rows["motion"].startswith(word or "stuck") and "stable" in rows["motion"]

@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import iv
 
-from orbits import Absorber
 from orbits.proofs.balls import ball, precision
 from orbits.proofs.elimination import Blocks, Singular, solve
 from orbits.proofs.enclosing import enclose, refine
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.jets import Jet, exp, sin_cos, sqrt
 from orbits.proofs.obstacles import Obstacle
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -85,11 +85,7 @@ def test_newton_kantorovich_by_hand_agrees_with_the_prover():
     With A near DF(m)^{-1}: Y >= |A F(m)|, Z1 >= |I - A DF(m)|, Z2 r >= |A (DF(x) - DF(m))| for |x - m| <= r, in the largest norm.
     """
     F, unknowns, symbols = symmetric_equations()
-    proof = (
-        Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
-        .symmetric_orbit(amplitude=0.6)
-        .prove()
-    )
+    proof = ABSORBER.symmetric_orbit(amplitude=0.6).prove()
     iv.dps = 60
     numbers = [iv.mpf("0.6"), iv.mpf("1.006") * iv.mpf("0.5") * iv.mpf("0.211"), iv.mpf("0.76")]
     arguments = (*unknowns, *symbols)

@@ -8,17 +8,17 @@ import pytest
 from mpmath import mp, mpf, pi, sqrt
 
 import contvines as cv
-from orbits import Absorber, Cavity, Coupled
+from orbits import Cavity, Coupled
 from orbits.proofs.checker import Refused, check
 from orbits.proofs.equations import Motif
 from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import ProofError
 from orbits.proofs.prove import prove_special
 from orbits.proofs.varying import Varying
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
-ABSORBER = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 ERRATA = Path(__file__).parents[3] / "examples" / "certificates" / "errata.json"
 
 

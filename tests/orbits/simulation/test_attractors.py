@@ -9,6 +9,7 @@ from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor, find_attractors, sweep, sweeps
 from orbits.simulation import simulate
 from orbits.starts.find import polish
+from tests.machines import ABSORBER
 from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact
 
@@ -161,7 +162,7 @@ def test_rows_of_a_periodic_motion_are_those_of_its_orbit():
 
 def test_a_slow_transient_beside_a_symmetry_breaking_is_no_chaos():
     """C just above the symmetry breaking of `LR`, where its closed form has it; reached from below, on the symmetric orbit."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     breaking = np.sqrt(0.5282903)
     rows = sweep(machine, "amplitude", [breaking - 1e-3, breaking + 6e-5])
     assert [row.attractor for row in rows] == ["periodic", "periodic"]

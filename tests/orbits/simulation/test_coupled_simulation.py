@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from orbits import Coupled
 from orbits.attractors import find_attractor
 from orbits.simulation import simulate
-
-MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
+from tests.machines import COUPLED
 
 
 def numbers(low, high):
@@ -48,14 +47,14 @@ def test_no_wall_is_passed_no_energy_lost(start, **parameters):
 
 
 def test_long_runs_keep_the_energy_balance():
-    run = simulate(MACHINE.changed(frequency=1.0), {"q1": 1.0}, events=14000)
+    run = simulate(COUPLED.changed(frequency=1.0), {"q1": 1.0}, events=14000)
     assert run.impacts > 10_000
     assert abs(run.balance().error) < 1e-11
 
 
 def test_flights_between_events_hold_no_event():
     """Fine sampling between the events of a chaotic run: no wall passed, and w' keeps its sign while sliding."""
-    machine = MACHINE.changed(mass_ratio=0.3, forcing=3.0, gravity=0.29, restitution=0.95, frequency=0.98)
+    machine = COUPLED.changed(mass_ratio=0.3, forcing=3.0, gravity=0.29, restitution=0.95, frequency=0.98)
     run = simulate(machine, {"w": -0.2, "w_rate": 0.4, "v": 0.6}, events=400)
     states, lengths = run.states[:-1], run.lengths[:-1]
     share = np.linspace(0.001, 0.999, 301)
@@ -69,7 +68,7 @@ def test_flights_between_events_hold_no_event():
 
 def test_free_decay_loses_energy_and_comes_to_rest():
     """Without forcing: envelope of the linear oscillator as a bound, and rest in the end."""
-    machine = MACHINE.changed(forcing=0.0)
+    machine = COUPLED.changed(forcing=0.0)
     run = simulate(machine, {"q1": 1.2, "q2": 0.4}, periods=400)
     states = np.vstack([run.states, run.end])
     out = np.empty(len(states))
@@ -83,7 +82,7 @@ def test_free_decay_loses_energy_and_comes_to_rest():
 
 def test_complete_chatter_is_recognised():
     """A heavy absorber on a hard shaken cavity with soft walls: impacts pile up, the absorber rests on the wall, is released."""
-    machine = MACHINE.changed(
+    machine = COUPLED.changed(
         mass_ratio=0.3, forcing=3.125, frequency=0.986, damping=0.0, restitution=0.361, gravity=0.405
     )
     run = simulate(machine, {"w": 0.3, "w_rate": 0.2, "v": -0.4, "v_rate": 0.5}, events=600)
@@ -104,7 +103,7 @@ def test_complete_chatter_is_recognised():
 
 
 def test_frictionless_flights_may_reverse():
-    machine = MACHINE.changed(
+    machine = COUPLED.changed(
         friction=0.0, mass_ratio=0.05, frequency=1.025, restitution=0.923, forcing=2.886
     )
     run = simulate(machine, {"w": 0.3, "v": 0.5}, events=300)
@@ -116,7 +115,7 @@ def test_frictionless_flights_may_reverse():
 
 
 def test_the_mirror_image_of_a_run_is_the_run_of_the_mirror_image():
-    machine = MACHINE.changed(frequency=1.0)
+    machine = COUPLED.changed(frequency=1.0)
     start = {"phase": 0.4, "w": 0.3, "w_rate": -0.2, "v": 0.7, "v_rate": 0.1}
     image = {key: (value + np.pi if key == "phase" else -value) for key, value in start.items()}
     one, two = simulate(machine, start, events=40), simulate(machine, image, events=40)
@@ -127,9 +126,9 @@ def test_the_mirror_image_of_a_run_is_the_run_of_the_mirror_image():
 
 @pytest.mark.parametrize(("frequency", "word"), [(0.985, "LR"), (0.99, "LRtt"), (1.0, "LRtR")])
 def test_attractors_become_orbits(frequency, word):
-    found = find_attractor(MACHINE, {"q1": 1.0, "q2": 1.0}, frequency=frequency)
+    found = find_attractor(COUPLED, {"q1": 1.0, "q2": 1.0}, frequency=frequency)
     assert found.kind == "periodic"
-    orbit = MACHINE.orbit(word, frequency=frequency)
+    orbit = COUPLED.orbit(word, frequency=frequency)
     assert found.orbit.word.canonical() == orbit.word.canonical()
     assert orbit.real and orbit.stable
     assert orbit.replay() < 1e-11

@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 
 from orbits.machines.absorber.machine import Absorber
 from orbits.simulation import simulate
+from tests.machines import ABSORBER
 
 
 def integrate(C, r, a, omega, psi, w, rate, count):
@@ -125,7 +126,7 @@ def test_flight_after_a_slip():
 
 
 def test_stuck_forever_and_free_drift():
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     held = 1.006 * 0.5 * 0.211
     run = simulate(machine, {"w": 0.3}, periods=50, amplitude=held)
     assert len(run) == 0

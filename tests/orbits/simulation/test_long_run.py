@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orbits import Absorber, Coupled
+from orbits import Coupled
 from orbits.attractors import find_attractor, sweep
 from orbits.attractors.observation import lasting, observe
 from orbits.machines.stepping import HOLD
 from orbits.simulation import simulate
+from tests.machines import ABSORBER, COUPLED
 
 pytestmark = pytest.mark.slow
 
@@ -43,7 +44,7 @@ def test_a_modulated_response_is_seen_whole(reference, transient):
 
 def test_chaos_of_the_reduced_machine():
     """The fastest impact and the mean number of impacts agree between two starts and with a plain run."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     run = simulate(machine, {"w_rate": 1.0}, periods=300, amplitude=1.5)
     run = simulate(machine, run.end, periods=30_000, amplitude=1.5)
     fastest = np.abs(run.rows[run.codes < 2, 3]).max()
@@ -65,9 +66,7 @@ def test_motions_that_recur_are_followed_over_one_cycle(monkeypatch):
         "_add",
         lambda self, periods, per_period: (lengths.append(periods), plain(self, periods, per_period))[1],
     )
-    machine = Coupled(
-        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47
-    )
+    machine = COUPLED
     (row,) = sweep(machine, "frequency", [1.01])
     assert row.periods == 1 and lengths == pytest.approx([1])
     seen = simulate(machine, row.detail.state, periods=row.periods, frequency=1.01).sample(per_period=20_000)

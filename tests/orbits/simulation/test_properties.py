@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from orbits.machines.absorber.machine import Absorber
 from orbits.simulation import simulate
+from tests.machines import ABSORBER
 
 FOLLOWS = {-1: "Rts", 1: "Lts", 0: "u"}
 
@@ -90,7 +91,7 @@ def test_mirror_image(machine, start, amplitude):
 
 
 def test_energy_over_ten_thousand_impacts():
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
+    machine = ABSORBER
     for amplitude in (0.5, 0.9, np.sqrt(5.0)):
         run = simulate(machine, {"w_rate": 1.0}, events=25000, amplitude=amplitude)
         assert run.impacts > 10000

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Cavity
+from tests.machines import ABSORBER
 
 
 @pytest.mark.parametrize(
     ("machine", "amplitude"),
     [
-        (Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.0), 0.55),
+        (ABSORBER, 0.55),
         (Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, frequency=1.4), 0.55),
         (
             Cavity(

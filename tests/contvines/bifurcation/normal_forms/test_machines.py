@@ -6,11 +6,10 @@ import pytest
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from orbits import Absorber, Coupled
+from orbits import Coupled
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
-
-REDUCED = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
 
 
 def first_node_apart(problem, u):
@@ -25,7 +24,7 @@ def first_node_apart(problem, u):
 
 @pytest.mark.parametrize("label", ["SB1", "PD1", "PD2"])
 def test_the_branch_that_leaves_has_the_size_that_the_coefficient_says(label):
-    graph = cv.diagram(REDUCED.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 1.16))
+    graph = cv.diagram(ABSORBER.symmetric_orbit(amplitude=0.7), over="amplitude", within=(0.6, 1.16))
     assert graph[label].coefficient == pytest.approx(coefficient_of_the_branch(graph, label), rel=1e-5)
 
 

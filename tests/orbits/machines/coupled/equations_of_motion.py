@@ -4,9 +4,6 @@ import math
 
 from scipy.integrate import solve_ivp
 
-from orbits import Coupled
-
-MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 TIGHT = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-14}
 
 

@@ -11,6 +11,7 @@ from orbits.machines.coupled import maps
 from orbits.machines.coupled.flow import first_zero, wave
 from orbits.machines.coupled.maps import margins
 from orbits.machines.path import single
+from tests.machines import COUPLED
 from tests.orbits.machines.coupled.motion import path
 
 L, R, T, S, U = range(5)
@@ -172,9 +173,7 @@ def test_margins_are_those_of_the_motion(segment, case):
 
 def test_half_and_whole_words_agree():
     """A symmetric orbit closes on its half word with twist -1 and on the whole word with twist +1."""
-    machine = Coupled(
-        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47
-    )
+    machine = COUPLED
     orbit = machine.symmetric_orbit(frequency=0.99)
     u = orbit.nodes.ravel()
     codes, modes = orbit.word.codes, orbit.word.mode_codes

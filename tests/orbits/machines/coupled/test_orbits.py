@@ -4,22 +4,20 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, romb
 
-from orbits import Coupled
 from orbits.attractors import find_attractor
 from orbits.machines.absorber.closed_forms import symmetric_square
 from orbits.machines.coupled.closed_forms import response, stuck_frequencies, stuck_response, symmetric_nodes
 from orbits.machines.coupled.segments import shapes
 from orbits.multiple_scales import SlowFlow, equilibria
+from tests.machines import COUPLED
 from tests.orbits.machines.coupled.motion import path
-
-MACHINE = Coupled(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=1.0, forcing=2.47)
 
 
 @pytest.mark.parametrize("frequency", [0.975, 0.985, 1.003, 1.02])
 @pytest.mark.parametrize("fast", [True, False])
 def test_closed_symmetric_orbits_solve_the_maps(frequency, fast):
     """The closed form was derived from the half-wave symmetry, the maps from the flow: they must meet."""
-    orbit = MACHINE.symmetric_orbit(fast=fast, frequency=frequency)
+    orbit = COUPLED.symmetric_orbit(fast=fast, frequency=frequency)
     assert orbit.residual < 1e-14
     assert orbit.symmetric
     if orbit.real:
@@ -28,7 +26,7 @@ def test_closed_symmetric_orbits_solve_the_maps(frequency, fast):
 
 @pytest.mark.parametrize("frequency", [0.97, 0.985, 1.02])
 def test_closed_sliding_orbits_solve_the_maps(frequency):
-    orbit = MACHINE.sliding_orbit(frequency=frequency)
+    orbit = COUPLED.sliding_orbit(frequency=frequency)
     assert orbit.residual < 1e-14
     assert orbit.word.text == "tt"
     assert orbit.real and orbit.stable
@@ -45,7 +43,7 @@ def test_small_mass_ratio_recovers_the_slow_flow_at_first_order():
     sizes = 0.006 / 2.0 ** np.arange(6)
     errors = []
     for eps in sizes:
-        machine = MACHINE.changed(mass_ratio=float(eps), frequency=1.0 + sigma * float(eps), damping=damping)
+        machine = COUPLED.changed(mass_ratio=float(eps), frequency=1.0 + sigma * float(eps), damping=damping)
         orbits = [machine.symmetric_orbit(fast=fast) for fast in (True, False)]
         found = sorted(orbit.measure("C2") for orbit in orbits)
         errors.append(np.abs(np.array(found) - limits))
@@ -59,7 +57,7 @@ def test_small_mass_ratio_recovers_the_reduced_machine():
     R = (1 - 0.76) / (1 + 0.76)
     gaps = []
     for eps in (4e-3, 2e-3, 1e-3, 5e-4):
-        machine = MACHINE.changed(mass_ratio=eps, frequency=1.0 - 2.58 * eps)
+        machine = COUPLED.changed(mass_ratio=eps, frequency=1.0 - 2.58 * eps)
         orbit = machine.symmetric_orbit()
         a, Omega = machine.friction_acceleration(orbit.params), orbit.params[1]
         # B+ = Omega (beta + H), the velocity after an impact
@@ -71,7 +69,7 @@ def test_small_mass_ratio_recovers_the_reduced_machine():
 
 def test_stuck_response_is_the_textbook_oscillator():
     """Transmissibility of a damped oscillator on a moving base: zeta = c/(2 sqrt(k (M + m)))."""
-    machine = MACHINE.changed(forcing=0.5, frequency=0.93, damping=3.0)
+    machine = COUPLED.changed(forcing=0.5, frequency=0.93, damping=3.0)
     mass = 1.006
     ratio = 0.93 * np.sqrt(mass)
     zeta = 0.5 * 3.0 * 0.006 / np.sqrt(mass)
@@ -87,7 +85,7 @@ def test_stuck_response_is_the_textbook_oscillator():
 
 @pytest.mark.parametrize("excitation", ["exact", "truncated"])
 def test_stuck_response_slips_at_its_frequencies(excitation):
-    params = MACHINE.changed(excitation=excitation).vector()
+    params = COUPLED.changed(excitation=excitation).vector()
     for frequency in stuck_frequencies(params):
         params[1] = frequency
         found = stuck_response(params)
@@ -100,7 +98,7 @@ def test_stuck_response_slips_at_its_frequencies(excitation):
 @pytest.mark.parametrize("word", ["LR", "tt", "susu", "LRtt", "LRtR"])
 def test_measures_against_quadrature_and_the_balance_of_energy(word):
     frequency = {"LR": 0.985, "tt": 0.975, "susu": 0.95, "LRtt": 0.99, "LRtR": 1.0}[word]
-    machine = MACHINE.changed(frequency=frequency, damping=1.0)
+    machine = COUPLED.changed(frequency=frequency, damping=1.0)
     orbit = machine.orbit(word)
     found = orbit.measures()
     lost = found["damping_loss"] + found["impact_loss"] + found["friction_loss"]
@@ -127,7 +125,7 @@ def test_measures_against_quadrature_and_the_balance_of_energy(word):
 )
 def test_the_first_harmonic_is_that_of_the_motion_by_matrix_exponentials(word, frequency, damping):
     """C sin(Psi + phase) of v = q1 + eps q2, integrated by Romberg's method; an orbit written twice over, as well."""
-    machine = MACHINE.changed(frequency=frequency, damping=damping, forcing=2.47 if damping == 1.0 else 40.0)
+    machine = COUPLED.changed(frequency=frequency, damping=damping, forcing=2.47 if damping == 1.0 else 40.0)
     orbit = machine.orbit(word)
     parts = np.zeros(2)
     for i, duration in enumerate(orbit.durations / frequency):
@@ -149,7 +147,7 @@ def test_the_first_harmonic_is_that_of_the_motion_by_matrix_exponentials(word, f
 @pytest.mark.parametrize("frequency", [0.3, 1.0, 3.0])
 def test_integrals_over_a_whole_turn_are_exact(frequency):
     """Sixteen points of Gauss: of every flight that lasts a turn, of the forcing or of the oscillator, cut anywhere into two."""
-    machine = MACHINE.changed(frequency=frequency)
+    machine = COUPLED.changed(frequency=frequency)
     params = machine.vector({})
     state = np.array([[0.3, 0.1, 0.0, 0.0, 0.0, 0.0, 0.7, -0.4]])
     length = 2.0 * np.pi * max(1.0, frequency) * 0.999
@@ -167,7 +165,7 @@ def test_integrals_over_a_whole_turn_are_exact(frequency):
 def test_a_flight_s_margin_is_its_slowest_moment():
     """Against fine sampling of the flight, on orbits whose flights slow down inside."""
     for frequency in (0.987, 0.988, 1.0035, 1.004):
-        orbit = MACHINE.symmetric_orbit(frequency=frequency)
+        orbit = COUPLED.symmetric_orbit(frequency=frequency)
         flights = [m.value for m in orbit.margins if m.kind == "flight"]
         points = orbit.sample(40000)
         for segment, mode in enumerate(orbit.word.modes):
@@ -179,15 +177,15 @@ def test_a_flight_s_margin_is_its_slowest_moment():
 
 def test_excitation_through_the_damper_is_a_small_term():
     """Its effect on the response is of order eps lambda."""
-    exact = MACHINE.symmetric_orbit(frequency=0.985)
-    truncated = MACHINE.changed(excitation="truncated").symmetric_orbit(frequency=0.985)
+    exact = COUPLED.symmetric_orbit(frequency=0.985)
+    truncated = COUPLED.changed(excitation="truncated").symmetric_orbit(frequency=0.985)
     gap = abs(exact.measure("C2") - truncated.measure("C2"))
     assert 0.0 < gap < 0.05
-    assert len(symmetric_nodes(MACHINE.changed(excitation=0.5).vector())) == 2
+    assert len(symmetric_nodes(COUPLED.changed(excitation=0.5).vector())) == 2
 
 
 def test_the_mirror_image_is_the_same_orbit():
-    orbit = MACHINE.orbit("LRtR", frequency=1.0)
+    orbit = COUPLED.orbit("LRtR", frequency=1.0)
     image = orbit.mirror()
     assert image.residual < 1e-11
     np.testing.assert_allclose(
@@ -198,14 +196,14 @@ def test_the_mirror_image_is_the_same_orbit():
 
 def test_friction_that_vanishes_leaves_the_frictionless_orbit():
     """friction -> 0 with words that have no turns: the same nodes from both descriptions."""
-    nodes = [MACHINE.changed(friction=mu).symmetric_orbit(frequency=0.985).nodes for mu in (0.0, 1e-9)]
+    nodes = [COUPLED.changed(friction=mu).symmetric_orbit(frequency=0.985).nodes for mu in (0.0, 1e-9)]
     np.testing.assert_allclose(nodes[0], nodes[1], atol=1e-7)
-    assert MACHINE.changed(friction=0.0).symmetric_orbit(frequency=0.985).word.frictionless
+    assert COUPLED.changed(friction=0.0).symmetric_orbit(frequency=0.985).word.frictionless
 
 
 def test_work_of_the_base_is_that_of_the_force():
     """Input of the sliding orbit: the integral of the force on q1 times q1', by adaptive quadrature."""
-    orbit = MACHINE.sliding_orbit(frequency=0.975)
+    orbit = COUPLED.sliding_orbit(frequency=0.975)
     points = orbit.sample(4000)
     rate = (points["v_rate"] + 0.006 * points["w_rate"]) / 1.006
     G, Omega, lam, eps = orbit.params[:4]
@@ -224,7 +222,7 @@ def test_work_of_the_base_is_that_of_the_force():
 def test_the_damper_loses_by_the_motion_between_base_and_oscillator(word, excitation):
     """By quadrature of lambda (q1' - e')^2 over sampled motion, and of the base's force times its speed."""
     frequency = {"LR": 0.985, "tt": 0.975, "susu": 0.95}[word]
-    orbit = MACHINE.changed(frequency=frequency, damping=1.3, excitation=excitation).orbit(word)
+    orbit = COUPLED.changed(frequency=frequency, damping=1.3, excitation=excitation).orbit(word)
     G, Omega, lam, eps = orbit.params[:4]
     points = orbit.sample(40000)
     q1, rate = points["cavity"], (points["v_rate"] + eps * points["w_rate"]) / (1.0 + eps)
@@ -243,7 +241,7 @@ def test_the_damper_loses_by_the_motion_between_base_and_oscillator(word, excita
 
 def test_the_damper_of_a_stuck_absorber():
     """The joined masses as a linear oscillator on a moving base, by quadrature of their closed form."""
-    orbit = MACHINE.changed(forcing=0.2, frequency=0.97, damping=1.3).orbit("")
+    orbit = COUPLED.changed(forcing=0.2, frequency=0.97, damping=1.3).orbit("")
     eps, lam, G, Omega = 0.006, 1.3, 0.2, 0.97
     phase = np.linspace(0.0, 2.0 * np.pi, 4001)
     drag = 1j * eps * lam * Omega
@@ -260,7 +258,7 @@ def test_orbits_that_belong_to_the_steady_states_of_the_slow_flow():
         forcing=2.47, damping=1.0, restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006
     )
     for state in equilibria(flow, -2.58):
-        orbit = MACHINE.orbit_near(state)
+        orbit = COUPLED.orbit_near(state)
         assert orbit.params[1] == pytest.approx(1.0 - 2.58 * 0.006)
         assert orbit.residual < 1e-10
         assert orbit.word.text == ("LR" if state.manifold == "impacting" else "tt")
@@ -273,8 +271,8 @@ def test_orbits_that_belong_to_the_steady_states_of_the_slow_flow():
 
 def test_margins_of_stuck_segments_and_frictionless_flights():
     """Against fine sampling: a - |v''| where the absorber sticks, 1 - |w| at the extrema of a flight that may reverse."""
-    orbit = MACHINE.orbit("susu", frequency=0.95)
-    a, omega = MACHINE.friction_acceleration(orbit.params), orbit.params[1]
+    orbit = COUPLED.orbit("susu", frequency=0.95)
+    a, omega = COUPLED.friction_acceleration(orbit.params), orbit.params[1]
     points = orbit.sample(40000)
     stuck = points["segment"] == orbit.word.modes.index(0)
     push = np.abs(np.gradient(points["v_rate"][stuck], points["phase"][stuck] / omega))[2:-2]
@@ -283,7 +281,7 @@ def test_margins_of_stuck_segments_and_frictionless_flights():
     assert all(value > 0.0 for value in found)
     assert not inner.size or min(abs(a - inner.max() - value) for value in found) < 1e-5
 
-    machine = MACHINE.changed(friction=0.0, mass_ratio=0.05, restitution=0.923, forcing=2.886)
+    machine = COUPLED.changed(friction=0.0, mass_ratio=0.05, restitution=0.923, forcing=2.886)
     attractor = find_attractor(machine, {"w": 0.3, "v": 0.5}, frequency=1.025)
     orbit = attractor.orbit
     assert orbit.word.frictionless and len(orbit.word) > 2
