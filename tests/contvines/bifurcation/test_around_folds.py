@@ -22,8 +22,8 @@ def map_of(excess, bend, middle):
     return cv.MapProblem(f, [0.6, 0.0, 0.0], 0.64)
 
 
-@pytest.mark.parametrize("max_step", [0.1, 0.03, 0.003])
-@pytest.mark.parametrize("middle", [0.0, 0.001, -0.0015, 0.004, -0.02, 0.3])
+@pytest.mark.parametrize("max_step", [0.1, 0.003])
+@pytest.mark.parametrize("middle", [0.0, 0.001, -0.02])
 @pytest.mark.parametrize("excess", [1e-4, 1e-3])
 def test_both_are_found_and_the_fold(max_step, middle, excess):
     """The modulus is 1 at y = excess/(1 - excess), either side of x = middle; the branch turns at x = 0, and is unstable below that."""
@@ -72,7 +72,7 @@ class Parabola(Line):
 
 
 @pytest.mark.parametrize("max_step", [0.1, 0.03])
-@pytest.mark.parametrize("pole", [1e-5, 1e-3, 4e-3, 0.0237])
+@pytest.mark.parametrize("pole", [1e-5, 4e-3])
 @pytest.mark.parametrize("k", [0.3, 0.9, 1.1])
 def test_a_multiplier_that_comes_back_from_infinity_beside_a_fold(max_step, pole, k):
     """As where an event of a virtual orbit grazes. It is -1 at u = 2 pole/(2 - k), and inside the circle before the fold and behind that."""

@@ -19,7 +19,7 @@ def hyperbola(gap, u, p, **options):
     return cv.AlgebraicProblem(lambda x, q: x**2 - q**2 - gap * abs(gap), [u], p, **options)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(GAPS, st.sampled_from([-1.0, 1.0]), st.sampled_from(["none", "flow"]))
 @example(1e-3, 1.0, "none")
 @example(1e-4, -1.0, "flow")
@@ -34,7 +34,7 @@ def test_a_branch_that_turns_away(gap, side, spectrum):
     )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(GAPS, st.sampled_from([-1.0, 1.0]))
 @example(1e-3, 1.0)
 def test_a_branch_that_turns_back(gap, side):

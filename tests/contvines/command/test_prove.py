@@ -165,9 +165,9 @@ def test_points_of_the_response_are_verified_where_the_branch_bends_and_words_ar
     labels = [
         label
         for kind in ("neimark-sacker", "fold", "period-doubling")
-        for label in (point.label for point in cv.load(path).of_kind(kind))
+        for label in (point.label for point in cv.load(path).of_kind(kind)[:2])
     ]
-    assert len(labels) > 12
+    assert len(labels) == 6
     assert run(capsys, "prove", path, *labels)[0] == 0
     status, out, _ = run(capsys, "prove", path, "--check")
     assert status == 0 and out.count(": verified") == len(labels)

@@ -75,15 +75,6 @@ def test_interrupted_at_any_call_of_its_loading_it_is_loaded_by_the_next():
     assert run(INTERRUPTED).stdout.split() == ["True", run(ASK).stdout.strip()]
 
 
-@pytest.mark.slow
-def test_a_build_elsewhere_gives_libraries_of_these_sources(tmp_path):
-    if build.compiler() is None:
-        pytest.skip("no compiler")
-    made = build.build(tmp_path)
-    assert [path.exists() for path in made] == [True] * len(build.variants())
-    assert build.up_to_date(tmp_path)
-
-
 def test_a_compiler_that_fails_is_quoted(tmp_path):
     with pytest.raises(build.NotBuilt, match="core.cpp"):
         build.build(tmp_path, ["false"])

@@ -126,6 +126,7 @@ def test_it_draws_on_given_axes_and_pyplot_keeps_no_figure_of_ours(functions, na
     plt.close(figure)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_it_respects_the_users_style_and_settings_stay(functions, name):
     _, function = functions[name]
@@ -137,6 +138,7 @@ def test_it_respects_the_users_style_and_settings_stay(functions, name):
     assert dict(mpl.rcParams) == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_nothing_is_cut_and_no_labels_touch_in_a_column_of_a_journal(functions, name):
     _, function = functions[name]
@@ -172,6 +174,7 @@ def seen_ticks(axis):
     return [tick.label1 for tick in ticks if tick.label1.get_visible() and tick.label1.get_text()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ("diagram", "sweep", "atlas", "basins", "circles", "survey", "multipliers"))
 def test_a_legend_can_be_left_out_or_put_somewhere(functions, name):
     _, function = functions[name]

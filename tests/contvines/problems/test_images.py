@@ -39,6 +39,7 @@ def folds_of_unlike_cells():
     return s0[inner]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", [0.01, 0.03, 0.1])
 @pytest.mark.parametrize("mirror", [None, [1, 0]])
 def test_no_false_folds_beside_the_pitchforks_of_two_cells(mirror, step):

@@ -77,6 +77,7 @@ def test_two_branch_points_in_one_step(make):
     assert len(graph) == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [hidden, bands])
 def test_two_null_vectors_at_once(make):
     """Eight half-branches leave: x = 0, y = 0, x = y, x = -y."""

@@ -81,6 +81,7 @@ COMMANDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_no_reader_runs_what_a_file_names(folder, attack, capsys):
     graph_with(ATTACKS[attack]).save("x.vines")
@@ -101,6 +102,7 @@ def test_no_reader_runs_what_a_file_names(folder, attack, capsys):
     assert not (folder / "marker").exists() and "evil" not in sys.modules
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", [["orbit", "x.vines", "B1:1", "--json"], ["export", "x.vines", "--to", "csv"]]
 )
