@@ -13,6 +13,8 @@ from contvines.text_table import fitted
 
 if TYPE_CHECKING:
     from contvines.command.study import Study
+    from contvines.survey import Survey
+    from orbits.design import Choice
 
 LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
 WORST = ("worst-case", "worst", "robust")
@@ -52,6 +54,7 @@ def choose(
     study: Study,
     text: str,
     over: list[str],
+    covered: float | None,
     target: Path,
     workers: int | None,
     cluster: str | None,
@@ -74,11 +77,12 @@ def choose(
         ways_of,
     )
     from contvines.command.surveying import surveyed
-    from contvines.survey.outcomes import OF_ALL
+    from contvines.survey.outcomes import KNOWN, OF_ALL
     from contvines.survey.work import Job, work
     from orbits.design import best
 
     largest, quantile, outcome = read_wish(text)
+    least = KNOWN if covered is None else covered
     plan, model = plan_and_machine(study)
     over = over or list(plan.axes)
     if sorted(over) != sorted(plan.axes):
@@ -106,18 +110,18 @@ def choose(
         row = work(job, 0, values)
         if not row.columns:
             raise ValueError(row.note)
-        unknown = outcome in OF_ALL and row.columns["covered"] < 1.0
+        unknown = outcome in OF_ALL and not row.columns["covered"] >= least
         return {**row.columns, outcome: math.nan} if unknown else row.columns
 
     drawn = [{}]
     if plan.samples:
         drawn = [{name: float(v[i]) for name, v in plan.samples.items()} for i in range(plan.shape[-1])]
-    known = _known(found, outcome, largest, quantile)
+    known = _known(found, outcome, largest, quantile, least)
     if not any(math.isfinite(number) for _, number in known):
         why = next((str(note) for note in found.notes.ravel() if note), "no machine has a number for it")
         raise ValueError(
             f"--best {text!r}: {outcome} is not known of any machine{' with all its samples' if plan.samples else ''} ({why}); "
-            "more depth in [continue], or atlas = true in [survey], finds more motions."
+            f"more depth in [continue], or atlas = true in [survey], finds more motions{_in_part(found, outcome, largest, quantile)}."
         )
     limits = {name: (float(plan.axes[name][0]), float(plan.axes[name][-1])) for name in plan.axes}
     choice = best(
@@ -140,7 +144,7 @@ def choose(
         }
         typer.echo(json_text(about))
     elif not quiet:
-        typer.echo(fitted(_told(choice, outcome, found, units, _wish(largest, quantile, len(drawn)))))
+        typer.echo(fitted(_told(choice, outcome, found, units, _wish(largest, quantile, len(drawn)), least)))
         if alone:
             typer.echo(fitted(told_compared(chosen, study.parameter, study.within, ALONE)))
     if plot is not None:
@@ -162,19 +166,35 @@ def _comes(outcome: str, study: Any) -> bool:
 
 
 def _known(
-    found: Any, outcome: str, largest: bool, quantile: float | None
+    found: Survey, outcome: str, largest: bool, quantile: float | None, covered: float
 ) -> list[tuple[dict[str, float], float]]:
     """The survey's points and their outcomes over the samples; no number where one of these is not known."""
     import itertools
 
     import numpy as np
 
-    value = found.known(outcome) * (-1.0 if largest else 1.0)
+    value = found.known(outcome, covered) * (-1.0 if largest else 1.0)
     if found.plan.samples:
         value = value.max(axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)
     points = itertools.product(*found.plan.axes.values())
     flat = value.ravel() * (-1.0 if largest else 1.0)
     return [(dict(zip(found.plan.axes, map(float, point))), float(v)) for point, v in zip(points, flat)]
+
+
+def _in_part(found: Survey, outcome: str, largest: bool, quantile: float | None) -> str:
+    """What would be chosen if the machines that are known best counted as known; empty where nothing is known."""
+    import numpy as np
+
+    share = found["covered"].min(axis=-1) if found.plan.samples else found["covered"]
+    if not np.isfinite(share).any():
+        return ""
+    least = math.floor(1000.0 * float(np.nanmedian(share))) / 1000.0
+    try:
+        point, number = found.best(outcome, largest, quantile, least)
+    except ValueError:
+        return ""
+    place = ", ".join(f"{name} = {value:.6g}" for name, value in point.items())
+    return f"; with --covered {least:g}, which takes what is known of the better half, it is {number:.6g} at {place}"
 
 
 def _wish(largest: bool, quantile: float | None, samples: int) -> str:
@@ -209,7 +229,9 @@ def _draw(figure: Any, choice: Any, names: list[str], over: str) -> None:
         axes.legend()
 
 
-def _told(choice: Any, outcome: str, found: Any, units: dict[str, str], wish: str) -> str:
+def _told(
+    choice: Choice, outcome: str, found: Survey, units: dict[str, str], wish: str, covered: float
+) -> str:
     """The choice, and what it costs: the other outcomes beside the best that each could be on the grid."""
     import numpy as np
 
@@ -218,7 +240,7 @@ def _told(choice: Any, outcome: str, found: Any, units: dict[str, str], wish: st
 
     lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
     lines.append(f"{outcome} = {shown(outcome, choice.outcome)}, {wish}")
-    unknown = np.count_nonzero(~np.isfinite(found.known(outcome)))
+    unknown = np.count_nonzero(~np.isfinite(found.known(outcome, covered)))
     if unknown:
         lines.append(
             f"left out: {unknown} of {len(found.plan)} machines of which {outcome} is not known; the column note says why"

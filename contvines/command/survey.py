@@ -44,6 +44,16 @@ def survey(
         list[str] | None,
         typer.Option("--over", metavar="NAME", help="With --best: what may be chosen, one or two."),
     ] = None,
+    covered: Annotated[
+        float | None,
+        typer.Option(
+            "--covered",
+            metavar="SHARE",
+            min=0.0,
+            max=1.0,
+            help="With --best: least share of the interval in which a machine must be known; 0.999 by default.",
+        ),
+    ] = None,
     fresh: FreshOption = False,
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
@@ -57,6 +67,8 @@ def survey(
     _check_places(study, target, plot)
     if over and best is None:
         raise ValueError(f"--over {' '.join(over)}: this goes with --best; say what is wanted.")
+    if covered is not None and best is None:
+        raise ValueError(f"--covered {covered:g}: this goes with --best; say what is wanted.")
     if workers is not None and cluster is not None:
         raise ValueError(
             f"--workers {workers} and --cluster {cluster} exclude each other; leave one of them out."
@@ -64,7 +76,7 @@ def survey(
     if best is not None:
         from contvines.command.best import choose
 
-        choose(read, best, over or [], target, workers, cluster, plot, json_, fresh, quiet)
+        choose(read, best, over or [], covered, target, workers, cluster, plot, json_, fresh, quiet)
         return
     from contvines.command.surveying import surveyed
 

@@ -17,12 +17,14 @@ from ..continuation.settings import Settings
 from ..graph.builder import adopt
 from ..graph.graph import Graph
 from ..graph.limits import Limits
+from ..graph.measures import default_measure
 from ..graph.run import Run
 from ..journal import NullJournal
-from .stretches import gaps, spread
+from .stretches import LEAST, gaps, spread, stretches, unseen
 
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
+HALVINGS = 3  # of the distance between values about the largest response that was simulated
 ON_ITS_WAY = ("slow", "impossible")  # a transient that has not ended; a start inside a wall
 
 
@@ -52,6 +54,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     2. The attractors that a brief look meets, with many starts at a few values.
     3. What takes over where a stable stretch ends.
     4. What a few starts settle on where nothing stable is known.
+    5. The same between these values, about the largest response, where that is of a motion without a branch.
 
     Parameters
     ----------
@@ -82,10 +85,19 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     handover = Handover(run, population)
     for end in handover.left():
         keep(handover.follow(end), run.depth)
-    for p in spread(gaps(graph), graph.within, values):
-        keep(census(population, p, FEW, 0, run.journal), run.depth)
-    left = [counted for counted in met if counted.attractor.branch is None]
-    return [_observed(population, one) for one in left if one.attractor.kind not in ON_ITS_WAY]
+    left = _observed(population, met)
+    for at_least in (values, 1) if values else ():  # once more where gaps have become others
+        met.clear()
+        unknown = unseen(gaps(graph), graph.within, [one.value for one in left if one.measures])
+        for p in spread(unknown, graph.within, at_least):
+            keep(census(population, p, FEW, 0, run.journal), run.depth)
+        left += _observed(population, met)
+    for _ in range(HALVINGS if values else 0):
+        met.clear()
+        for p in _about_the_largest(graph, left):
+            keep(census(population, p, FEW, 0, run.journal), run.depth)
+        left += _observed(population, met)
+    return left
 
 
 def _run(graph: Graph) -> Run:
@@ -109,10 +121,31 @@ def _add(run: Run, motions: Sequence[tuple[Any, np.ndarray]], p: float) -> None:
                 run.tell(f"a motion in closed form at {p:.6g} is left: {refusal}", p)
 
 
-def _observed(population: Population, counted: Counted) -> Unbranched:
-    about = counted.attractor
-    try:
-        measures = population.observed(counted.state, about.value)
-    except ValueError:  # it runs away
-        measures = {}
-    return Unbranched(about.value, about.kind, measures)
+def _observed(population: Population, met: Sequence[Counted]) -> list[Unbranched]:
+    """Those that lie on no branch and have settled, with what is measured of them."""
+    found = []
+    for counted in met:
+        about = counted.attractor
+        if about.branch is None and about.kind not in ON_ITS_WAY:
+            try:
+                measures = population.observed(counted.state, about.value)
+            except ValueError:  # it runs away
+                measures = {}
+            found.append(Unbranched(about.value, about.kind, measures))
+    return found
+
+
+def _about_the_largest(graph: Graph, left: Sequence[Unbranched]) -> list[float]:
+    """Values half-way from the largest response to its neighbours; none where it is that of a branch, or these are near."""
+    name, (low, high) = default_measure(graph), graph.within
+    known = {met.value: met.measures[name] for met in left if np.isfinite(met.measures.get(name, np.nan))}
+    top = max(known, key=lambda value: known[value], default=low)
+    of_branches = max(
+        (float(np.nanmax(s.response, initial=-np.inf)) for s in stretches(graph)), default=-np.inf
+    )
+    if known.get(top, -np.inf) <= of_branches:
+        return []
+    places = sorted({low, high, *known, *(end for gap in gaps(graph) for end in gap)})
+    at = places.index(top)
+    neighbours = places[max(at - 1, 0)], places[min(at + 1, len(places) - 1)]
+    return [0.5 * (top + other) for other in neighbours if abs(other - top) > LEAST * (high - low)]

@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .stretches import gaps, highest, stretches
+from ..graph.measures import default_measure
+from .stretches import LEAST, gaps, highest, stretches, unseen
 
 if TYPE_CHECKING:
     from .completion import Unbranched
 
 GRID = 401  # values at which coexisting responses are compared
+KNOWN = 1.0 - LEAST  # share of the interval from which on the responses are known
 
 
 @dataclass(frozen=True)
@@ -47,8 +49,6 @@ Outcome = Callable[[Findings], Mapping[str, float]]
 
 def peak(found: Findings) -> dict[str, float]:
     """The largest response, over all that coexist, and where it is."""
-    from ..graph.measures import default_measure
-
     name = default_measure(found.graph)
     known = [highest(stretch)[:2] for stretch in stretches(found.graph)]
     known += [(float(measures.get(name, np.nan)), value) for value, measures, _ in found.simulated]
@@ -58,22 +58,43 @@ def peak(found: Findings) -> dict[str, float]:
 
 
 def lower_peak(found: Findings) -> dict[str, float]:
-    """The same where at each value the lowest of the coexisting responses of the diagram is met."""
+    """The same where at each value the lowest of the coexisting responses is met; those simulated count where there is no branch."""
+    name = default_measure(found.graph)
     grid, table = _compared(found.graph)
     known = np.any(np.isfinite(table), axis=0)
-    if not known.any():
-        return {"lower_peak": np.nan, "lower_peak_at": np.nan}
-    lowest = np.nanmin(table[:, known], axis=0)
-    top = int(np.argmax(lowest))
-    return {"lower_peak": float(lowest[top]), "lower_peak_at": float(grid[known][top])}
+    lowest = (
+        list(zip(np.nanmin(table[:, known], axis=0).tolist(), grid[known].tolist())) if known.any() else []
+    )
+    alone: dict[float, float] = {}
+    for value, measures in _alone(found):
+        alone[value] = min(alone.get(value, np.inf), float(measures.get(name, np.inf)))
+    lowest += [(response, value) for value, response in alone.items() if np.isfinite(response)]
+    top, place = max(lowest, default=(np.nan, np.nan))
+    return {"lower_peak": top, "lower_peak_at": place}
+
+
+def _alone(found: Findings, simulated: bool = True) -> list[tuple[float, Mapping[str, float]]]:
+    """Motions without a branch at values where the diagram has no stable response; with those on which simulations settled, if asked."""
+    seen = [(met.value, met.measures) for met in found.unbranched]
+    if simulated:
+        seen += [(value, measures) for value, measures, _ in found.simulated]
+    open_ = gaps(found.graph)
+    return [(value, measures) for value, measures in seen if any(a < value < b for a, b in open_)]
 
 
 def covered(found: Findings) -> dict[str, float]:
-    """Share of the interval in which the diagram has a stable response; no number where stability is not computed."""
+    """Share of the interval in which a stable response is known, of a branch or by simulation; no number where stability is not computed."""
     if not _judged(found.graph):
         return {"covered": np.nan}
     low, high = found.graph.within
-    return {"covered": 1.0 - sum(b - a for a, b in gaps(found.graph)) / (high - low)}
+    return {"covered": 1.0 - sum(b - a for a, b in _unknown_parts(found)) / (high - low)}
+
+
+def _unknown_parts(found: Findings) -> list[tuple[float, float]]:
+    """Intervals in which no stable response is known, of a branch or by simulation."""
+    name = default_measure(found.graph)
+    seen = [value for value, measures in _alone(found) if np.isfinite(measures.get(name, np.nan))]
+    return unseen(gaps(found.graph), found.graph.within, seen)
 
 
 def unknown(found: Findings) -> str:
@@ -86,7 +107,7 @@ def unknown(found: Findings) -> str:
         return ""
     name, unit = graph.parameter, graph.units.get(graph.parameter, "")
     reasons = []
-    open_ = gaps(graph)
+    open_ = _unknown_parts(found)
     if open_:
         low, high = max(open_, key=lambda gap: gap[1] - gap[0])
         part = sum(b - a for a, b in open_) / (graph.within[1] - graph.within[0])
@@ -125,12 +146,8 @@ def activation(found: Findings) -> dict[str, float]:
     above = max((float(s.values.max()) for s in calm), default=np.nan)
     below = min((float(s.values.min()) for s in busy), default=np.nan)
     simulated = [(value, measures) for value, measures, _ in found.simulated]
-    open_ = gaps(
-        found.graph
-    )  # elsewhere a motion without a branch is beside the stable ones that the numbers are about
-    simulated += [
-        (met.value, met.measures) for met in found.unbranched if any(a < met.value < b for a, b in open_)
-    ]
+    # elsewhere a motion without a branch is beside the stable ones that the numbers are about
+    simulated += _alone(found, simulated=False)
     told = [(value, m["impacts_per_period"]) for value, m in simulated if "impacts_per_period" in m]
     beyond = any(not impacts and value > above for value, impacts in told)
     before = any(impacts and value < below for value, impacts in told)

@@ -17,7 +17,7 @@ from ..graph.table import with_unit
 from ..interrupts import Resumable
 from ..text_table import Table, fitted, terminal_width
 from .files import read, write
-from .outcomes import OF_ALL
+from .outcomes import KNOWN, OF_ALL
 from .plan import Plan, PlanError
 from .work import Row
 
@@ -100,18 +100,20 @@ class Survey(Resumable):
         """Number of systems of which something is not known: their notes say what."""
         return int(np.count_nonzero(self.notes != "")) - self.failed
 
-    def known(self, outcome: str) -> np.ndarray:
-        """An outcome where it is known: one of all motions together has no number where these do not cover the whole interval.
+    def known(self, outcome: str, covered: float = KNOWN) -> np.ndarray:
+        """An outcome where it is known: one of all motions together has no number where these do not cover the interval.
 
         Parameters
         ----------
         outcome : str
             ``peak`` for example; of a system that is not known in the whole interval it is a bound.
+        covered : float
+            Least share of the interval at which a system counts as known.
         """
         values = self[outcome]
         if outcome not in OF_ALL or "covered" not in self.columns:
             return values
-        return np.where(self["covered"] == 1.0, values, np.nan)
+        return np.where(self["covered"] >= covered, values, np.nan)
 
     def to_xarray(self) -> Any:
         """An `xarray.Dataset`: a variable per outcome over the plan's dimensions, with units and the systems' notes."""
@@ -165,7 +167,7 @@ class Survey(Resumable):
         return plot_survey(self, outcome, **options)
 
     def best(
-        self, outcome: str, largest: bool = False, quantile: float | None = None
+        self, outcome: str, largest: bool = False, quantile: float | None = None, covered: float = KNOWN
     ) -> tuple[dict[str, float], float]:
         """The point of the axes with the lowest (or largest) outcome, over the samples the worst, or this quantile of them.
 
@@ -176,7 +178,7 @@ class Survey(Resumable):
         PlanError
             If no point has a number.
         """
-        value = self.known(outcome) if not largest else -self.known(outcome)
+        value = self.known(outcome, covered) * (-1.0 if largest else 1.0)
         if self.plan.samples:
             with np.errstate(invalid="ignore"):
                 value = np.max(value, axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)

@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from ..graph.measures import default_measure
+
 SHARP = 1e-5  # of a step between two points: so closely a peak between them is located
 MEETING = 1e-9  # of the interval: stretches that end nearer to one another meet
 SIMULATED = 40  # values over the whole interval, where a diagram has next to nothing of it
-LEAST = 1e-3  # of the interval: shorter gaps are not simulated
+LEAST = 1e-3  # of the interval: gaps that are shorter together are not simulated, and a response is known in spite of them
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,6 @@ class Stretch:
 
 def stretches(graph: Any, measure: str | None = None) -> list[Stretch]:
     """The stable responses of a diagram; `measure` is that of the picture by default."""
-    from ..graph.measures import default_measure
-
     name = measure or default_measure(graph)
     found = []
     for branch in graph.branches.values():
@@ -124,8 +124,29 @@ def gaps(graph: Any) -> list[tuple[float, float]]:
     return found
 
 
+def unseen(
+    open_: Sequence[tuple[float, float]], within: tuple[float, float], seen: Sequence[float]
+) -> list[tuple[float, float]]:
+    """What is left of gaps where motions without a branch were simulated: a gap is seen between such values that are near enough.
+
+    Parameters
+    ----------
+    open_ : sequence of (float, float)
+    within : (float, float)
+        The whole interval; values and ends of gaps no farther apart than a fortieth of it are near enough.
+    seen : sequence of float
+        Values at which a motion was simulated.
+    """
+    near = (within[1] - within[0]) / SIMULATED * (1.0 + MEETING)
+    found = []
+    for low, high in open_:
+        inside = sorted(p for p in seen if low <= p <= high)
+        found += [(a, b) for a, b in pairwise([low, *inside, high]) if not inside or b - a > near]
+    return found
+
+
 def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], values: int) -> list[float]:
-    """Values spread evenly over gaps, one at least in each that is not too short to matter.
+    """Values spread evenly over gaps, one at least in each but the shortest, which are a thousandth of the interval together.
 
     Parameters
     ----------
@@ -136,7 +157,9 @@ def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], va
         At least so many, more where the gaps are a large part of the interval; 0 for none.
     """
     size = within[1] - within[0]
-    wide = [(low, high) for low, high in open_ if high - low > LEAST * size]
+    ascending = sorted(open_, key=lambda gap: gap[1] - gap[0])
+    total = np.cumsum([high - low for low, high in ascending])
+    wide = sorted(gap for gap, reached in zip(ascending, total) if reached > LEAST * size)
     if not values or not wide:
         return []
     length = sum(high - low for low, high in wide)

@@ -26,7 +26,7 @@ from .results import Survey
 from .work import Job, Row
 
 NOT_YET = "not done yet: the survey was interrupted"
-MEANING = 2  # of rows: those of another number were found in another way, and are not taken over
+MEANING = 3  # of rows: those of another number were found in another way, and are not taken over
 
 
 def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outcome:

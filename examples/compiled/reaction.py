@@ -1,7 +1,7 @@
 """A problem of your own in compiled code: a table of C functions in a shared library, followed by the compiled continuation loop.
 
 `reaction.c` holds F, its derivatives, a bordered solve and the eigenvalues: the first three functions of the contract at the top of
-`contvines.problems.protocol`. They may be written in any language that makes a shared library. This file compiles it, wraps the
+`contvines.problems.protocol`. They may be written in any language that makes a shared library, or be a numba `cfunc`. This file compiles it, wraps the
 library as a problem and draws the diagram: two folds and a Hopf point.
 """
 

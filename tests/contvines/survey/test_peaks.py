@@ -7,6 +7,8 @@ from scipy.optimize import fsolve, minimize_scalar
 
 import contvines as cv
 from contvines.survey import PlanError, survey
+from contvines.survey.stretches import spread, unseen
+from orbits.attractors.sweep import sweep
 from orbits.design import Family
 from orbits.machines.physical import physical
 from tests.contvines.survey.circles import Circles
@@ -87,6 +89,39 @@ def test_drawn_machines_have_the_peaks_of_simulations(number):
     assert any(not verdict.note for verdict in found)
 
 
+def test_a_chaotic_response_is_known_where_it_is_simulated():
+    """About its peak no motion that is stable is periodic; the largest response is that of a sweep."""
+    within = (7.0, 9.0)
+    case = {
+        **CASE, "oscillator_mass": "3.8 kg", "damping_ratio": 0.007, "half_width": "8 mm", "restitution": 0.689, "friction": 0.087,
+        "base_amplitude": "0.3 mm",
+    }  # fmt: skip
+    machine = physical("coupled", case)
+    made = survey(
+        Family(machine, None, over="frequency", within=within), {"half_width": [8.0]}, over="frequency", within=within,
+        outcomes=("peak", "lower_peak"), depth=0, workers=1,
+    )  # fmt: skip
+    rows = sweep(machine, "frequency", np.linspace(7.94, 7.98, 21))
+    largest = max(row.measures["max_abs_q1"] for row in rows)
+    assert made["covered"][0] >= 0.999 and "chaotic" in made.notes[0]
+    assert made["peak"][0] == pytest.approx(largest, rel=5e-3)
+    assert made["lower_peak"][0] == pytest.approx(largest, rel=5e-3)  # where it is largest nothing coexists
+    assert made.best("peak") == ({"half_width": 8.0}, made["peak"][0])
+
+
+def test_gaps_are_seen_where_values_are_near_enough():
+    """A fortieth of the interval [0, 10] is 0.25: 3.1 is too far from 2.8 and from 3.5, 6 has no value in its gap."""
+    open_ = [(1.0, 1.5), (2.6, 3.5), (5.0, 6.0)]
+    assert unseen(open_, (0.0, 10.0), [1.25, 2.8, 3.1, 4.0]) == [(2.8, 3.1), (3.1, 3.5), (5.0, 6.0)]
+    assert unseen(open_, (0.0, 10.0), []) == open_
+
+
+def test_gaps_of_a_thousandth_are_not_simulated():
+    assert spread([(1.0, 1.004), (2.0, 2.005)], (0.0, 10.0), 5) == []
+    places = spread([(1.0, 1.004), (2.0, 2.005), (3.0, 3.002)], (0.0, 10.0), 5)
+    assert places and all(2.0 < p < 2.005 for p in places)
+
+
 def flowing(values, near):
     """u' = u^2 + p^2 - r^2, whose equilibria are a circle."""
     return cv.AlgebraicProblem(
@@ -105,6 +140,7 @@ def test_what_is_not_known_is_said_and_never_the_best():
         == made.best("peak", largest=True)
         == ({"radius": 3.0}, pytest.approx(made["peak"][2]))
     )
+    assert np.isfinite(made.known("peak", covered=0.6)).tolist() == [False, True, True]
     with pytest.raises(PlanError, match="peak is known of no system"):
         survey(flowing, {"radius": [1.0]}, over="p", within=(-3.0, 3.0), workers=1).best("peak")
 
