@@ -9,6 +9,7 @@ import numpy as np
 from .simulation import rates
 
 RECURS = 1e-4  # distance of two returns, relative to the size of the motion, that count as one
+NEARLY = 1e-2  # ... after which it is worth simulating more exactly
 LEAST = 1e-2  # of the largest range: a state that moves less is as good as still
 STILL = 1e-9  # size of a motion, relative to the state, that is rest
 SAMPLES = 400  # states of a period that are handed over
@@ -110,9 +111,9 @@ def _free(
     span = transient if transient is not None else FIRST / (fastest if fastest > 0.0 else 1.0)
     if not rate(0.0, x).any():
         x = x + 1e-3 * field.lengths * (-1.0) ** np.arange(len(x))
+    x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
     for _ in range(doublings):
-        x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
-        run = _run(field, p, x, 0.0, span, rough=True)
+        run = _run(field, p, x, 0.0, span, dense=True, rough=True)
         ranges = np.ptp(run.y, axis=1)
         if (ranges <= STILL * (field.lengths + np.abs(x))).all():
             raise AtRest(x)
@@ -120,41 +121,34 @@ def _free(
         own = ranges / field.lengths
         unit = field.lengths * np.maximum(own, LEAST * own.max())
         speeds = np.linalg.norm([rate(0.0, y) / unit for y in run.y.T], axis=1)
-        best = int(np.argmax(speeds))
-        place = run.y[:, best]
+        place = run.y[:, int(np.argmax(speeds))]
         normal = rate(0.0, place) / unit**2
-        found = _returns(field, p, place, normal, place, unit, span, longest)
-        if found is not None:
-            period, start = found
-            whole = _run(field, p, start, 0.0, period, dense=True)
-            times = np.linspace(0.0, period, SAMPLES + 1)
-            return times, whole.sol(times).T, 1
+        if _returned(run, normal, place, NEARLY * unit, longest) is not None:
+            exact = _run(field, p, place, 0.0, span, dense=True)
+            found = _returned(exact, normal, place, RECURS * unit, longest)
+            if found is not None:
+                period, start = found
+                whole = _run(field, p, start, 0.0, period, dense=True)
+                times = np.linspace(0.0, period, SAMPLES + 1)
+                return times, whole.sol(times).T, 1
         x, span = run.y[:, -1], 2.0 * span
     raise Irregular(
         "the motion has not become periodic; it may be chaotic, or settle slowly: try another x0, other parameters or transient="
     )
 
 
-def _returns(
-    field: Any,
-    p: float,
-    place: np.ndarray,
-    normal: np.ndarray,
-    x: np.ndarray,
-    unit: np.ndarray,
-    span: float,
-    longest: int,
+def _returned(
+    run: Any, normal: np.ndarray, place: np.ndarray, close: np.ndarray, longest: int
 ) -> tuple[float, np.ndarray] | None:
-    run = _run(field, p, x, 0.0, span, dense=True)
+    """After what time, and to which state in a plane, a motion comes back at its end; None if it does not."""
     heights = normal @ (run.y - place[:, None])
     passed = np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[-longest - 1 :]
     if len(passed) < 2:
         return None
     times = np.array([_crossing(run, normal, place, int(i)) for i in passed])
     states = run.sol(times).T
-    last = states[-1]
     for k in range(2, len(times) + 1):
-        if (np.abs(states[-k] - last) <= RECURS * unit).all():
+        if (np.abs(states[-k] - states[-1]) <= close).all():
             return float(times[-1] - times[-k]), states[-k]
     return None
 

@@ -17,7 +17,7 @@ from . import mesh
 from .collocation import Rule, rule
 from .core import distance_to_rest
 from .field import Field
-from .forms import LARGEST, neimark_sacker, period_doubling
+from .forms import LARGEST, cubic, neimark_sacker
 from .kernels import KERNELS, SPARSE, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
 from .returns import ReturnMap
@@ -491,16 +491,21 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         return [Embedding(problem, doubled, direction, kind)]
 
     def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> float | None:
-        """The coefficient at a period doubling or a Neimark-Sacker point; None where there is none. See :mod:`contvines.flows.forms`."""
+        """The coefficient at a period doubling, a pitchfork or a Neimark-Sacker point; None where there is none. See :mod:`contvines.flows.forms`."""
         if self.states > LARGEST or self.sparse is not None:
             return None
         try:
             with np.errstate(all="ignore"):
-                if kind == "period-doubling":
-                    value = period_doubling(self, u, p)
-                else:
+                if kind == "neimark-sacker":
                     value = neimark_sacker(self, u, p, multiplier)
-        except (NotEvaluable, np.linalg.LinAlgError, ValueError):
+                else:
+                    value = cubic(self, u, p, -1.0 if kind == "period-doubling" else 1.0)
+        except (
+            NotEvaluable,
+            np.linalg.LinAlgError,
+            ValueError,
+            RuntimeError,
+        ):  # splu: singular to the last bit
             return None
         return value if np.isfinite(value) else None
 

@@ -1,20 +1,21 @@
-"""Normal forms of cycles: period doublings and Neimark-Sacker points, of the map from one return to the next.
+"""Normal forms of cycles: period doublings, pitchforks and Neimark-Sacker points, of the map from one return to the next.
 
 The equations of one return are those at the Gauss points, with the values x_0 ... x_N at the mesh points, where x_N is the x_0 of the next
 return, and with a period of its own; of autonomous flows x_0 stays in the plane across the motion. With J(m) their Jacobian where x_N = m x_0, K
 its part that belongs to x_N, B and C their second and third derivatives,
 
-    period doubling   -z + c z^3      c = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(-1) v = 0,  J(1) h = -B(v, v)
+    m = -1 or 1     m z + c z^3       c = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(m) v = 0,   J(1) h = -B(v, v)
     Neimark-Sacker  m z + c z^2 z*    c = -w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.K q),   J(m) q = 0,
                                       J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);   d = Re(c / m)
 
+Where m = 1 (symmetry breaking, a branch point that is a pitchfork) J(1) is singular, w.B(v, v) = 0, and h is fixed up to v, of which nothing hangs.
 Critical vectors have unit length at x_0. The expansion is that of Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4 and 8.7,
 for the return map; Kuznetsov, Govaerts, Doedel and Dhooge, SIAM J. Numer. Anal. 43 (2005) 1407, have it with integrals along the cycle.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.sparse import block_array, csc_array
@@ -124,10 +125,9 @@ class Return:
         value = value - self.widths[:, None] * (t * _apply(self.jacobian, y) + s * _apply(self.jacobian, x))
         return self.rows(value)
 
-    def critical(self, factor: complex) -> tuple[np.ndarray, np.ndarray, complex]:
-        """Null vector of J(m), of unit length at x_0, the left one, and w.K v."""
+    def critical(self, factor: complex) -> Critical:
+        """Null vectors of J(m), and J(m) with a row for x_0 and a column for the last equations, which have no pattern."""
         matrix, d, n = self.closed_by(factor), self.problem.node, self.size
-        # the singular matrix with a row for x_0 and a column for the last equations, which have no pattern
         edges = np.random.default_rng(6).standard_normal((2, n))
         edges[0, : self.states - self.problem.rule.degree * d] = 0.0
         edges[1, d:] = 0.0
@@ -136,21 +136,30 @@ class Return:
         side = np.append(np.zeros(n), 1.0).astype(matrix.dtype)
         v, w = factors.solve(side)[:-1], factors.solve(side, trans="T")[:-1]
         v = v / np.linalg.norm(v[:d])
-        return v, w, complex(w @ (self.closure @ v))
+        return Critical(v, w, complex(w @ (self.closure @ v)), factors)
+
+
+class Critical(NamedTuple):
+    """Null vector of J(m), of unit length at x_0, the left one, w.K v, and the factors of the bordered matrix."""
+
+    right: np.ndarray
+    left: np.ndarray
+    weight: complex
+    bordered: Any
 
 
 def _apply(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return np.einsum("nab,nb->na", matrices, vectors)
 
 
-def period_doubling(problem: Any, u: np.ndarray, p: float) -> float:
-    """c at a period doubling."""
+def cubic(problem: Any, u: np.ndarray, p: float, factor: float) -> float:
+    """c at a period doubling (m = -1) or a pitchfork (m = 1)."""
     system = Return(problem, u, p)
-    v, w, weight = system.critical(-1.0)
-    v, w = np.real(v), np.real(w)
-    here = system.parts(v, -1.0)
+    v, w, weight, bordered = system.critical(factor)
+    here = system.parts(v, factor)
     one, two = system.bent(here[0])
-    h = system.solve(1.0, -system.second(one, here, here))
+    side = -system.second(one, here, here)
+    h = system.solve(1.0, side) if factor < 0.0 else bordered.solve(np.append(side, 0.0))[:-1]
     third = -system.steps[:, None] * _apply(two, here[0]) - 3.0 * system.widths[:, None] * here[1] * _apply(
         one, here[0]
     )
@@ -162,7 +171,7 @@ def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -
     """d at a Neimark-Sacker point: Re(c / m)."""
     m = multiplier / abs(multiplier)
     system = Return(problem, u, p)
-    q, w, weight = system.critical(m)
+    q, w, weight, _ = system.critical(m)
     here = system.parts(q, m)
     other: tuple[np.ndarray, Any] = (here[0].conj(), np.conj(here[1]))
     a1, a2 = system.bent(np.real(here[0]))

@@ -131,11 +131,12 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 curvature = departure.curvature / target.amplitude(departure.direction) ** 2
                 point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
                 own: Any = point.problem
-                if isinstance(own, Adaptive) and name == "minus":
+                if isinstance(own, Adaptive):
                     # the form of the return map: amplitudes of unknowns that differ much in size say less
-                    exact = own.normal_form("period-doubling", point.u, point.value)
+                    exact = own.normal_form(point.kind, point.u, point.value)
                     if exact is not None:
-                        rough, point.criticality = exact, "supercritical" if exact > 0.0 else "subcritical"
+                        supercritical = exact > 0.0 if name == "minus" else exact < 0.0
+                        rough, point.criticality = exact, "supercritical" if supercritical else "subcritical"
                 exactly = partial(_cubic, own, point.u, point.value, name, rough)
                 point.coefficient = rough if point.criticality is None else exactly
             elif transcritical:

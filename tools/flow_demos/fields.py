@@ -6,9 +6,10 @@ import numpy as np
 
 
 def tor_matcont(u, nu, m, a3=0.32858, b3=0.93358, epsilon=0.001):
+    """Its own points (0.00125003, -0.001, 0.000525025) at nu = -0.9 say where epsilon stands."""
     x, y, z = u
     cube = b3 * (y - x) ** 3
-    return [(-(0.5 + nu) * x + 0.5 * y - a3 * x**3 + cube) / 0.6 + epsilon, 0.5 * x + 0.1 * y - z - cube, y]
+    return [(-(0.5 + nu) * x + 0.5 * y - a3 * x**3 + cube) / 0.6, 0.5 * x + 0.1 * y - z - cube, y + epsilon]
 
 
 def tor_coco(u, nu, m):

@@ -62,3 +62,24 @@ def test_half_a_turn_in_the_plane_across_the_cycle(sign, word):
     assert point.value == pytest.approx(0.0, abs=1e-8)
     assert point.criticality == word
     assert point.coefficient == pytest.approx(sign * 2.0 * np.pi, rel=1e-5)
+
+
+@pytest.mark.parametrize("mirror", [np.diag([1.0, 1.0, -1.0]), None])
+@pytest.mark.parametrize("bent", [-1.0, 1.0])
+def test_a_pitchfork_of_cycles(mirror, bent):
+    """z' = m z + z (bent z^2 + (r^2 - 1) / 2), where r^2 settles on 1 + 0.3 z^2: z -> z + 2 pi (bent + 0.15) z^3, whatever the angle does."""
+
+    def f(x, p):
+        square, turn = x[0] ** 2 + x[1] ** 2, 1.0 + 0.2 * x[2] ** 2
+        growth = 1.0 - square + 0.3 * x[2] ** 2
+        rise = p * x[2] + x[2] * (bent * x[2] ** 2 + 0.5 * (square - 1.0))
+        return [growth * x[0] - turn * x[1], turn * x[0] + growth * x[1], rise]
+
+    flow = cv.FlowProblem(f, [1.0, 0.0, 0.0], -0.2, mirror=mirror)
+    times = np.linspace(0.0, 2.0 * np.pi, 101)
+    circle = np.column_stack([np.cos(times), np.sin(times), np.zeros(101)])
+    graph = cv.diagram(flow.cycle(times, circle), over="p", within=(-0.25, 0.1), depth=1)
+    (point,) = graph.of_kind("branch-point" if mirror is None else "symmetry-breaking")
+    assert point.value == pytest.approx(0.0, abs=1e-10)
+    assert point.coefficient == pytest.approx(2.0 * np.pi * (bent + 0.15), rel=1e-9)
+    assert point.criticality == ("supercritical" if bent < 0.0 else "subcritical")
