@@ -7,24 +7,28 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.flows.native.cycle_equations import unit_nodes
-from orbits.flows.protocol import SimulationError
-from orbits.simulation.native import NativeSimulator
-from orbits.simulation.section import Section, VariedSection, section_of_page
+from orbits.flows.protocol import Equations, Flow, SimulationError
+from orbits.simulation.section import Section, section_of
+from orbits.words import Word
 
 
 class Simulated:
-    """Answers of a problem that knows its machine, word, periods, units and parameter vector."""
+    """Answers of a problem that knows its machine, word, periods, equations and parameter vector."""
 
     model: Any
-    word: Any
+    flow: Flow
+    word: Word
     periods: int
     parameter: str
-    units: tuple[float, float]
+    equations: Equations
 
     def values(self, p: float) -> np.ndarray:
         """The parameter vector at parameter value `p`."""
         raise TypeError("a problem says what its parameters are")
+
+    def orbit(self, u: np.ndarray, p: float) -> Any:
+        """A solution as an orbit."""
+        raise TypeError("a problem says what its orbits are")
 
     def witness(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
         """What the machine settles on at a parameter value, simulated from rest and from random starts.
@@ -35,7 +39,7 @@ class Simulated:
             "word" (None where there is none), "periods" and "kind" of each motion, sorted.
         """
         params, generator = self.values(p), np.random.default_rng(7)
-        named = dict(zip(self.model.parameter_names, map(float, params)))
+        named: dict[str, Any] = dict(zip(self.model.parameter_names, map(float, params)))
         found: dict[tuple[str, int, str], dict[str, Any]] = {}
         for i in range(starts):
             start = None if i == 0 else self.model.random_start(params, generator)
@@ -50,16 +54,10 @@ class Simulated:
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
         """A stable motion as `witness` tells of it."""
-        kind = (
-            "periodic"
-            if self.word.impacts or self.model.flow == "page"
-            else "sliding"
-            if len(self.word)
-            else "stuck"
-        )
+        kind = self.flow.kind(self.orbit(u, p))
         return {"word": _told(self.word), "periods": self.periods, "kind": kind}
 
-    def section(self, p: float) -> Section | VariedSection:
+    def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle.
 
         Raises
@@ -67,16 +65,12 @@ class Simulated:
         ValueError
             For the absorber at rest, which has no event to begin with.
         """
-        params = self.values(p)
-        if self.model.flow == "page":
-            index = self.model.place_of(self.parameter)
-            return section_of_page(self.model, params, self.word, self.periods, index)
-        if not len(self.word):
+        if not len(self.equations.unit):
             raise ValueError("the absorber that never slides has no section")
-        unit = unit_nodes(self.word, self.model.node, self.units)[0]
-        return Section(NativeSimulator(self.model, params), self.word, self.periods, unit)
+        index = self.model.place_of(self.parameter)
+        return section_of(self.model, self.values(p), self.word, self.periods, index, self.equations.unit[0])
 
 
-def _told(word: Any) -> str:
+def _told(word: Word) -> str:
     """One spelling for one motion, mirror images apart."""
     return word.canonical().spelled()

@@ -82,7 +82,7 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
     from contvines.command.sweep_rows import FIRST, Rows, kept
 
     model = machine(study)
-    from orbits.attractors.sweep import measure_names
+    from orbits.attractors.search import measure_names
     from orbits.attractors.sweep import sweep as simulate
 
     low, high = study.sweep.within or study.within

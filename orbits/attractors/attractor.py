@@ -11,7 +11,7 @@ from orbits.attractors.settled import Settled
 from orbits.cycles.cycle import Cycle
 from orbits.machines.stepping import Machine
 from orbits.orbit import Orbit
-from orbits.simulation.driver import follow
+from orbits.simulation.native import NativeSimulator
 from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import LETTERS, Trajectory
 from orbits.words import Word
@@ -155,7 +155,9 @@ class Attractor(Settled):
     def follow(self, periods: float | None = None) -> Trajectory:
         """The motion from `state`: over one cycle, or sixteen periods where nothing recurs."""
         length = periods if periods is not None else self.periods or (1 if self.kind == "stuck" else 16)
-        return follow(self.model, self.machine, self.params, self.state.copy(), length, 100_000)
+        simulator = NativeSimulator(self.model, self.params)
+        simulator.state = self.state.copy()
+        return simulator.run(length, 100_000)
 
     @property
     def dots(self) -> list[float]:

@@ -9,6 +9,7 @@ from threading import Event
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from orbits.machines.catalogue import stepper as machine
 from orbits.machines.native_stepper import NUMBERS, floats, written
 from orbits.machines.stepping import (
     EVENTS_FULL,
@@ -23,7 +24,7 @@ from orbits.machines.stepping import (
     Machine,
     W,
 )
-from orbits.simulation.driver import buffers, machine
+from orbits.simulation.driver import buffers
 
 SETTLED, AT_REST, LOST, WANDERING = 1, 2, 3, 0
 """What became of a motion: it recurs, is at rest for ever, left the range of numbers, or does none of these yet."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -16,13 +15,15 @@ from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.protocol import Record
 from orbits.machines.page.machine import Machine
 from orbits.orbit import Orbit
-from orbits.simulation.page import PageTrajectory, collect, first_state, outside
+from orbits.simulation.page import PageSimulator, PageTrajectory, collect
 from orbits.words import Word
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
 LONGEST_WORD = 400
 SAMPLES = 2000  # of a motion without a period, for its extremes
+TRANSIENT, PATIENCE = 100.0, 4  # forcing periods (or events) left out first, and how often twice as many are
+IN_SWEEPS = 0  # the same at each value of a sweep
 EARLY, SHORT = 5, 4
 """A first look comes after a fifth of the transient, at short cycles first: what attracts and has returned need not be waited for."""
 PLAIN = 40  # events up to which the plainest reading is looked for
@@ -157,20 +158,30 @@ def _seed(orbit: Orbit) -> tuple[np.ndarray, float]:
     return orbit.seed(orbit.problem(symmetric=False))
 
 
-def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) -> PageAttractor:
-    """What the motion of a stepper leads to: simulated until it returns to itself.
+def lasting(found: PageAttractor) -> PageAttractor:
+    """Nothing more is seen of a motion that does not recur in the long run."""
+    return found
+
+
+def attracted(
+    simulator: PageSimulator, transient: float, max_period: int, tolerance: float, patience: int
+) -> PageAttractor:
+    """What the motion of a simulator leads to: simulated until it returns to itself.
 
     Parameters
     ----------
-    stepper : Stepper
+    simulator : PageSimulator
         Moved on.
-    transient : int
+    transient : float
         Forcing periods (of a self-excited machine: events) simulated first; twice as many each time nothing has returned.
     max_period : int
         Longest period looked for, in forcing periods (events per cycle: 25 times as many).
+    tolerance : float
+        Not needed: what nearly returns is solved for.
     patience : int
         How often the transient is doubled.
     """
+    stepper, transient = simulator.stepper, int(transient)
     machine, params = stepper.machine, stepper.params
     early = transient // EARLY
     skip(stepper, early)
@@ -178,24 +189,19 @@ def attracted(stepper: Stepper, transient: int, max_period: int, patience: int) 
         run = look(stepper, longest)
         orbit = returning(run, longest, SETTLED)
         if orbit is not None:
-            return PageAttractor(machine, params, "periodic", orbit, run, reached(stepper))
+            return PageAttractor(machine, params, "periodic", orbit, run, simulator.state)
     for attempt in range(patience + 1):
         skip(stepper, transient * 2**attempt - (0 if attempt else early))
         run = look(stepper, max_period)
         orbit = returning(run, max_period, RETURNED if attempt else SETTLED)
         if orbit is not None:
-            return PageAttractor(machine, params, "periodic", orbit, run, reached(stepper))
+            return PageAttractor(machine, params, "periodic", orbit, run, simulator.state)
         if run.held or not (run.events or machine.forced):
-            return PageAttractor(machine, params, "rest", None, run, reached(stepper))
+            return PageAttractor(machine, params, "rest", None, run, simulator.state)
         if run.chatters and attempt:
             break
     kind = "chatter" if run.chatters else "aperiodic"
-    return PageAttractor(machine, params, kind, None, run, reached(stepper))
-
-
-def reached(stepper: Stepper) -> np.ndarray:
-    """Clock and states now, shape (n + 1,)."""
-    return np.append(stepper.clock, stepper.state)
+    return PageAttractor(machine, params, kind, None, run, simulator.state)
 
 
 def skip(stepper: Stepper, count: int) -> None:
@@ -215,12 +221,6 @@ def look(stepper: Stepper, max_period: int) -> PageTrajectory:
     if stepper.machine.forced:
         return collect(stepper, TWO_PI * (2 * max_period + 1), 50 * max_period + 2000)
     return collect(stepper, 1e4, min(2 * LONGEST_WORD, 50 * max_period))
-
-
-def settle(stepper: Stepper, transient: int, max_period: int) -> Orbit | None:
-    """The periodic orbit to which a stepper's motion settles after a transient, or None."""
-    skip(stepper, transient)
-    return returning(look(stepper, max_period), max_period, RETURNED)
 
 
 def returning(run: PageTrajectory, max_period: int, near: float) -> Orbit | None:
@@ -339,24 +339,6 @@ def _eventless(run: PageTrajectory, max_period: int, near: float) -> Orbit | Non
         if orbit is not None and (gap <= CLOSED * size or not np.any(np.abs(orbit.multipliers) > REPELS)):
             return orbit
     return None
-
-
-def begun(machine: Machine, params: np.ndarray, start: Any) -> np.ndarray:
-    """Clock and states of a start given by names, moved out of the walls that lie over it, shape (n + 1,)."""
-    if isinstance(start, np.ndarray):
-        return start
-    point, clock = first_state(machine, start)
-    return np.append(clock, point)
-
-
-def carried(
-    machine: Machine, params: np.ndarray, state: np.ndarray, nudge: float, transient: float, max_period: int
-) -> PageAttractor:
-    """The attractor that a sweep's motion goes on to with other parameters."""
-    stepper = Stepper(machine, params)
-    stepper.start(outside(stepper, state[1:], float(state[0])), float(state[0]))
-    stepper.state[-1] += nudge
-    return attracted(stepper, int(transient), max_period, 0)
 
 
 def measure_names(machine: Machine) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,15 +9,17 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.creeping import move_on
 from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate, touches
+from orbits.flows.protocol import SimulationError
 from orbits.machines.states import event_states, nodes_of
 from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine, V
-from orbits.simulation.driver import SimulationError, collect, first_state, machine, skip
+from orbits.simulation.driver import collect, skip
+from orbits.simulation.native import NativeSimulator
 from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import TWO_PI
 
 EVENTS_PER_PERIOD = 400
-PATIENCE = 2
-"""How often a sweep prolongs the transient fourfold before a motion is said not to recur: weakly damped ones settle late."""
+TRANSIENT, PATIENCE = 300.0, 2  # forcing periods left out first, and how often they are prolonged fourfold
+IN_SWEEPS = 2  # the same at each value of a sweep: weakly damped motions settle late
 UNSTABLE = 1e-5
 PASSING, CLOSED = 0.99, 1e-9  # a slower recurrence, open by more, passes beside a fold
 NEARLY = 1e-3  # nodes of a slow motion differ by less from one recurrence to the next
@@ -27,36 +28,12 @@ TO_WALLS = 8  # times that a creeping motion is moved on to a wall
 AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
 
 
-def left_over(
-    model: Any,
-    start: Mapping[str, float] | np.ndarray | None = None,
-    transient: float = 300,
-    max_period: int = 16,
-    tolerance: float = 1e-6,
-    patience: int = 2,
-    **parameters: float,
+def attracted(
+    simulator: NativeSimulator, transient: float, max_period: int, tolerance: float, patience: int
 ) -> Attractor:
-    """The attractor of a start, one that does not recur not yet observed (see `orbits.attractors.observation.lasting`)."""
-    params = model.vector(parameters)
-    engine = machine(model.name)
-    state = first_state(model, engine, params, start)
-    return settle(model, engine, params, state, transient, max_period, tolerance, patience)
-
-
-def begun(model: Any, params: np.ndarray, start: Any) -> np.ndarray:
-    """The state of a start, shape (S,)."""
-    return first_state(model, machine(model.name), params, start)
-
-
-def carried(
-    model: Any, params: np.ndarray, state: np.ndarray, nudge: float, transient: float, max_period: int
-) -> Attractor:
-    """The attractor that a sweep's motion goes on to with other parameters."""
-    engine, state = machine(model.name), state.copy()
-    if nudge and state[MODE] != 0.0:
-        state[RATE] += nudge * np.sign(state[MODE])
-    engine.launch(state, params)
-    return settle(model, engine, params, state, transient, max_period, patience=PATIENCE)
+    """What the motion of a simulator leads to, one that does not recur not yet observed (see `orbits.attractors.observation.lasting`)."""
+    model, engine, params = simulator.model, simulator.engine, simulator.params
+    return settle(model, engine, params, simulator.state, transient, max_period, tolerance, patience)
 
 
 def settle(

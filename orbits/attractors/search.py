@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from orbits.attractors import page
-from orbits.attractors.observation import lasting
-from orbits.attractors.recurrence import left_over, settle
-from orbits.flows.page.stepper import Stepper
-from orbits.flows.protocol import SimulationError
-from orbits.simulation.page import PageSimulator
+from orbits.attractors import observation, page, recurrence
+from orbits.flows.protocol import SimulationError, Simulator
+from orbits.simulation.runs import simulator_of
 
+RECOGNISED: dict[str, Any] = {"native": recurrence, "page": page}
+OBSERVED: dict[str, Any] = {"native": observation, "page": page}
+"""How an attractor is recognised, and what is observed on it, by the flow of its machine."""
+TOLERANCE = 1e-6  # largest difference of two nodes that may count as a return
 SAME = 1e-4  # difference of the nodes of one motion met twice
 DRAWS = 200  # starts drawn at most to find one that can be simulated
 
@@ -24,8 +25,9 @@ def find_attractor(
     *,
     transient: float | None = None,
     max_period: int = 16,
-    tolerance: float = 1e-6,
+    tolerance: float = TOLERANCE,
     patience: int | None = None,
+    observed: bool = True,
     **parameters: float,
 ) -> Any:
     """Simulate, leave out the transient, and recognise what is left.
@@ -43,6 +45,8 @@ def find_attractor(
         Largest difference of two nodes of a built-in machine that may count as a return; the orbit is then polished.
     patience : int, optional
         How often the transient is prolonged, fourfold (page: twofold, four times), when nothing recurs; 2.
+    observed : bool
+        Whether a motion that does not recur is followed until its statistics settle.
     **parameters
         Parameters that are no fields of the machine (`amplitude`), or that replace them.
 
@@ -59,32 +63,30 @@ def find_attractor(
         raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
     if transient is not None and not (np.isfinite(transient) and transient >= 0.0):
         raise SimulationError(f"transient = {transient}: give a number of forcing periods, 0 or above")
-    if model.flow == "page":
-        stepper = Stepper(model, model.vector(parameters))
-        begin = page.begun(model, stepper.params, start)
-        stepper.start(begin[1:], float(begin[0]))
-        length = 100 if transient is None else int(transient)
-        return page.attracted(stepper, length, max_period, 4 if patience is None else patience)
-    length = 300.0 if transient is None else transient
-    tries = 2 if patience is None else patience
-    return lasting(left_over(model, start, length, max_period, tolerance, tries, **parameters))
+    how = RECOGNISED[model.flow]
+    simulator = simulator_of(model, model.vector(parameters))
+    simulator.put(start)
+    length = how.TRANSIENT if transient is None else transient
+    tries = how.PATIENCE if patience is None else patience
+    found = how.attracted(simulator, length, max_period, tolerance, tries)
+    return OBSERVED[model.flow].lasting(found) if observed else found
 
 
-def goes_on(simulator: Any, transient: int, max_period: int) -> Any:
-    """The attractor of the motion on which a simulator is, which is moved on; it is looked for once, after the transient."""
-    if isinstance(simulator, PageSimulator):
-        return page.attracted(simulator.stepper, transient, max_period, 0)
-    state = simulator.state
-    return settle(
-        simulator.model, simulator.engine, simulator.params, state, float(transient), max_period, 1e-6, 0
-    )
+def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0) -> Any:
+    """The attractor of the motion on which a simulator is, which is moved on; None: as patient as a sweep."""
+    how = RECOGNISED[simulator.model.flow]
+    tries = how.IN_SWEEPS if patience is None else patience
+    return how.attracted(simulator, transient, max_period, TOLERANCE, tries)
 
 
-def unobserved(model: Any, start: Any = None, **parameters: Any) -> Any:
-    """`find_attractor`, a motion that does not recur not yet observed for long: for those who observe it themselves."""
-    if model.flow == "page":
-        return find_attractor(model, start, **parameters)
-    return left_over(model, start, **parameters)
+def described(found: Any) -> tuple[Any, dict[str, float]]:
+    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
+    return OBSERVED[found.model.flow].described(found)
+
+
+def measure_names(model: Any) -> tuple[str, ...]:
+    """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
+    return OBSERVED[model.flow].measure_names(model)
 
 
 def different_attractors(

@@ -11,9 +11,9 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from contvines.shared.processes import ATTEMPTS, spread
-from orbits.attractors import observation, page, recurrence
-from orbits.attractors.search import find_attractor
+from orbits.attractors.search import OBSERVED, described, find_attractor, goes_on
 from orbits.flows.protocol import SimulationError
+from orbits.simulation.runs import simulator_of
 
 
 @dataclass(frozen=True)
@@ -50,25 +50,7 @@ class SweepRow:
     @property
     def dots(self) -> list[float]:
         """What a picture shows of it."""
-        return _observed(self.detail.model).dots(self.detail, self.measures)
-
-
-def _searched(model: Any) -> Any:
-    return page if model.flow == "page" else recurrence
-
-
-def _observed(model: Any) -> Any:
-    return page if model.flow == "page" else observation
-
-
-def measure_names(model: Any) -> tuple[str, ...]:
-    """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
-    return _observed(model).measure_names(model)
-
-
-def described(found: Any) -> tuple[Any, dict[str, float]]:
-    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
-    return _observed(found.model).described(found)
+        return OBSERVED[self.detail.model.flow].dots(self.detail, self.measures)
 
 
 def sweep(
@@ -121,12 +103,13 @@ def sweep(
     vectors = [
         model.vector_at(over, value, parameters) for value in numbers
     ]  # all refused before work starts
-    searched = _searched(model)
-    state = searched.begun(model, vectors[0], start)
+    state = simulator_of(model, vectors[0]).state_of(start)
     direction = "up" if numbers[-1] >= numbers[0] else "down"
     rows = []
     for value, params in zip(numbers, vectors):
-        found, measures = described(searched.carried(model, params, state, nudge, transient, max_period))
+        simulator = simulator_of(model, params)
+        simulator.go_on(state, nudge)
+        found, measures = described(goes_on(simulator, transient, max_period, None))
         row = SweepRow(
             value, direction, found.kind, found.text, found.periods, found.impacts, measures, found
         )

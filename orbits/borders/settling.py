@@ -8,7 +8,7 @@ from orbits.attractors.search import goes_on
 from orbits.contacts.letters import SLIP
 from orbits.flows.protocol import SimulationError
 from orbits.orbit import Orbit
-from orbits.simulation.simulators import simulator_of
+from orbits.simulation.runs import simulator_of
 from orbits.starts.find import polish
 
 TRANSIENT = 60  # forcing periods, or events of a self-excited motion

@@ -163,7 +163,7 @@ def from_sweep(
     unknown, limits, fixed, confidence
         As for `from_impacts`.
     measure : str
-        What was measured: of `orbits.attractors.sweep.measure_names`.
+        What was measured: of `orbits.attractors.search.measure_names`.
     transient : float
         Forcing periods after which a response is taken as steady.
     """

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.attractors.search import unobserved
-from orbits.attractors.sweep import described
+from orbits.attractors.search import described
 from orbits.flows.protocol import SimulationError
 from orbits.orbit import Orbit
 from orbits.starts.find import StartError, centred, find, polish
@@ -159,7 +158,7 @@ class Family:
             for trial in range(starts):
                 start = self.state if trial == 0 else model.random_start(params, generator)
                 try:
-                    attractor, numbers_of = described(unobserved(model, start, **numbers))
+                    attractor, numbers_of = described(find_attractor(model, start, observed=False, **numbers))
                 except SimulationError:
                     continue  # it lies within a wall
                 found.append((float(value), numbers_of, attractor.text))

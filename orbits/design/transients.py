@@ -13,7 +13,7 @@ import numpy as np
 
 from orbits.design.record import Response, recorded
 from orbits.machines.base import ParameterError
-from orbits.simulation.driver import simulate
+from orbits.simulation.runs import simulate
 
 NINE_TENTHS = 0.9
 LONGEST = 4000.0  # forcing periods of a free decay

@@ -10,9 +10,11 @@ The solving half, in words
    Margins come as the word's alphabet orders them (`Alphabet.watched`).
 3. `loose` are the entries of a node along which any motion with a word may be shifted as a whole.
 4. `sample` has a motion over time, `positions` what no impulse moves, at equal phases from phase zero on, shape (m, c): motions are compared
-   by it, and are one where they differ by less than `resolution`. `position_entries` are the entries of a node to which these belong.
+   by it, and are one where they differ by less than `resolution`. `position_entries` are the entries of a node to which these belong, and
+   `position_names` what samples call them. `points` are the simulator's coordinates just after the events, shape (L, d).
    `strobed` has a motion without events once per period.
-5. `measures` of many solutions at once, their names, which are angles, and the one that is shown first. `described` is what JSON has of events.
+5. `measures` of many solutions at once, their names, which are angles, and the one that is shown first. `described` is what JSON has of events. `kind` is
+   "stuck" where nothing moves that could be hit, "sliding" where a shaken absorber hits no wall, else "periodic".
 6. At a border, `vanishing` says what the vanishing margin watches, where, and what the laws of the contacts need to know of it; `placed` are
    the nodes of the events that they propose; `without_events` the node of a motion that has lost its last event (None: that is at rest).
    `restitution` is that of an impact. Of equations, `approach` is the speed with which an impact leaves its wall, and `through_flights` are the
@@ -25,9 +27,10 @@ A *simulator* moves one motion of a machine on at given parameters, from event t
 1. Time is counted in forcing periods (of a self-excited machine: in 2 pi of its time), whole ones included. A *point* is where the motion is at a
    given time: the coordinates `names`, positions and velocities.
 2. ``start(point, time, modes=None)`` puts the motion there. What is in contact, and how it slides, follows from the point unless it is given.
+   ``put`` does so with a start as users give it, ``go_on`` with the ``state`` in which another simulation has ended.
 3. ``follow(until)`` moves it on; what may happen (gaps that close, velocities that vanish, limits of friction that are reached, switches that
    are crossed) is looked for all the way, and the laws of the contacts are applied. No event, hop or touch is passed unseen.
-4. ``record(until, most)`` does the same and lists the events.
+4. ``record(until, most)`` does the same and lists the events; ``run(length, most)`` keeps the whole motion.
 5. A motion that cannot go on (it leaves the range of numbers, or a law does not continue it) or cannot begin raises `SimulationError`.
 6. ``struck(point, near)`` tells the two points that are one motion at a wall: just before and just after the impact.
 7. ``mirrored`` says that the ``image`` of a point, half a period later, is a point of the same machine. ``hard`` says which coordinates walls limit by themselves.
@@ -99,7 +102,7 @@ class Record:
     points : float array (m, d)
         Just after the events.
     events : sequence of hashable
-        What happened, and the modes after it.
+        What happened, by its letter, and the modes after it.
     impacts, piled : bool array (m,)
         Which are impacts; with which infinitely many impacts end, or a wall lets go.
     whole : bool
@@ -124,6 +127,10 @@ class Simulator(Protocol):
     """A motion on its way; the contract is at the top of this module."""
 
     @property
+    def model(self) -> Any: ...
+    @property
+    def params(self) -> np.ndarray: ...
+    @property
     def names(self) -> tuple[str, ...]: ...
     @property
     def forced(self) -> bool: ...
@@ -141,6 +148,17 @@ class Simulator(Protocol):
     def image(self, point: np.ndarray) -> np.ndarray: ...
 
     def start(self, point: np.ndarray, time: float = 0.0, modes: Any = None) -> None: ...
+
+    @property
+    def state(self) -> np.ndarray: ...
+
+    def put(self, start: Mapping[str, float] | np.ndarray | None) -> None: ...
+
+    def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray: ...
+
+    def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None: ...
+
+    def run(self, periods: float, most: int) -> Any: ...
 
     def begin(self, word: Any, node: np.ndarray) -> None:
         """Put the motion just after the first event of a cycle with this word, of which `node` are the unknowns."""
@@ -280,6 +298,8 @@ class Flow(Protocol):
     def resolution(self) -> float: ...
 
     def position_entries(self, model: Any) -> tuple[int, ...]: ...
+    def position_names(self, model: Any) -> tuple[str, ...]: ...
+    def points(self, motion: Motion) -> np.ndarray: ...
 
     def equations(
         self,
@@ -309,6 +329,7 @@ class Flow(Protocol):
         wanted: Sequence[str],
     ) -> dict[str, np.ndarray]: ...
     def described(self, motion: Motion) -> dict[str, Any]: ...
+    def kind(self, motion: Motion) -> str: ...
     def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing | None: ...
     def placed(self, motion: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray: ...
     def restitution(self, motion: Motion, place: int) -> float: ...

@@ -148,7 +148,7 @@ class Varying:
         **parameters: float,
     ) -> Any:
         """Simulate from event to event; see `orbits.simulation.simulate`."""
-        from orbits.simulation.driver import simulate
+        from orbits.simulation.runs import simulate
 
         return simulate(self, start, periods=periods, time=time, events=events, **parameters)
 

@@ -13,13 +13,14 @@ from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, WANDERING, lyapunov, settle_all
 from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
 from orbits.attractors.recurrence import recurring, settle
-from orbits.attractors.sweep import described
-from orbits.flows.protocol import Record
+from orbits.attractors.search import described
+from orbits.flows.protocol import Record, SimulationError
+from orbits.machines.catalogue import stepper as machine
 from orbits.machines.notation import STARTS
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V, W
 from orbits.orbit import Orbit
 from orbits.population.sorting import Sorting
-from orbits.simulation.driver import SimulationError, machine, skip
+from orbits.simulation.driver import skip
 from orbits.simulation.native import NativeSimulator
 from orbits.starts.closed import closed_orbits
 

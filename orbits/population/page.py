@@ -233,7 +233,7 @@ class PageFleet:
 
     def _add(self, orbit: Orbit, i: int, stepper: Stepper, sorting: Sorting) -> None:
         root = orbit.root()
-        kind = "periodic" if len(root.word) or self._moves(root) else "stuck"
+        kind = root.flow.kind(root)
         place, problem, u = sorting.known(root, kind, root.periods)
         if place >= 0:
             return sorting.assign(i, place, self._side(place, stepper))
@@ -247,12 +247,6 @@ class PageFleet:
     def _side(self, place: int, stepper: Stepper) -> bool:
         marks, _ = self._nearest(stepper)
         return marks is not None and marks.place == place and marks.mirrored
-
-    def _moves(self, orbit: Orbit) -> bool:
-        """Whether any state of a motion without events changes."""
-        return bool(
-            np.any(np.ptp(np.array([orbit.sample(50)[s] for s in self.machine.states]), axis=1) > 1e-9)
-        )
 
     def _marks(self, place: int, orbit: Orbit, mirrored: bool) -> _Marks:
         loose = [entry - 1 for entry in orbit.flow.loose(orbit.model, orbit.word)]

@@ -7,8 +7,9 @@ Importing this package is cheap: compiled code is loaded by the first simulation
 module of the same name; ``from orbits.simulation.replay import ...`` reaches into it.
 """
 
-from orbits.simulation.driver import SimulationError, simulate
+from orbits.flows.protocol import SimulationError
 from orbits.simulation.replay import Replay, replay, replay_nodes
+from orbits.simulation.runs import simulate
 from orbits.simulation.trajectory import Balance, Samples, Trajectory
 
 __all__ = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,12 @@ import numpy as np
 from orbits.flows.protocol import Record, SimulationError
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import event_states, state_of
-from orbits.machines.stepping import FAILED, HOLD, PSI, TURNS, W
-from orbits.simulation.driver import buffers, collect, skip
+from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, TURNS, W
+from orbits.simulation.driver import MOST_EVENTS, buffers, collect, first_state, skip
+from orbits.simulation.trajectory import LETTERS, Trajectory
 
 PER_PERIOD = 400  # events
+FOREVER = 1e6  # periods: only a motion that keeps off the walls lasts so long without events
 
 
 class NativeSimulator:
@@ -77,6 +80,21 @@ class NativeSimulator:
             )
         self.engine.launch(self.state, self.params)
 
+    def put(self, start: Mapping[str, float] | np.ndarray | None) -> None:
+        """Begin at a start by names, or at a state."""
+        self.state = self.state_of(start)
+
+    def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray:
+        """The state of a start."""
+        return first_state(self.model, self.engine, self.params, start)
+
+    def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
+        """Begin where another simulation has ended, its velocity changed a little."""
+        self.state = state.copy()
+        if nudge and self.state[MODE] != 0.0:
+            self.state[RATE] += nudge * np.sign(self.state[MODE])
+        self.engine.launch(self.state, self.params)
+
     def begin(self, word: Any, node: np.ndarray) -> None:
         """Just after the first event of a cycle."""
         self.state = state_of(self.engine, self.params, int(word.codes[0]), int(word.mode_codes[0]), node)
@@ -94,6 +112,23 @@ class NativeSimulator:
                 f"the motion of {self.model.name!r} does not go on to {until:g} forcing periods"
             )
 
+    def run(self, periods: float, most: int = MOST_EVENTS) -> Trajectory:
+        """Move on and keep the motion; `SimulationError` if it leaves the range of numbers."""
+        begin, state = self.state.copy(), self.state
+        until = self.time + min(periods, FOREVER)
+        codes, modes, rows, status = collect(self.engine, state, self.params, until, most)
+        if status == FAILED:
+            raise SimulationError(
+                f"the motion of {self.model.name!r} left the range of numbers: give parameters and a start of moderate size"
+            )
+        walls = self.engine.walls(self.params)
+        if begin[MODE] == 0.0 and begin[W] not in walls and self.model.frictionless(self.params):
+            # off the walls nothing rests without friction, not even at the instant at which nothing pushes
+            begin[MODE] = 1.0
+        return Trajectory(
+            self.model, self.params, self.engine, begin, state.copy(), codes, modes, rows, status
+        )
+
     def record(self, until: float, most: int) -> Record:
         """Move on and list the events."""
         codes, modes, rows, _ = collect(self.engine, self.state, self.params, until, most)
@@ -101,7 +136,7 @@ class NativeSimulator:
         return Record(
             states[:, TURNS] + states[:, PSI] / (2.0 * np.pi),
             states[:, self._places],
-            [*zip(codes.tolist(), modes.tolist())],
+            [*zip(map(LETTERS.__getitem__, codes.tolist()), modes.tolist())],
             codes < 2,
             codes == HOLD,
             bool(abs(self.time - until) < 1e-9),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,6 +92,10 @@ class PageTrajectory:
             sentence += f"; impacts piled up and a wall held the body {times}"
         return sentence
 
+    def coordinates(self, times: np.ndarray) -> np.ndarray:
+        """The states at these times (forcing periods, or time over 2 pi), shape (m, n)."""
+        return self.sample(TWO_PI * times)
+
     def sample(self, clocks: np.ndarray) -> np.ndarray:
         """States, shape (m, n), at increasing clocks within the run."""
         clocks = np.asarray(clocks, dtype=float)
@@ -116,12 +121,6 @@ def letter_of(machine: Machine, event: tuple[int, int, int]) -> str:
     if kind == RELEASE:
         return f"{machine.contacts[contact].letter})"
     return machine.alphabet.text_of(contact, kind, sign)
-
-
-def first_state(machine: Machine, start: Any) -> tuple[np.ndarray, float]:
-    """State and phase of a start given by names; `SimulationError` if it cannot be one."""
-    given = told(dict(start or {}), [*machine.states, *(["phase"] if machine.forced else [])])
-    return np.array([given.get(name, 0.0) for name in machine.states]), given.get("phase", 0.0)
 
 
 def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
@@ -178,7 +177,8 @@ class PageSimulator:
     watched = (3000.0, 3000)
 
     def __init__(self, machine: Machine, params: np.ndarray) -> None:
-        self.machine, self.params = machine, params
+        self.model = self.machine = machine
+        self.params = params
         self.stepper = Stepper(machine, params)
         self.forced, self.names = machine.forced, machine.states
         self.hard = np.zeros(machine.size, dtype=bool)  # a start within a wall is refused
@@ -206,20 +206,48 @@ class PageSimulator:
         """Begin at a point."""
         self.stepper.start(point, TWO_PI * time, modes)
 
+    def put(self, start: Mapping[str, float] | np.ndarray | None) -> None:
+        """Begin at a start by names, or at clock and states."""
+        state = self.state_of(start)
+        self.stepper.start(state[1:], float(state[0]))
+
+    def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray:
+        """Clock and states of a start, shape (n + 1,); it may lie within a wall."""
+        if isinstance(start, np.ndarray):
+            return start
+        names = self.machine.states
+        given = told(dict(start or {}), [*names, *(["phase"] if self.forced else [])])
+        return np.array([given.get("phase", 0.0), *(given.get(name, 0.0) for name in names)])
+
+    @property
+    def state(self) -> np.ndarray:
+        """Clock and states, shape (n + 1,), from which another simulation goes on."""
+        return np.append(self.stepper.clock, self.stepper.state)
+
+    def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
+        """Begin where another simulation has ended, moved out of walls that are elsewhere now, its last state changed a little."""
+        clock = float(state[0])
+        self.stepper.start(outside(self.stepper, state[1:], clock), clock)
+        self.stepper.state[-1] += nudge
+
     def begin(self, word: Any, node: np.ndarray) -> None:
         """Just after the first event of a cycle."""
-        self.stepper.start(node[1:], float(node[0]), word.modes[0])
+        self.stepper.start(node[1:], float(node[0]) if self.forced else 0.0, word.modes[0])
 
     def follow(self, until: float) -> None:
         """Move on."""
         while self.stepper.advance(TWO_PI * until) is not None:
             pass
 
+    def run(self, periods: float, most: int) -> PageTrajectory:
+        """Move on and keep the motion."""
+        return collect(self.stepper, TWO_PI * periods, most)
+
     def record(self, until: float, most: int) -> Record:
         """Move on and list the events."""
-        run = collect(self.stepper, TWO_PI * (until - self.time), most)
+        run = self.run(until - self.time, most)
         kinds = np.array([kind for _, kind, _ in run.events], dtype=int)
-        events = [*zip(run.events, run.modes[1:])]
+        events = [*zip(run.letters, run.modes[1:])]
         piled = (kinds == HOLD) | (kinds == RELEASE)
         return Record(
             run.clocks[1:] / TWO_PI, run.states[1:], events, kinds == HIT, piled, run.status == REACHED, run

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from orbits.machines.catalogue import stepper as machine
 from orbits.machines.states import nodes_of, state_of
 from orbits.machines.stepping import EVENTS_FULL
-from orbits.simulation.driver import collect, machine, skip
+from orbits.simulation.driver import collect, skip
 from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
 from orbits.simulation.trajectory import TWO_PI, Trajectory
 
@@ -133,24 +134,6 @@ def replay_nodes(
     if growth < 1.0 - 1e-6:
         returned = _returns(engine, params, codes, modes, nodes, periods, growth)
     return Replay(error, "", multipliers, tracked, float(expected), returned)
-
-
-def one_by_one(orbit: Any) -> float:
-    """Largest difference of each event's node from the claimed one, the simulation started at the claimed event before it.
-
-    Deviations that grow within a period, however much, have no say; infinite if an event is another than listed.
-    """
-    engine = machine(orbit.model.name)
-    codes, modes = orbit.word.codes, orbit.word.mode_codes
-    claimed = np.concatenate([orbit.nodes[1:], orbit.nodes[:1]])
-    claimed[-1, 0] += TWO_PI * orbit.periods
-    worst = 0.0
-    for i, node in enumerate(orbit.nodes):
-        there = go_round(engine, orbit.params, np.roll(codes, -i), np.roll(modes, -i), node, events=1)
-        if there.message:
-            return np.inf
-        worst = max(worst, float(np.abs(there.nodes[0] - claimed[i]).max()))
-    return worst
 
 
 def _stuck(model: Any, params: np.ndarray) -> Replay:

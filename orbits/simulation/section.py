@@ -13,6 +13,7 @@ import numpy as np
 from orbits.flows.page.variations import Variations
 from orbits.flows.protocol import SimulationError, Simulator, later
 from orbits.simulation.page import TWO_PI, PageSimulator
+from orbits.simulation.runs import simulator_of
 
 LONGEST = 1e3  # clock without the event of the section after which a motion does not come back
 
@@ -136,7 +137,11 @@ class EventSection(VariedSection):
             left -= found[:2] == self.event
 
 
-def section_of_page(machine: Any, params: np.ndarray, word: Any, periods: int, index: int) -> VariedSection:
-    """The section of a cycle of a machine on a page; `index` is that of the parameter by which it is differentiated."""
-    kind = VariedSection if machine.forced else EventSection
-    return kind(PageSimulator(machine, params), word, periods, index)
+def section_of(
+    model: Any, params: np.ndarray, word: Any, periods: int, index: int, unit: np.ndarray | None = None
+) -> Section:
+    """The section of a cycle; with derivatives, by the parameter `index` too, where the machine's simulator has them."""
+    simulator = simulator_of(model, params)
+    if not isinstance(simulator, PageSimulator):
+        return Section(simulator, word, periods, np.ones(model.node) if unit is None else unit)
+    return (VariedSection if model.forced else EventSection)(simulator, word, periods, index)

@@ -157,6 +157,11 @@ class Trajectory:
         w, w_rate, v, v_rate = out.T
         return Samples(phases, w, w_rate, v, v_rate, *self.model.bodies(w, v, self.params))
 
+    def coordinates(self, times: np.ndarray) -> np.ndarray:
+        """The simulator's coordinates at these times (forcing periods), shape (m, d)."""
+        seen = self.sample(TWO_PI * times)
+        return np.column_stack([getattr(seen, name) for name in self.machine.coordinates])
+
     def peak_cavity(self, per_period: int = 200) -> float:
         """Largest displacement |q1| of the cavity over the run: events, ends, and the zeros of q1' between samples."""
         grid = self._grid(per_period)

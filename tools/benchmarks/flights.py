@@ -6,8 +6,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from orbits import Absorber
+from orbits.machines.catalogue import stepper as machine
 from orbits.machines.coupled.machine import Coupled
-from orbits.simulation.driver import buffers, first_state, machine
+from orbits.simulation.driver import buffers, first_state
 
 from .floor import PLAIN, library
 

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
+from orbits.flows.protocol import SimulationError
+from orbits.machines.catalogue import stepper as machine
 from orbits.simulation import replay
-from orbits.simulation.driver import SimulationError, machine
 from orbits.simulation.return_map import monodromy
 from orbits.starts.find import polish
 from tools.fuzz.between import Between

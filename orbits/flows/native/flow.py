@@ -27,6 +27,14 @@ class NativeFlow:
         """w."""
         return (1,)
 
+    def position_names(self, model: Model) -> tuple[str, ...]:
+        """w."""
+        return ("w",)
+
+    def points(self, motion: Motion) -> np.ndarray:
+        """Positions and velocities in the cavity, and those of the centre of mass."""
+        return sampling.points(motion)
+
     def equations(
         self,
         model: Model,
@@ -98,6 +106,10 @@ class NativeFlow:
                 entry[name] = float(getattr(table, name)[i]) * (fast if name.endswith("rate") else long)
             nodes.append(entry)
         return {"events": "".join(motion.word.events), "nodes": nodes}
+
+    def kind(self, motion: Motion) -> str:
+        """Told by the events."""
+        return "periodic" if motion.word.impacts else "sliding" if len(motion.word) else "stuck"
 
     def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing | None:
         """See `orbits.flows.native.vanishing`."""

@@ -149,6 +149,13 @@ def _at_rest(orbit: Motion, points: int) -> dict[str, np.ndarray]:
     }  # fmt: skip
 
 
+def points(orbit: Motion) -> np.ndarray:
+    """w, w' (, v, v') just after the events, shape (L, d)."""
+    engine, word = stepper(orbit.model.name), orbit.word
+    states = states_of(engine, orbit.params, word.codes, word.mode_codes, orbit.nodes)
+    return states[:, list(engine.places)]
+
+
 def slowest(orbit: Motion, segment: int) -> tuple[float, np.ndarray]:
     """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
     length, mode, state = float(orbit.durations[segment]), orbit.word.modes[segment], _begins(orbit, segment)

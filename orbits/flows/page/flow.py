@@ -15,6 +15,8 @@ from orbits.flows.protocol import Motion, Vanishing
 from orbits.machines.page.machine import Machine
 from orbits.words import Word
 
+STILL = 1e-9  # range of a state that does not move
+
 
 class PageFlow:
     """See `orbits.flows.protocol`; a node is the phase, or the duration of the flight that follows, and the states after the event."""
@@ -25,6 +27,14 @@ class PageFlow:
     def position_entries(self, model: Machine) -> tuple[int, ...]:
         """States that no wall pushes."""
         return tuple(1 + j for j in unmoved(model))
+
+    def position_names(self, model: Machine) -> tuple[str, ...]:
+        """The same by name."""
+        return tuple(model.states[j] for j in unmoved(model))
+
+    def points(self, motion: Motion) -> np.ndarray:
+        """The states."""
+        return motion.nodes[:, 1:]
 
     def equations(
         self,
@@ -90,6 +100,14 @@ class PageFlow:
             for event, row in zip(motion.word.events or ("",), motion.nodes)
         ]
         return {"nodes": nodes, **({} if len(motion.word) else {"rest": "no events"})}
+
+    def kind(self, motion: Motion) -> str:
+        """A motion without events is one, too, unless no state changes."""
+        if len(motion.word):
+            return "periodic"
+        table = sampling.sample(motion, 50)
+        moves = any(np.ptp(table[name]) > STILL for name in motion.model.states)
+        return "periodic" if moves else "stuck"
 
     def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing:
         """See `orbits.flows.page.vanishing`."""

@@ -96,7 +96,7 @@ def bodies(machine):
 @pytest.mark.slow
 def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
     pytest.importorskip("heyoka")
-    from orbits.simulation.section import section_of_page
+    from orbits.simulation.section import section_of
     from tools.pages.pages import page
 
     found = coupled["NS1"].circles(to=1.0245)
@@ -106,7 +106,7 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
     circle, machine = found[-1], page("coupled")
     orbit = machine.orbit("LR", frequency=circle.value)
     index = machine.parameter_names.index("frequency")
-    section = section_of_page(machine, machine.vector({"frequency": circle.value}), orbit.word, 1, index)
+    section = section_of(machine, machine.vector({"frequency": circle.value}), orbit.word, 1, index)
     assert found.names == ("w", "w_rate", "v", "v_rate")
     to_bodies, order = bodies(machine)
     phases = np.linspace(0.1, 6.0, 5)
@@ -121,7 +121,7 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
 def test_the_modulated_response_of_the_coupled_absorber_attracts():
     """With little forcing the pair leaves the unit circle supercritically: another simulator settles on the circle, which beats slowly."""
     pytest.importorskip("heyoka")
-    from orbits.simulation.section import section_of_page
+    from orbits.simulation.section import section_of
     from tools.pages.pages import page
 
     settings = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
@@ -133,7 +133,7 @@ def test_the_modulated_response_of_the_coupled_absorber_attracts():
     circle, machine = found[-1], page("coupled")
     assert circle.stable and circle.simulated == pytest.approx(circle.rotation, abs=1e-9)
     there = {"frequency": circle.value, "forcing": 1.05}
-    section = section_of_page(
+    section = section_of(
         machine,
         machine.vector(there),
         machine.orbit("LR", **there).word,

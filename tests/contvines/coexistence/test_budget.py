@@ -7,7 +7,7 @@ import contvines as cv
 from orbits import Absorber
 from orbits.attractors import recurrence
 from orbits.attractors.recurrence import LONGEST, settle
-from orbits.simulation.driver import machine
+from orbits.machines.catalogue import stepper as machine
 
 pytestmark = pytest.mark.slow
 

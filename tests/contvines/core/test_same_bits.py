@@ -19,7 +19,7 @@ import numpy as np
 import contvines as cv
 from contvines.core.library import variant
 from orbits import Coupled
-from orbits.simulation.driver import simulate
+from orbits.simulation.runs import simulate
 from tests.golden.studies import first_orbit, starts
 
 def digest(arrays):

@@ -4,7 +4,7 @@ import numpy as np
 
 from orbits.attractors import batches
 from orbits.attractors.batches import AT_REST, SETTLED, settle_all
-from orbits.simulation import driver
+from orbits.simulation import simulate
 from tests.machines import ABSORBER
 
 
@@ -26,7 +26,7 @@ def test_motions_recur_as_the_simulator_says():
     params, found = run(states, 0.55)
     assert np.all(found["outcome"] == SETTLED)
     for state, periods, impacts in zip(states, found["periods"], found["impacts"]):
-        trajectory = driver.simulate(ABSORBER, state.copy(), periods=float(periods), amplitude=0.55)
+        trajectory = simulate(ABSORBER, state.copy(), periods=float(periods), amplitude=0.55)
         assert np.sum(trajectory.codes < 2) == impacts
         np.testing.assert_allclose(trajectory.end[[1, 2, 3]], state[[1, 2, 3]], atol=1e-7)
 

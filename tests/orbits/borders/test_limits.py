@@ -9,7 +9,7 @@ from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor
-from orbits.simulation.driver import machine as engine_of
+from orbits.machines.catalogue import stepper as engine_of
 from orbits.simulation.return_map import monodromy
 from orbits.starts.find import polish
 from tests.machines import ABSORBER

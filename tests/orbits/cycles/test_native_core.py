@@ -8,7 +8,7 @@ from orbits import Absorber, Coupled
 from orbits.flows.native.sampling import positions_of, reference_positions
 from orbits.machines.catalogue import reference_stepper, stepper
 from orbits.machines.coupled import measures, segments
-from orbits.simulation.driver import simulate
+from orbits.simulation.runs import simulate
 
 pytestmark = pytest.mark.skipif(not native(), reason="the native core is not loaded")
 

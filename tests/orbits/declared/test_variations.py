@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import DryFriction, Machine, Switch, Wall
-from orbits.simulation.section import VariedSection, section_of_page
+from orbits.simulation.section import VariedSection, section_of
 from orbits.symbols import cos, sin, sqrt
 from orbits.words import Word
 
@@ -14,7 +14,7 @@ from orbits.words import Word
 def section(machine: Machine, parameter: str, **values: float) -> VariedSection:
     """A section at phase zero, once per forcing period, that differentiates by a parameter."""
     word = Word((), (tuple(0 for _ in machine.contacts),), machine.alphabet)
-    return section_of_page(machine, machine.vector(values), word, 1, machine.parameter_names.index(parameter))
+    return section_of(machine, machine.vector(values), word, 1, machine.parameter_names.index(parameter))
 
 
 def rubbing_rotor() -> Machine:

@@ -74,7 +74,7 @@ def test_a_periodic_motion_that_is_recorded_is_the_simulated_one():
     base = eps * 6.0 * np.sin(omega * seen.times[last])
     settled = np.abs(seen.oscillator[last] + base).max()
     from orbits.attractors import find_attractor
-    from orbits.attractors.sweep import described
+    from orbits.attractors.search import described
 
     assert settled == pytest.approx(described(find_attractor(machine))[1]["max_abs_q1"], rel=2e-3)
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled
+from orbits.machines.catalogue import stepper as stepped
 from orbits.orbit import Orbit
 from orbits.simulation import replay
-from orbits.simulation.driver import machine as stepped
 from orbits.simulation.replay import _returns
 from orbits.simulation.return_map import go_round
 from orbits.words import Word

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from orbits.machines.catalogue import stepper as machine
 from orbits.machines.coupled import stepper
 from orbits.machines.physical import physical
-from orbits.simulation.driver import first_state, machine
+from orbits.simulation.driver import first_state
 
 CASE = {
     "oscillator_mass": "3.8 kg", "natural_frequency": "8 Hz", "damping_ratio": 0.007, "absorber_mass": "32 g", "half_width": "14 mm",

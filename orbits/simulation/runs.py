@@ -1,0 +1,72 @@
+"""A machine simulated from event to event."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from orbits.flows.protocol import SimulationError, Simulator
+from orbits.simulation.driver import MOST_EVENTS
+from orbits.simulation.native import NativeSimulator
+from orbits.simulation.page import PageSimulator
+
+SIMULATORS = {"native": NativeSimulator, "page": PageSimulator}
+"""By the flow of the machine."""
+
+
+def simulator_of(model: Any, params: np.ndarray) -> Simulator:
+    """The simulator of a machine at these parameters; the contract is at the top of `orbits.flows.protocol`."""
+    return SIMULATORS[model.flow](model, params)
+
+
+def simulate(
+    model: Any,
+    start: Mapping[str, float] | np.ndarray | None = None,
+    *,
+    periods: float | None = None,
+    time: float | None = None,
+    events: int | None = None,
+    **parameters: float,
+) -> Any:
+    """Simulate the machine from event to event.
+
+    Parameters
+    ----------
+    model : Model or Machine
+    start : mapping or ndarray, optional
+        Of a built-in machine `phase` (radians), `w`, `w_rate`, and in the coupled model `v`, `v_rate` or `q1`, `q2`, `q1_rate`, `q2_rate`; of a page
+        its states by name, and `phase` if it is forced. What is not given is 0. Or a state, such as `Trajectory.end`.
+    periods, time : float, optional
+        How long: forcing periods, or the machine's time.
+    events : int, optional
+        Stop after so many events. Without it at most a million, so that a run always ends.
+    **parameters
+        Parameters that are no fields of the machine (`amplitude`), or that replace them.
+
+    Returns
+    -------
+    Trajectory or PageTrajectory
+
+    Raises
+    ------
+    SimulationError
+        If the start cannot be, no length is given, or the laws do not continue the motion.
+    """
+    params = model.vector(parameters)
+    if periods is None and time is None and events is None:
+        raise SimulationError("neither periods, time nor events are given: say how long to simulate")
+    if periods is not None and not model.forced:
+        raise SimulationError("periods: a self-excited machine has no forcing to count; give time or events")
+    for name, value in (("periods", periods), ("time", time), ("events", events)):
+        if value is not None and not (math.isfinite(value) and value >= 0.0):
+            raise SimulationError(f"{name} = {value}: give a number, 0 or above")
+    simulator = simulator_of(model, params)
+    simulator.put(start)
+    if periods is None and time is not None:
+        periods = (
+            time * float(model.phase_speed(params)) / float(model.gauge("time", params)) / (2.0 * math.pi)
+        )
+    return simulator.run(math.inf if periods is None else periods, MOST_EVENTS if events is None else events)
