@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from orbits.contacts.letters import HIT
 from orbits.cycles.cycle import Cycle
 from orbits.flows.protocol import SimulationError
 from orbits.simulation.runs import simulator_of
@@ -108,11 +109,14 @@ def by_positions(orbit: Cycle, known: Known) -> float:
 
 
 def _definite(orbit: Cycle, margins: np.ndarray) -> list[int]:
-    """Events of some strength, between flights that are not short; where there are none, the strongest."""
-    columns = orbit.word.alphabet.columns
-    strength = np.resize(margins[columns.index(Watch.STRENGTH) :: len(columns)], len(orbit.word))
+    """Events of some strength, between flights that are not short; all between such flights where every impact is soft."""
+    n, columns = len(orbit.word), orbit.word.alphabet.columns
+    strong = np.resize(margins[columns.index(Watch.STRENGTH) :: len(columns)], n) > DEFINITE
     long = np.minimum(orbit.durations, np.roll(orbit.durations, 1)) > SHORT
-    places = np.flatnonzero((strength > DEFINITE) & long)
+    hits = np.array([orbit.word.letter(i).kind == HIT for i in range(n)])
+    if not strong[hits].any():
+        strong = strong | hits.any()
+    places = np.flatnonzero(strong & long)
     if not places.size:
-        places = np.array([int(np.argmax(np.where(long, strength, -np.inf)))])
+        places = np.flatnonzero(long) if long.any() else np.arange(n)
     return places[:: -(-len(places) // STRETCHES)].tolist()
