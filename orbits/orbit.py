@@ -190,6 +190,12 @@ class Orbit(Cycle):
 
         return portrait(self, **options)
 
+    def animate(self, path: Any = None, **options: Any) -> Any:
+        """The orbit in motion, written to a gif, mp4 or html file if a path is given; see `orbits.plots.animation.animate`."""
+        from orbits.plots.animation import animate
+
+        return animate(self, path, **options)
+
     def scene(self, points: int = 120) -> dict[str, Any]:
         """The orbit as plain numbers for a page that draws it; see `orbits.plots.scene.scene`."""
         from orbits.plots.scene import scene

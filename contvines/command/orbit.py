@@ -24,9 +24,19 @@ def orbit(
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw phase portrait and history.")
     ] = None,
+    animate: Annotated[
+        Path | None,
+        typer.Option(
+            "--animate", metavar="FILE.gif", help="Show it in motion (gif, html, or mp4 by ffmpeg)."
+        ),
+    ] = None,
     trust: TrustOption = False,
 ) -> None:
     """One orbit: its events, multipliers and margins."""
+    if animate is not None:
+        from contvines.shared.animations import check_animation
+
+        check_animation(animate)
     if plot is not None:
         from contvines.plots.figures import check_picture
 
@@ -45,6 +55,13 @@ def orbit(
 
         save_figure(plot_portrait(found), plot)
         say(f"drawn in {plot}")
+    if animate is not None:
+        from contvines.command.compose import say
+
+        if not hasattr(found, "animate"):
+            raise ValueError(f"--animate {animate}: this solution has no motion to show; --plot draws it")
+        found.animate(animate)
+        say(f"in motion in {animate}")
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> Any:

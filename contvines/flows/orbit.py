@@ -140,3 +140,9 @@ class CycleOrbit:
         from ..plots.cycles import plot_cycle
 
         return plot_cycle(self, **options)
+
+    def animate(self, path: Any = None, **options: Any) -> Any:
+        """The cycle in motion, written to a gif, mp4 or html file if a path is given; see :func:`contvines.plots.cycles.animate_cycle`."""
+        from ..plots.cycles import animate_cycle
+
+        return animate_cycle(self, path, **options)

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.animations import animated, check_animation, pictures
+
+from ..continuation.hints import hinting
 from .figures import new_axes, styled
 from .style import STATE_COLORS, STATE_OF
 
 if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -66,6 +71,56 @@ def plot_cycle(
         right.margins(x=0.0)
         right.legend(loc="best", fontsize="small")
     return figure
+
+
+@hinting
+def animate_cycle(
+    orbit: Any,
+    path: str | Path | None = None,
+    *,
+    seconds: float = 3.0,
+    rate: int = 20,
+    figsize: tuple[float, float] = (7.2, 3.2),
+    style: str | Mapping[str, Any] | None = None,
+    coordinates: tuple[int, int] = (0, 1),
+) -> FuncAnimation:
+    """A point that goes round a cycle, on its phase portrait and over time.
+
+    Parameters
+    ----------
+    orbit : CycleOrbit
+    path : path, optional
+        Of a gif, an mp4 (by ffmpeg) or an html page with a player, which is written.
+    seconds, rate : float, int
+        How long the period takes, and pictures a second.
+    figsize, style, coordinates
+        As for `plot_cycle`.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be written to the path, or a number is not positive.
+    """
+    frames = pictures(seconds, rate)
+    if path is not None:
+        check_animation(path)
+    figure = plot_cycle(orbit, figsize=figsize, style=style, coordinates=coordinates)
+    times = np.linspace(0.0, orbit.period, frames, endpoint=False)
+    states = orbit(times)
+    places = (
+        (times, states[:, 0])
+        if states.shape[1] == 1
+        else (states[:, coordinates[0]], states[:, coordinates[1]])
+    )
+    left, right = figure.axes[:2]
+    (mark,) = left.plot([places[0][0]], [places[1][0]], "o", color="0.1", markersize=6)
+    now = right.axvline(0.0, color="0.2", linewidth=1.0)
+
+    def move(frame: int) -> None:
+        mark.set_data([places[0][frame]], [places[1][frame]])
+        now.set_xdata([times[frame], times[frame]])
+
+    return animated(figure, move, path, seconds, rate)
 
 
 def _portrait(

@@ -1,0 +1,155 @@
+"""One orbit in motion: what moves in the cavity, and below it the history with the moment that is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contvines.shared.animations import animated, check_animation, pictures
+from contvines.shared.figures import new_figure, styled
+from contvines.shared.near_arguments import hinting
+from orbits.plots.portrait import title
+from orbits.plots.scene import scene
+from orbits.plots.shown import LINE
+
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
+
+    from orbits.orbit import Orbit
+
+WALL = "0.35"
+ROOM = 0.12  # of the range of positions, left free at both sides
+
+
+@hinting
+def animate(
+    orbit: Orbit,
+    path: str | Path | None = None,
+    *,
+    seconds: float = 3.0,
+    rate: int = 20,
+    figsize: tuple[float, float] = (6.4, 4.2),
+    style: str | Mapping[str, Any] | None = None,
+) -> FuncAnimation:
+    """The orbit in motion over its period, which repeats.
+
+    Above, the bodies and walls where they are; below, all positions (of a machine file: states) over the period. A machine whose states
+    have no rates among them shows a point on its phase portrait instead.
+
+    Parameters
+    ----------
+    orbit : Orbit
+    path : path, optional
+        Of a gif, an mp4 (by ffmpeg) or an html page with a player, which is written.
+    seconds : float
+        How long the orbit's period takes.
+    rate : int
+        Pictures a second.
+    figsize : (float, float)
+        Inches.
+    style : str or mapping, optional
+        A style or rcParams of matplotlib's that come before the house's.
+
+    Returns
+    -------
+    matplotlib.animation.FuncAnimation
+        Keep it as long as it is to move; a notebook shows ``HTML(animation.to_jshtml())``.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be written to the path, or `seconds` or `rate` is not positive.
+    """
+    frames = pictures(seconds, rate)
+    if path is not None:
+        check_animation(path)
+    about = scene(orbit, 4 * frames)
+    with styled(style):
+        figure = new_figure(figsize)
+        figure.suptitle(title(orbit).split("\n")[0], fontsize="medium")
+        above, below = figure.subplots(2, 1, height_ratios=(1.0, 1.6))
+        x = np.asarray(about["history"]["x"])
+        even = np.linspace(x[0], x[-1], frames, endpoint=False)
+        move = _stage(above, about, even)
+        _history(below, about)
+        now = below.axvline(even[0], color="0.2", linewidth=1.0)
+
+        def draw(frame: int) -> None:
+            now.set_xdata([even[frame], even[frame]])
+            move(frame)
+
+        return animated(figure, draw, path, seconds, rate)
+
+
+def _stage(axes: Axes, about: dict[str, Any], even: np.ndarray) -> Callable[[int], None]:
+    """Draw what moves; the function of the frame that moves it."""
+    stage = about["animation"]
+    if stage is None:
+        return _point(axes, about, even)
+    if "box" in stage:  # evenly spread over the period
+        bodies, walls = {"absorber": stage["body"]}, [stage["box"] - wall for wall in stage["walls"]]
+        given = np.linspace(even[0], 2.0 * even[-1] - even[-2], len(stage["box"]))
+    else:
+        bodies, walls = stage["bodies"], [wall["at"] for wall in stage["walls"]]
+        given = np.asarray(about["history"]["x"])
+    places = {name: np.interp(even, given, v) for name, v in bodies.items()}
+    edges = [np.interp(even, given, wall) for wall in walls]
+    everything = np.concatenate([*places.values(), *edges])
+    low, high = float(everything.min()), float(everything.max())
+    room = ROOM * ((high - low) or 1.0)
+    axes.set_xlim(low - room, high + room)
+    axes.set_ylim(0.0, 1.0)
+    axes.set_yticks([])
+    axes.axhline(0.3, color="0.8", linewidth=1.0)
+    marks = [
+        axes.plot([v[0]], [0.42], "o", markersize=12, color=f"C{j}" if len(places) > 1 else LINE, label=name)[
+            0
+        ]
+        for j, (name, v) in enumerate(places.items())
+    ]
+    lines = [
+        axes.plot([edge[0], edge[0]], [0.3, 0.8], color=WALL, linewidth=5.0, solid_capstyle="butt")[0]
+        for edge in edges
+    ]
+    if len(places) > 1:
+        axes.legend(loc="upper right", fontsize="small", ncols=len(places), frameon=False)
+
+    def move(frame: int) -> None:
+        for mark, v in zip(marks, places.values(), strict=True):
+            mark.set_xdata([v[frame]])
+        for line, edge in zip(lines, edges, strict=True):
+            line.set_xdata([edge[frame], edge[frame]])
+
+    return move
+
+
+def _point(axes: Axes, about: dict[str, Any], even: np.ndarray) -> Callable[[int], None]:
+    """A point on the phase portrait."""
+    portrait, x = about["portrait"], np.asarray(about["history"]["x"])
+    across, up = np.asarray(portrait["x"]), np.asarray(portrait["y"])
+    axes.plot(across, up, color="0.7", linewidth=1.0)
+    axes.set_xlabel(portrait["names"][0])
+    axes.set_ylabel(portrait["names"][1])
+    places = np.interp(even, x, across), np.interp(even, x, up)
+    (mark,) = axes.plot([places[0][0]], [places[1][0]], "o", color=LINE)
+
+    def move(frame: int) -> None:
+        mark.set_data([places[0][frame]], [places[1][frame]])
+
+    return move
+
+
+def _history(axes: Axes, about: dict[str, Any]) -> None:
+    history = about["history"]
+    for j, (name, values) in enumerate(history["curves"].items()):
+        axes.plot(history["x"], values, color=f"C{j}", label=name)
+    for wall in history["walls"]:
+        axes.plot(history["x"], wall, color=WALL, linewidth=0.8, linestyle="--")
+    axes.set_xlabel(history["name"])
+    axes.set_ylabel(history["unit"])
+    axes.margins(x=0.0)
+    axes.legend(loc="best", fontsize="small", ncols=2)

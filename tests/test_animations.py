@@ -1,0 +1,75 @@
+"""Orbits in motion: what the pictures of an animation show, and the files they are written to."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from orbits import Absorber
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    return Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006).symmetric_orbit(
+        amplitude=0.6
+    )
+
+
+def test_a_gif_has_so_many_pictures(orbit, tmp_path):
+    from PIL import Image
+
+    orbit.animate(tmp_path / "orbit.gif", seconds=0.5, rate=8, figsize=(3, 2))
+    with Image.open(tmp_path / "orbit.gif") as picture:
+        assert picture.n_frames == 4
+
+
+def test_an_html_page_plays_by_itself(orbit, tmp_path):
+    orbit.animate(tmp_path / "orbit.html", seconds=0.5, rate=4, figsize=(3, 2))
+    page = (tmp_path / "orbit.html").read_text()
+    assert "<script" in page and "image/png" in page
+
+
+def test_the_absorber_stays_between_its_walls(orbit):
+    """At every picture the absorber is within the cavity, and at some it touches both walls (to the pictures' distance)."""
+    made = orbit.animate(seconds=2.0, rate=20, figsize=(3, 2))
+    above = made._fig.axes[0]
+    body, *walls = above.lines[1:4]
+    gaps = []
+    for frame in range(40):
+        made._func(frame)
+        at, left, right = body.get_xdata()[0], *sorted(wall.get_xdata()[0] for wall in walls)
+        gaps.append((at - left, right - at))
+    gaps = np.array(gaps)
+    assert gaps.min() > -0.01
+    assert gaps.min(axis=0).max() < 0.15
+    np.testing.assert_allclose(gaps.sum(axis=1), 2.0, atol=1e-9)  # the cavity is two half-widths wide
+
+
+def test_a_cycle_of_a_flow_moves_too(tmp_path):
+    flow = cv.FlowProblem(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], [0.0, 0.0], {"mu": 1.0})
+    cycle = flow.attractor([1.0, 0.0])
+    cycle.animate(tmp_path / "cycle.gif", seconds=0.5, rate=4)
+    assert (tmp_path / "cycle.gif").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "said"),
+    [("a.avi", {}, "gif"), ("none/a.gif", {}, "no folder"), ("a.gif", {"seconds": 0.0}, "seconds")],
+)
+def test_what_cannot_be_is_refused_before_any_work(orbit, tmp_path, name, options, said):
+    with pytest.raises(ValueError, match=said):
+        orbit.animate(tmp_path / name, **options)
+
+
+def test_from_the_command_line(tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from contvines.command.cli import app
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(
+        '[model]\nname = "absorber"\nrestitution = 0.76\nfriction = 0.5\ngravity = 0.211\nmass_ratio = 0.006\n'
+        '[start]\nword = "LR"\namplitude = 0.6\n[continue]\nparameter = "amplitude"\nwithin = [0.2, 1.2]\n'
+    )
+    ran = CliRunner().invoke(app, ["orbit", "s.toml", "--animate", "s.html"])
+    assert ran.exit_code == 0, ran.output
+    assert (tmp_path / "s.html").exists()
