@@ -75,40 +75,6 @@ def test_every_public_name_is_in_the_reference():
         assert names <= set(re.findall(r"\.\. auto(?:function|class|data):: (?:\w+\.)*(\w+)", part)), package
 
 
-def test_the_glossary_has_the_words_of_the_readme():
-    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| ([^|]+) \|", (DOCS / "glossary.md").read_text(encoding="utf-8"), re.MULTILINE)[2:]
-    known = {word.strip("* ").lower() for row in rows for word in re.split(", ", row)}
-    prose = re.sub(r"```.*?```", "", readme, flags=re.DOTALL)
-    said = re.findall(r"(?<![*`\w])\*{1,2}([a-z][a-z -]+)\*{1,2}(?![*\w])", prose)
-    kinds = [text for _, text in re.findall(r"`([A-Z]{2})` \| ([^|:]+?) (?=\|)", prose)]
-    assert len(said) > 4 and len(kinds) > 5
-    for word in [*said, *kinds]:
-        entry = re.sub(r"^other |s$", "", word.lower())
-        assert any(k in (entry, f"{entry} point") for k in known), word
-
-
-# terms of art that the README uses without explaining them there
-TERMS = (
-    "absorber", "atlas", "attractor", "ball arithmetic", "bifurcation", "border", "branch", "cavity", "chart", "continuation", "cycle",
-    "diagram", "equilibrium", "erosion curve", "extra", "forcing period", "frequency response", "friction", "graph", "gravity",
-    "impact", "kernel", "kick", "map", "margin", "mass ratio", "mirror image", "orbit", "phase portrait", "real",
-    "restitution", "robustness", "seed", "simulator", "slip", "special point", "stick", "study", "survey", "sweep", "switch",
-    "time history", "tolerance", "turn", "virtual", "word",
-)  # fmt: skip
-
-
-def test_the_glossary_has_the_terms_of_the_readme():
-    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8").lower()
-    rows = re.findall(r"^\| ([^|]+) \|", (DOCS / "glossary.md").read_text(encoding="utf-8"), re.MULTILINE)
-    known = {word.strip("* ").lower() for row in rows[1:] for word in row.split(",")}
-    for term in TERMS:
-        plural = term.replace("equilibrium", "equilibri")
-        if plural in readme.replace("\n", " "):
-            assert term in known, term
-    assert sum(term in readme for term in TERMS) > 35
-
-
 def test_every_option_of_a_command_in_the_pages_exists():
     from contvines.command.commands import COMMANDS, command
 

@@ -131,7 +131,3 @@ def test_commands_named_are_commands():
     assert named | set(re.findall(r"`(\w+)`", rest)) == real
     reference = (TOP / "docs/reference.md").read_text(encoding="utf-8")
     assert set(re.findall(r"^contvines (\w+)", reference, re.MULTILINE)) == real
-
-
-def test_the_readme_is_short():
-    assert len(README.splitlines()) <= 120

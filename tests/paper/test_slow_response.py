@@ -27,10 +27,6 @@ def problem(flow, start, regular, manifold="impacting"):
     )
 
 
-def found(graph, kind):
-    return sorted(s.value for s in graph.special.values() if s.kind == kind)
-
-
 def drawn(seed):
     """A machine with a response that holds a seen steady state, and its detuning."""
     rng = np.random.default_rng(seed)
@@ -68,19 +64,3 @@ def test_sliding_response_has_no_special_point():
     assert not [s for s in graph.special.values() if s.kind not in ("end",)]
     (branch,) = graph.branches.values()
     assert np.all(branch.stable)
-
-
-def test_derivatives_of_the_problem():
-    rng = np.random.default_rng(0)
-    for parameter, value in (("detuning", -2.0), ("frequency", 0.98), ("forcing", 2.0), ("damping", 0.7)):
-        for manifold, regular in (("impacting", True), ("impacting", False), ("sliding", False)):
-            f = ms.SlowResponse(ms.SlowFlow(), parameter, manifold, detuning=-2.0, regular=regular)  # type: ignore[arg-type]
-            u, h = np.array([rng.uniform(0.75, 0.95), rng.uniform(-1, 1)]), 1e-5
-            columns = [(f(u + h * e, value) - f(u - h * e, value)) / (2 * h) for e in np.eye(2)]
-            assert f.jacobian(u, value) == pytest.approx(np.column_stack(columns), abs=1e-7)
-            slope = (f(u, value + h) - f(u, value - h)) / (2 * h)
-            assert f.derivative(u, value) == pytest.approx(slope, rel=1e-6, abs=1e-7)
-    with pytest.raises(ValueError, match="none of"):
-        ms.SlowResponse(ms.SlowFlow(), "gravity")
-    with pytest.raises(ValueError, match="try another value"):
-        ms.SlowResponse(ms.SlowFlow(forcing=0.1)).start(0.0)

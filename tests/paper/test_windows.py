@@ -1,16 +1,15 @@
 """P_3^1 and P_4^1 of the paper's set, found by simulation and continued to both ends of their windows.
 
-The folds, doublings and grazes that bound them are roots of the brute-force return map of `brute`, stated to ten digits.
+The folds, doublings and grazes that bound them are roots of a brute-force return map of 40 digits, stated to ten of them.
 """
 
 import numpy as np
 import pytest
-from mpmath import eye, mp, mpf
 
 import contvines as cv
 from orbits.attractors import find_attractor
 from tests.machines import ABSORBER
-from tests.paper.brute import Machine, eigenvalues, secant
+from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
 
@@ -38,78 +37,6 @@ def points_of(graph, label="B1"):
     return {p.kind: p for p in graph.special.values() if p.branch == label and p.real}
 
 
-def node_on_left(orbit):
-    """(psi, B+) at the impact on the left wall that flies straight to the right one, and the letters that follow.
-
-    A mirror image does as well.
-    """
-    for candidate in (orbit, orbit.mirror()):
-        text = candidate.word.text
-        for place, letter in enumerate(candidate.word.events):
-            turned = candidate.rotate(place)
-            text = turned.word.text
-            if letter == "L" and text[1] == "R":
-                return turned.nodes[0], text[1:] + text[0]
-    raise AssertionError("no straight flight from the left wall")
-
-
-def fixed_point(branch, amplitude):
-    """Brute-force machine, word and fixed point, started from the nearest point of the stable part of a branch."""
-    i = int(np.argmin(np.abs(branch.values - float(amplitude)) + 10.0 * ~branch.stable))
-    guess, letters = node_on_left(branch.orbit(i))
-    machine = Machine(mpf(amplitude) ** 2)
-    word = {"letters": letters}
-    return machine, word, machine.orbit(guess, word)
-
-
-def determinant(branch, sign):
-    """det(A + sign I) as a function of the amplitude."""
-
-    def value(amplitude):
-        machine, word, node = fixed_point(branch, amplitude)
-        A = machine.derivative(node, word) + sign * eye(2)
-        return A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]
-
-    return value
-
-
-def fold_by_brute_force(branch, point):
-    """Fixed point and det(A - I) = 0 at once; unknowns psi, B+ and the amplitude."""
-    guess, letters = node_on_left(point.orbit)
-    word = {"letters": letters}
-
-    def residual(psi, B, amplitude):
-        machine = Machine(amplitude**2)
-        node = mp.matrix([psi, B])
-        gap = machine.image(node, word) - node
-        A = machine.derivative(node, word) - eye(2)
-        return [gap[0], gap[1], A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]]
-
-    start = (mpf(guess[0]), mpf(guess[1]), mpf(point.value))
-    return mp.findroot(residual, start, tol=mpf(10) ** -30)[2]
-
-
-def graze_by_brute_force(point):
-    """Where the smallest s w' of the flights vanishes: interpolated backwards from four amplitudes before it."""
-    speeds, amplitudes = [], []
-    for k in range(1, 5):
-        guess, letters = node_on_left(point.problem.orbit(*_stepped(point, -k * 1e-5)))
-        amplitude = mpf(point.value) - k * mpf("1e-5")
-        machine = Machine(amplitude**2)
-        node = machine.orbit(guess, {"letters": letters})
-        speeds.append(min(machine.go((node[0], node[1]), len(letters))[2]["lowest"]))
-        amplitudes.append(amplitude)
-    assert all(speed > 0 for speed in speeds)
-    total = mpf(0)
-    for j, amplitude in enumerate(amplitudes):  # Lagrange, amplitude as a function of the speed, at speed 0
-        weight = mpf(1)
-        for k, other in enumerate(speeds):
-            if k != j:
-                weight *= other / (other - speeds[j])
-        total += weight * amplitude
-    return total
-
-
 def test_window_of_three_impacts(three):
     """From a fold to a velocity graze; stable up to the doubling. All but the graze bound what a simulation finds."""
     points = points_of(three)
@@ -127,16 +54,6 @@ def test_window_of_three_impacts(three):
         [letter in "LR" for letter in points["wall-graze"].orbit.word.events]
     ]
     assert np.abs(impacts).min() < 1e-10
-
-
-def test_window_of_three_impacts_by_brute_force(three):
-    branch, points = three["B1"], points_of(three)
-    fold = fold_by_brute_force(branch, points["fold"])
-    assert abs(fold - points["fold"].value) < 1e-12
-    doubling = secant(determinant(branch, +1), "1.4125", "1.4126")
-    assert abs(doubling - points["period-doubling"].value) < 1e-12
-    graze = graze_by_brute_force(points["velocity-graze"])
-    assert abs(graze - points["velocity-graze"].value) < 1e-12
 
 
 def test_window_of_three_impacts_by_simulation(three):
@@ -186,18 +103,13 @@ def test_window_of_four_impacts(four):
     assert sorted(word["impacts"] for word in words) == [2, 3]
 
 
-def test_window_of_four_impacts_by_brute_force(four):
-    branch, points = four["B1"], points_of(four)
-    assert abs(fold_by_brute_force(branch, points["fold"]) - points["fold"].value) < 1e-12
-    graze = graze_by_brute_force(points["velocity-graze"])
-    assert abs(graze - points["velocity-graze"].value) < 1e-12
-    beside = [
-        fixed_point(branch, mpf(points["symmetry-breaking"].value) + side)
-        for side in (mpf("-1e-9"), mpf("1e-9"))
-    ]
-    below, above = (max(z.real for z in eigenvalues(m.derivative(x, w))) for m, w, x in beside)
-    # of the full period the critical multiplier is the square of the half map's -1: it passes +1 upwards
-    assert below < 1.0 < above
+def test_ends_of_the_windows_in_eighty_digits(three, four):
+    for graph in (three, four):
+        for kind, point in points_of(graph).items():
+            if kind in ("fold", "period-doubling", "symmetry-breaking"):
+                there = exact(point.orbit)
+                assert abs(there.shift) < 1e-12
+                assert np.abs(there.multipliers - (-1.0 if kind == "period-doubling" else 1.0)).min() < 1e-7
 
 
 def test_beyond_each_graze_the_bare_maps_leave_the_simulation(three, four):

@@ -1,6 +1,5 @@
 """Points of codimension two of textbook systems, against closed forms and solves in many digits."""
 
-import mpmath as mp
 import numpy as np
 import pytest
 
@@ -67,113 +66,6 @@ def test_generalized_henon_resonances():
     for kind, trace in (("resonance-1-3", -1.0), ("resonance-1-2", -2.0)):
         _, be, al = generalized_henon_at(trace)
         assert nearest(found, kind, (be, al))[1:] == pytest.approx((be, al), abs=1e-10)
-
-
-def co(u, p):
-    x, y, s = u
-    z = 1 - x - y - s
-    return np.array(
-        [5 * z * z - 2 * x * x - 10 * x * y, p.q2 * z - 0.1 * y - 10 * x * y, 0.0675 * (z - p.k * s)]
-    )
-
-
-@pytest.fixture(scope="module")
-def oxidation():
-    problem = cv.AlgebraicProblem(
-        co, [0.0016, 0.52, 0.1], {"q2": 0.8, "k": 0.4}, parameter="q2", spectrum="flow"
-    )
-    graph = cv.diagram(problem, over="q2", within=(0.5, 2.0), depth=0)
-    return cv.chart(graph, over="k", within=(0.05, 2.5))
-
-
-def _co_mp(v):
-    x, y, s, q2, k = v
-    z = 1 - x - y - s
-    F = [5 * z * z - 2 * x * x - 10 * x * y, q2 * z - y / 10 - 10 * x * y, mp.mpf("0.0675") * (z - k * s)]
-    J = mp.matrix(3)
-    J[0, 0], J[0, 1], J[0, 2] = -10 * z - 4 * x - 10 * y, -10 * z - 10 * x, -10 * z
-    J[1, 0], J[1, 1], J[1, 2] = -q2 - 10 * y, -q2 - mp.mpf("0.1") - 10 * x, -q2
-    J[2, 0], J[2, 1], J[2, 2] = (-mp.mpf("0.0675"),) * 2 + (-mp.mpf("0.0675") * (1 + k),)
-    return F, J
-
-
-@pytest.mark.slow
-def test_co_oxidation_bogdanov_takens_is_a_double_zero(oxidation):
-    # characteristic polynomial l^3 - t l^2 + m l - d: d = m = 0 at a Bogdanov-Takens point
-    found = oxidation.of_kind("bogdanov-takens")
-    assert len(found) == 2
-    for point in found:
-
-        def system(*v):
-            F, J = _co_mp(v)
-            minors = sum(J[i, i] * J[j, j] - J[i, j] * J[j, i] for i, j in ((0, 1), (0, 2), (1, 2)))
-            return [*F, mp.det(J), minors]
-
-        with mp.workdps(30):
-            exact = mp.findroot(system, [*map(mp.mpf, point.u), *map(mp.mpf, point.value)])
-            assert float(exact[3]) == pytest.approx(point.value[0], abs=1e-11)
-            assert float(exact[4]) == pytest.approx(point.value[1], abs=1e-11)
-        assert sorted(oxidation[label].kind for label in point.on) == ["fold", "hopf"]
-    # printed by MatCont's tutorial and others to five digits
-    assert sorted(p.value for p in found)[0] == pytest.approx((1.16120, 0.72234), abs=1e-5)
-
-
-def test_co_oxidation_has_one_cusp_and_two_generalized_hopf_points(oxidation):
-    assert len(oxidation.of_kind("cusp")) == 1 and len(oxidation.of_kind("generalized-hopf")) == 2
-    # printed by BifurcationKit's test test/COModel.jl
-    hopf = sorted(p.value for p in oxidation.of_kind("generalized-hopf"))
-    assert hopf[0] == pytest.approx((0.8913189828755895, 0.23248736), abs=1e-8)
-    assert hopf[1] == pytest.approx((0.924255, 0.305879), abs=1e-6)
-    # F = 0, J v = 0, J^T w = 0 and w.B(v, v) = 0, B(v, v) = d/dh J(u + h v) v
-    point = oxidation.of_kind("cusp")[0]
-
-    def system(*a):
-        F, J = _co_mp(a[:5])
-        v, w = mp.matrix([1, *a[5:7]]), mp.matrix([1, *a[7:9]])
-        h = mp.mpf(10) ** -15
-        ends = [_co_mp([*(u + s * h * d for u, d in zip(a[:3], v)), *a[3:5]])[1] * v for s in (1, -1)]
-        return [*F, *(J * v), *(J.T * w), (w.T * (ends[0] - ends[1]))[0] / h]
-
-    J = np.array(_co_mp([*map(mp.mpf, point.u), *map(mp.mpf, point.value)])[1].tolist(), dtype=float)
-    left, _, right = np.linalg.svd(J)
-    v, w = right[-1] / right[-1, 0], left[:, -1] / left[0, -1]
-    with mp.workdps(40):
-        exact = mp.findroot(system, [*point.u, *point.value, *v[1:], *w[1:]], tol=1e-50, solver="mdnewton")
-        assert [float(exact[3]), float(exact[4])] == pytest.approx(point.value, abs=1e-11)
-    # where BifurcationKit's test detects it, to three digits
-    assert point.value[1] == pytest.approx(0.35665351, rel=2e-3)
-    assert len({locus.kind for locus in oxidation.loci.values()}) == 2
-    assert len(oxidation.loci) == 2  # every fold is on one curve, every Hopf point on another
-
-
-def test_lorenz_84_zero_hopf():
-    def flow(u, p):
-        x, y, z = u
-        return np.array(
-            [-y * y - z * z - 0.25 * x + 0.25 * p.F, x * y - 4 * x * z - y + p.G, 4 * x * y + x * z - z]
-        )
-
-    problem = cv.AlgebraicProblem(
-        flow, [1.0, 0.05, 0.0], {"F": 1.0, "G": 0.5}, parameter="F", spectrum="flow"
-    )
-    _, found = points(problem, "F", (0.5, 6.0), "G", (0.0, 3.0), "HB1")
-    kind, F, G = nearest(found, "zero-hopf", (1.68, 1.68))
-
-    def system(x, y, z, F, G):
-        J = mp.matrix([[-0.25, -2 * y, -2 * z], [y - 4 * z, x - 1, -4 * x], [4 * y + z, 4 * x, x - 1]])
-        trace = J[0, 0] + J[1, 1] + J[2, 2]  # eigenvalues 0, +-i omega: determinant and trace vanish
-        return [
-            -y * y - z * z - x / 4 + F / 4,
-            x * y - 4 * x * z - y + G,
-            4 * x * y + x * z - z,
-            mp.det(J),
-            trace,
-        ]
-
-    with mp.workdps(30):
-        x0 = mp.mpf(9) / 8  # the trace is 2 x - 2.25
-        exact = mp.findroot(system, [x0, mp.mpf("-0.03"), mp.mpf("0.37"), mp.mpf(F), mp.mpf(G)])
-        assert (float(exact[3]), float(exact[4])) == pytest.approx((F, G), abs=1e-10)
 
 
 def test_first_lyapunov_coefficients_against_closed_forms():

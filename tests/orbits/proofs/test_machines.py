@@ -8,7 +8,6 @@ import pytest
 from mpmath import iv, mp, mpf
 
 from orbits import Absorber, Cavity
-from orbits.machines.physical.machine import physical
 from orbits.proofs import checker
 from orbits.proofs.balls import ball, precision
 from orbits.proofs.jets import Jet, power
@@ -26,61 +25,6 @@ def verified(proof):
 
 def inside(pair, number):
     return abs(mpf(pair[0]) - number) <= mpf(pair[1]) + mpf(10) ** -44
-
-
-def test_a_half_width_that_moves_gravity_and_forcing_at_once():
-    """The symmetry breaking against the half-width is the one against gravity and forcing in proportion."""
-    machine = physical(
-        "coupled",
-        {
-            "oscillator_mass": "3.8 kg", "natural_frequency": "8 Hz", "absorber_mass": "32 g", "half_width": "18.4 mm",
-            "damping_ratio": 0.007, "restitution": 0.6, "friction": 0.1, "base_amplitude": "0.3 mm", "frequency": "7.9 Hz",
-        },
-    )  # fmt: skip
-    orbit = machine.symmetric_orbit()
-    problem = orbit.problem("half_width", symmetric=True)
-
-    # bisection on the half map's multiplier, by floating-point orbits of the dimensionless machine
-    def least(width):
-        moved = machine.with_(half_width=width).symmetric_orbit()
-        return min(m.real for m in moved.half_multipliers)
-
-    low, high = 18.0, 19.0
-    assert (least(low) + 1) * (least(high) + 1) < 0
-    for _ in range(30):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if (least(middle) + 1) * (least(low) + 1) > 0 else (low, middle)
-    near = machine.with_(half_width=low).symmetric_orbit()
-    proof = problem.prove(
-        "symmetry-breaking", near.problem("half_width", symmetric=True).reduce(near.nodes), low
-    )
-    assert proof.existence and proof.radius < 1e-10 and abs(float(proof.value[0]) - low) < 1e-6
-    moved = {name: entry[2] for name, entry in proof.certificate()["parameters"].items() if entry[2] != "0"}
-    assert moved == {"gravity": "-1", "forcing": "-1"}
-    assert verified(proof)
-
-
-def test_a_level_cavity_with_equal_sides_is_proved_on_half_its_word():
-    level = Cavity(**STRONG)
-    orbit = level.orbit("LR", 1, guess=Absorber(**STRONG).symmetric_orbit(amplitude=0.6).nodes, amplitude=0.6)
-    proof = orbit.prove()
-    assert proof.motif.half and proof.existence and proof.real and proof.stable
-    assert verified(proof)
-    with mp.workdps(45):  # the closed form of the symmetry breaking
-        r = mpf("0.76")
-        R, H = (1 - r) / (1 + r), mp.pi / 2 * mpf("1.006") * mpf("0.5") * mpf("0.211")
-        beta = (2 * mp.pi - 4 * R * H) / (mp.pi**2 - 4)
-        expected = mp.sqrt((1 - mp.pi * beta / 2) ** 2 + (R * beta + H) ** 2)
-        near = level.orbit("LR", 1, guess=orbit.nodes, amplitude=float(expected))
-        problem = near.problem("amplitude", symmetric=True)
-        point = problem.prove("symmetry-breaking", problem.reduce(near.nodes), float(expected))
-        assert point.motif.half and inside(point.value, expected)
-    assert verified(point)
-    wrong = json.loads(json.dumps(point.certificate()))
-    wrong["parameters"]["friction_left"] = ["0.5000001", "0", "0"]  # no mirror image any more
-    with pytest.raises(checker.Refused, match="mirror"):
-        checker.check(wrong)
-    assert not orbit.prove(friction_left="0.5000001").motif.half
 
 
 def test_a_slope_has_no_half_words():

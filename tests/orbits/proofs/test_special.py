@@ -76,7 +76,7 @@ def test_pure_sliding_begins_where_den_hartog_says():
     assert proof.real is True
 
 
-# roots of a brute-force return map in 40 digits: tests/paper/test_windows.py
+# roots of a brute-force return map in 40 digits, in ten of them
 THREE = {"fold": "1.0037342178", "period-doubling": "1.4125623672", "velocity-graze": "1.9824794254"}
 
 
@@ -105,17 +105,6 @@ def test_a_neimark_sacker_point_of_the_coupled_machine():
         for side in (-1e-6, 1e-6)
     ]
     assert min(sizes) < 1.0 < max(sizes)
-
-
-def test_flights_that_have_shrunk_to_nothing_are_left_out():
-    motif = Motif("absorber", tuple("LtsuR"), (-1, 1, 0, 1, 1), 1, False, False)
-    nodes = np.array([[0.0, 1.0], [1.0, 0.2], [1.0, 0.2], [1.5, 0.2], [3.0, -1.0]])
-    room = {1: 1.0, -1: 1.0}
-    shorter, rest, margin = merged(motif, nodes, ("stick", 2), room)
-    assert (shorter.events, shorter.modes, margin) == (tuple("LsuR"), (-1, 0, 1, 1), ("stick", 1))
-    assert rest[:, 0].tolist() == [0.0, 1.0, 1.5, 3.0]
-    assert merged(motif, nodes + np.array([[0], [0], [0.1], [0.1], [0.1]]), ("stick", 2), room) is None
-    assert merged(motif, nodes, ("stick", 4), room) is None  # a margin elsewhere
 
 
 def test_a_stick_slip_motion_that_shrinks_to_the_stuck_one():
@@ -155,26 +144,6 @@ def test_the_bouncing_ball_doubles_where_its_closed_form_says():
         # the slope is the decimal next to pi/2, 6e-17 from it
         assert proof.existence and proof.real and abs(value(proof)[0] - mp.sqrt(square)) < mpf("1e-15")
     assert verified(proof)
-
-
-def test_what_else_shrinks_to_nothing():
-    """A stick of no time is a turn or nothing, an impact without speed a turn at the wall; the word may be begun elsewhere."""
-    room = {1: 1.0, -1: 0.9}
-    motif = Motif("cavity", tuple("LsuR"), (-1, 0, 1, 1), 1, False, False)
-    nodes = np.array([[0.0, 1.0], [1.5, 0.2], [1.5, 0.2], [3.0, -1.0]])
-    turning, rest, margin = merged(motif, nodes, ("duration", 1), room)
-    assert (turning.events, turning.modes, margin) == (tuple("LtR"), (-1, 1, 1), ("turn", 1))
-    onwards = Motif("cavity", tuple("RLsu"), (1, -1, 0, -1), 1, False, False)
-    moved = np.array([[-1.0, -1.0], [0.0, 1.0], [1.5, 0.2], [1.5, 0.2]])
-    gliding, rest, margin = merged(onwards, moved, ("duration", 2), room)
-    assert gliding.events[margin[1]] == "L" and margin[0] == "flight" and len(gliding) == 2
-    motif = Motif("cavity", tuple("LR"), (-1, 1), 1, False, False)
-    grazing, rest, margin = merged(motif, np.array([[0.0, 1.0], [3.0, -1.0]]), ("approach", 1), room)
-    assert (grazing.events, rest[1, 1], margin) == (tuple("Lt"), -0.9, ("wall", 1))
-    free = Motif("cavity", tuple("LRL"), (-1, 1, -1), 1, False, True)
-    rest = np.array([[0.0, 1.0], [1.0, 0.0], [3.0, -1.0]])
-    touching, _, margin = merged(free, rest, ("approach", 1), room)
-    assert (touching.events, margin) == (tuple("LL"), ("reversal", 0))
 
 
 def test_an_ordinary_orbit_is_no_special_point(graph):
@@ -248,14 +217,6 @@ def test_a_stretch_goes_up_to_its_special_points(graph):
     short["claims"]["stable"] = True
     with pytest.raises(Refused):
         check(short)
-
-
-def test_a_piece_across_a_change_of_stability_is_not_proved_stable(graph):
-    problem = graph["B1"].problem
-    proof = problem.prove_branch(graph["B1"].points, graph["B1"].values, within=(0.70, 0.75))
-    for piece in proof.pieces:
-        if piece.stable is not False:  # the branch above the fold
-            assert not piece.existence and float(piece.covered[1]) < 0.7268358222815889
 
 
 # ------------------------------------------------------------------ the errata

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -277,57 +276,3 @@ def test_response_curves_hold_every_equilibrium_and_their_own_folds():
     assert sorted(s.detuning for s in folds) == pytest.approx(sorted(curve.detuning[turns + 1]), abs=1e-4)
     hopf = [p.state for p in ms.special_points(curve) if p.kind == "hopf"]
     assert all(abs(v.real) < 1e-8 and abs(v.imag) > 0 for s in hopf for v in s.eigenvalues)
-
-
-@settings(max_examples=20, deadline=None)
-@given(G=st.floats(0.8, 4), mu=st.floats(0, 1), r=st.floats(0.3, 0.97), lam=st.floats(0.1, 3))
-def test_eigenvalues_cross_the_axis_at_one_velocity_on_the_repelling_part(G, mu, r, lam):
-    """Numerical eigenvalues along the response: real parts of a pair change sign at the closed-form B and
-    nowhere else."""
-    flow = ms.SlowFlow(forcing=G, friction=mu, restitution=r, damping=lam)
-    b_hopf = ms.hopf_velocity(flow)
-    assert b_hopf <= flow.activation.velocity + 1e-12
-    for curve in ms.frequency_response(flow, points=1500):
-        total = np.sum(curve.eigenvalues.real, axis=1)
-        usual = np.abs(curve.position - flow.activation.velocity) > 1e-3
-        attracting = usual & (curve.position > flow.activation.velocity)
-        assert np.all(total[attracting] < 0)
-        repelling = usual & (curve.position < flow.activation.velocity)
-        assert np.array_equal(total[repelling] > 0, curve.position[repelling] > b_hopf)
-
-
-@pytest.mark.parametrize(
-    ("restitution", "turns", "root", "far_away", "seen"),
-    [(0.76, (50.0, 100.0), 64.1, -6e-6, (0.4, 1.0)), (0.5, (5.0, 10.0), 9.4, -3.4e-5, (0.6, 1.0))],
-)
-def test_friction_lends_little_damping_at_large_amplitudes(restitution, turns, root, far_away, seen):
-    """The right-hand side of the slow flow on the manifold, in 50 digits: the share of friction times C has a limit, and is negative there.
-
-    As `examples/ERRATA.md` says: up to C = 1 it falls about like 1/C^2, within 11 % of what it is at 1.
-    """
-    with mpmath.workdps(50):
-        R = (1 - mpmath.mpf(restitution)) / (1 + mpmath.mpf(restitution))
-        eps, damping, mu_g = mpmath.mpf("0.006"), mpmath.mpf("0.9"), mpmath.mpf("0.5") * mpmath.mpf("0.211")
-
-        def ratio(C, h):
-            a, b, c = mpmath.pi**2 / 4 + R**2, 2 * R * h - mpmath.pi, 1 + h**2 - C**2
-            B = (-b + mpmath.sqrt(b * b - 4 * a * c)) / (2 * a)
-            kappa = 8 / mpmath.pi**2
-            rate = -damping * C**2 - 4 / mpmath.pi * B * (R * B + h) - kappa * h * (1 - mpmath.pi * B / 2)
-            return -eps * rate / (2 * C**2)
-
-        h = mpmath.pi / 2 * mu_g
-        limit = -4 / mpmath.pi * eps * R**2 * h / (mpmath.pi**2 / 4 + R**2) ** mpmath.mpf("1.5")
-        far = mpmath.mpf(10) ** 7
-        assert float((ratio(far, h) - ratio(far, 0)) * far) == pytest.approx(float(limit), rel=1e-4)
-        assert float(limit) == pytest.approx(far_away, rel=5e-3)
-        changes = mpmath.findroot(lambda C: ratio(C, h) - ratio(C, 0), turns)
-        assert float(changes) == pytest.approx(root, abs=0.05)
-        flat = [float((ratio(C, h) - ratio(C, 0)) * C * C) for C in np.linspace(*seen, 7)]
-        assert flat == pytest.approx([flat[-1]] * 7, rel=0.11)
-        shares = [float(ratio(C, h) - ratio(C, 0)) for C in turns]
-        assert shares[0] > 0.0 > shares[1]
-        flows = [ms.SlowFlow(restitution=restitution, friction=mu) for mu in (0.5, 0.0)]
-        for C, share in zip(turns, shares):
-            ours = [float(ms.damping_ratio(flow, C)) for flow in flows]
-            assert ours[0] - ours[1] == pytest.approx(share, abs=1e-9)

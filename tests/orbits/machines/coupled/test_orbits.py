@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, romb
 
-from orbits.attractors import find_attractor
 from orbits.machines.absorber.closed_forms import symmetric_square
-from orbits.machines.coupled.closed_forms import response, stuck_frequencies, stuck_response, symmetric_nodes
+from orbits.machines.coupled.closed_forms import response, stuck_frequencies, stuck_response
 from orbits.machines.coupled.segments import shapes
-from orbits.multiple_scales import SlowFlow, equilibria
 from tests.machines import COUPLED
 from tests.orbits.machines.coupled.motion import path
 
@@ -31,25 +29,6 @@ def test_closed_sliding_orbits_solve_the_maps(frequency):
     assert orbit.word.text == "tt"
     assert orbit.real and orbit.stable
     assert len(orbit.multipliers) == 3  # the fourth is the shift of the absorber, exactly +1
-
-
-def test_small_mass_ratio_recovers_the_slow_flow_at_first_order():
-    """sigma and G fixed, eps -> 0: C^2 tends to the equilibrium of the multiple-scales flow, with an error of order eps."""
-    sigma, forcing, damping = -2.58, 2.47, 0.9
-    flow = SlowFlow(
-        forcing=forcing, damping=damping, restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=1e-12
-    )
-    limits = sorted(float(e.amplitude) ** 2 for e in equilibria(flow, sigma) if e.manifold == "impacting")
-    sizes = 0.006 / 2.0 ** np.arange(6)
-    errors = []
-    for eps in sizes:
-        machine = COUPLED.changed(mass_ratio=float(eps), frequency=1.0 + sigma * float(eps), damping=damping)
-        orbits = [machine.symmetric_orbit(fast=fast) for fast in (True, False)]
-        found = sorted(orbit.measure("C2") for orbit in orbits)
-        errors.append(np.abs(np.array(found) - limits))
-    orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-    assert np.all(np.abs(orders[-1] - 1.0) < 0.02)
-    assert np.all(errors[-1] < 1e-3)
 
 
 def test_small_mass_ratio_recovers_the_reduced_machine():
@@ -175,15 +154,6 @@ def test_a_flight_s_margin_is_its_slowest_moment():
                 assert min(abs(inner.min() - value) for value in flights) < 1e-6
 
 
-def test_excitation_through_the_damper_is_a_small_term():
-    """Its effect on the response is of order eps lambda."""
-    exact = COUPLED.symmetric_orbit(frequency=0.985)
-    truncated = COUPLED.changed(excitation="truncated").symmetric_orbit(frequency=0.985)
-    gap = abs(exact.measure("C2") - truncated.measure("C2"))
-    assert 0.0 < gap < 0.05
-    assert len(symmetric_nodes(COUPLED.changed(excitation=0.5).vector())) == 2
-
-
 def test_the_mirror_image_is_the_same_orbit():
     orbit = COUPLED.orbit("LRtR", frequency=1.0)
     image = orbit.mirror()
@@ -237,61 +207,3 @@ def test_the_damper_loses_by_the_motion_between_base_and_oscillator(word, excita
         assert found["input_work"] == pytest.approx(work, rel=1e-5)
     else:  # its equation is that of a machine on solid ground, driven by a force
         assert found["damping_loss"] == pytest.approx(ground, rel=1e-5)
-
-
-def test_the_damper_of_a_stuck_absorber():
-    """The joined masses as a linear oscillator on a moving base, by quadrature of their closed form."""
-    orbit = COUPLED.changed(forcing=0.2, frequency=0.97, damping=1.3).orbit("")
-    eps, lam, G, Omega = 0.006, 1.3, 0.2, 0.97
-    phase = np.linspace(0.0, 2.0 * np.pi, 4001)
-    drag = 1j * eps * lam * Omega
-    response = eps * G * (1.0 + drag) / (1.0 - (1.0 + eps) * Omega**2 + drag)  # of e = eps G Im exp(i Psi)
-    rate = np.imag(1j * Omega * response * np.exp(1j * phase))
-    base = eps * G * Omega * np.cos(phase)
-    loss = lam / Omega * np.trapezoid((rate - base) ** 2, phase)
-    assert orbit.measure("damping_loss") == pytest.approx(loss, rel=1e-9)
-    assert orbit.measure("input_work") == pytest.approx(loss, rel=1e-9)
-
-
-def test_orbits_that_belong_to_the_steady_states_of_the_slow_flow():
-    flow = SlowFlow(
-        forcing=2.47, damping=1.0, restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006
-    )
-    for state in equilibria(flow, -2.58):
-        orbit = COUPLED.orbit_near(state)
-        assert orbit.params[1] == pytest.approx(1.0 - 2.58 * 0.006)
-        assert orbit.residual < 1e-10
-        assert orbit.word.text == ("LR" if state.manifold == "impacting" else "tt")
-        assert orbit.measure("amplitude") == pytest.approx(state.amplitude, abs=0.03)
-        if state.manifold == "impacting":
-            assert orbit.measure("B") == pytest.approx(state.velocity, abs=0.03)
-        # v = C sin(Psi + gamma)
-        assert np.exp(1j * orbit.measure("v_phase")) == pytest.approx(np.exp(1j * state.phase), abs=0.1)
-
-
-def test_margins_of_stuck_segments_and_frictionless_flights():
-    """Against fine sampling: a - |v''| where the absorber sticks, 1 - |w| at the extrema of a flight that may reverse."""
-    orbit = COUPLED.orbit("susu", frequency=0.95)
-    a, omega = COUPLED.friction_acceleration(orbit.params), orbit.params[1]
-    points = orbit.sample(40000)
-    stuck = points["segment"] == orbit.word.modes.index(0)
-    push = np.abs(np.gradient(points["v_rate"][stuck], points["phase"][stuck] / omega))[2:-2]
-    inner = push[1:-1][(push[1:-1] > push[:-2]) & (push[1:-1] > push[2:])]
-    found = [m.value for m in orbit.margins if m.kind in ("flight", "hold") or "slip" in m.kind]
-    assert all(value > 0.0 for value in found)
-    assert not inner.size or min(abs(a - inner.max() - value) for value in found) < 1e-5
-
-    machine = COUPLED.changed(friction=0.0, mass_ratio=0.05, restitution=0.923, forcing=2.886)
-    attractor = find_attractor(machine, {"w": 0.3, "v": 0.5}, frequency=1.025)
-    orbit = attractor.orbit
-    assert orbit.word.frictionless and len(orbit.word) > 2
-    flights = [m.value for m in orbit.margins if m.kind == "wall"]
-    points = orbit.sample(60000)
-    seen = 0
-    for segment in range(len(orbit.word)):
-        w = points["w"][points["segment"] == segment]
-        inner = w[1:-1][(w[1:-1] - w[:-2]) * (w[1:-1] - w[2:]) > 0.0]
-        if inner.size:
-            seen += 1
-            assert min(abs(1.0 - np.abs(inner).max() - value) for value in flights) < 1e-6
-    assert seen
