@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from typing import NamedTuple
 
 import numpy as np
@@ -53,40 +55,57 @@ class Linearisation:
         self.line, self.step, self.tangent = (np.zeros(self.size + 1) for _ in range(3))
         self.residual = self.slope = np.zeros(self.size)
         self.point: tuple[np.ndarray, float] = (np.zeros(self.size), 0.0)
+        self.overwritten = True  # F and F_p, by sides of a solve
+        self.used_up = True  # all of it, by an inspection or a flip
 
     def at(self, u: np.ndarray, p: float) -> float:
         """Linearise; returns the largest residual. ``residual`` and ``slope`` are then copies of F and F_p."""
-        here = np.array(u, dtype=float)
-        largest = float(self.kernels.linearise(self.data, here, float(p), self.work))
-        self.residual, self.slope, self.point = self.F.copy(), self.Q.copy(), (here, float(p))
+        self.point = np.array(u, dtype=float), float(p)
+        largest = self._linearise()
+        self.residual, self.slope = self.F.copy(), self.Q.copy()
         return largest
 
-    def again(self) -> None:
-        """Linearise at the same point once more, after something that uses the linearisation up."""
-        self.kernels.linearise(self.data, self.point[0], self.point[1], self.work)
+    def _linearise(self) -> float:
+        self.overwritten = self.used_up = False
+        return float(self.kernels.linearise(self.data, self.point[0], self.point[1], self.work))
+
+    def _matrix(self) -> None:
+        """Linearise at the same point once more if F_u has been used up; its F and F_p are about to be overwritten."""
+        if self.used_up:
+            self._linearise()
+        self.overwritten = True
 
     def solve(self, side: np.ndarray, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
         """(x, s) with F_u x + b s = side and c.x = 0."""
+        self._matrix()
         self.F[:], self.Q[:], self.line[:-1], self.line[-1] = -side, b, c, 0.0
         self.kernels.bordered(self.data, self.work, self.line, 0.0, self.step, self.tangent)
         return self.step[:-1].copy(), float(self.step[-1])
 
     def null(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
         """(v, g) with F_u v + b g = 0 and c.v = 1."""
+        self._matrix()
         self.F[:], self.Q[:], self.line[:-1], self.line[-1] = 0.0, b, c, 0.0
         self.kernels.bordered(self.data, self.work, self.line, 0.0, self.step, self.tangent)
         return self.tangent[:-1].copy(), float(self.tangent[-1])
 
     def left(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
         """(w, g) with F_u^T w + c g = 0 and b.w = 1."""
+        self._matrix()
         self.kernels.transpose(self.data, self.work, np.ascontiguousarray(c), self.other)
         self.other_F[:], self.line[:-1], self.line[-1] = 0.0, b, 0.0
         self.kernels.bordered(self.data, self.other, self.line, 0.0, self.step, self.tangent)
         return self.tangent[:-1].copy(), float(self.tangent[-1])
 
-    def flip(self, sign: float) -> None:
-        """Turn to perturbations that change sign over the period, and back."""
-        self.kernels.flip(self.data, self.work, sign)
+    @contextmanager
+    def flipped(self) -> Iterator[None]:
+        """Within it F_u is that of perturbations that change sign over the period."""
+        self._matrix()
+        self.kernels.flip(self.data, self.work, -1.0)
+        try:
+            yield
+        finally:
+            self.used_up = True
 
     def null_vectors(self, flipped: bool = False, near: Null | None = None) -> Null:
         """The null vectors of the matrix, or of the flipped one; for a regular one those of its smallest singular values.
@@ -100,15 +119,12 @@ class Linearisation:
             b, c = self.rows * w, v / self.units
         else:
             b, c = near.column, near.row
-        if flipped:
-            self.flip(-1.0)
-        for _ in range(sweeps):
-            c = self.border_of(self.null(b, c)[0])
-            w = self.left(b, c)[0] * self.rows
-            b = self.rows * (w / np.linalg.norm(w))
-        v, g = self.null(b, c)
-        if flipped:
-            self.again()
+        with self.flipped() if flipped else nullcontext():
+            for _ in range(sweeps):
+                c = self.border_of(self.null(b, c)[0])
+                w = self.left(b, c)[0] * self.rows
+                b = self.rows * (w / np.linalg.norm(w))
+            v, g = self.null(b, c)
         return Null(v / np.linalg.norm(v / self.units), b, c, g)
 
     def border_of(self, direction: np.ndarray) -> np.ndarray:
@@ -119,10 +135,11 @@ class Linearisation:
     def row(self) -> np.ndarray:
         """Multipliers as (re, im) pairs, then margins."""
         row = np.zeros(2 * int(self.problem.n_multipliers) + int(self.problem.n_margins))
-        self.again()
+        if self.overwritten or self.used_up:
+            self._linearise()
         with HELD:
             self.kernels.inspect(self.data, self.point[0], self.point[1], self.work, row)
-        self.again()
+        self.used_up = True
         return row
 
     def spectrum(self) -> NDArray[np.complex128]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from typing import NamedTuple
 
 import numpy as np
@@ -43,17 +44,24 @@ class Plane:
         # problems of its own: a trace changes the parameters of the locus in place
         self.first = Linearisation(self.problem.against(locus.inner))
         self.second = Linearisation(self.first.problem.against(locus.over))
-        self.place = Place(np.zeros(locus.size), 0.0, 0.0)
+        self.place, self.residual = Place(np.zeros(locus.size), 0.0, 0.0), np.inf
         self._row: np.ndarray | None = None
 
     def at(self, place: Place) -> float:
-        """Linearise in both parameters; returns the largest residual."""
-        assign = self.first.kernels.assign
-        assign(self.first.data, self.second.data, float(place.q))
-        assign(self.second.data, self.first.data, float(place.p))
-        self.place, self._row = place, None
-        self.second.at(place.u, place.q)
-        return self.first.at(place.u, place.p)
+        """Linearise in the first parameter, unless the plane is there already; returns the largest residual."""
+        if place is not self.place:
+            self.first.kernels.assign(self.first.data, self.second.data, float(place.q))
+            self.place, self._row = place, None
+            self.residual = self.first.at(place.u, place.p)
+        return self.residual
+
+    @property
+    def slope_across(self) -> np.ndarray:
+        """F_q, at the place."""
+        u, p, q = self.place
+        self.second.kernels.assign(self.second.data, self.first.data, float(p))
+        self.second.at(u, q)
+        return self.second.slope
 
     @property
     def row(self) -> np.ndarray:
@@ -93,12 +101,8 @@ class Plane:
 
     def singular_test(self, b: np.ndarray, c: np.ndarray, flipped: bool = False) -> float:
         """g of F_u, or of the flipped one, with given borders."""
-        if not flipped:
+        with self.first.flipped() if flipped else nullcontext():
             return self.first.null(b, c)[1]
-        self.first.flip(-1.0)
-        value = self.first.null(b, c)[1]
-        self.first.again()
-        return value
 
     def unfolding_test(self, b: np.ndarray, c: np.ndarray) -> float:
         """The second condition of a branch point: the part of F_p that F_u does not reach."""
@@ -135,10 +139,10 @@ class Plane:
         for _ in range(ITERATIONS):
             if not self.at(Place(u, p, q)) < 1e300:
                 return None
-            line, second = self.first, self.second
+            line = self.first
             null = line.null_vectors()
             b, c = null.column, null.row
-            sides = (-line.residual, -line.slope, -second.slope)
+            sides = (-line.residual, -line.slope, -self.slope_across)
             solved = [line.solve(side, b, c) for side in sides]
             v, g = line.null(b, c)
             directions = [np.append(solved[0][0], [0.0, 0.0]), np.append(solved[1][0], [1.0, 0.0])]

@@ -40,7 +40,6 @@ def branch_direction(plane: Plane, null: Null) -> np.ndarray:
     line = plane.first
     x, s = line.solve(-line.slope, null.column, null.row)
     v, g = line.null(null.column, null.row)
-    line.again()
     return np.append(g * x - s * v, g)
 
 
