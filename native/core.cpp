@@ -5,7 +5,7 @@
 #include "loci.hpp"
 #include "math.hpp"
 #include "record.hpp"
-#include "scan.hpp"
+#include "march.hpp"
 #include "simulation.hpp"
 
 #if defined(__x86_64__)
@@ -66,11 +66,6 @@ EXPORT whole core_points(continuation::Frame* frame, whole what, const double* c
                          const double* border, const double* along, whole max_sweeps, double* u, double* tangents, double* rows, double* numbers,
                          const continuation::Aim* aim) {
     return continuation::points(*frame, what, chord, start, length, places, count, border, along, max_sweeps, {u, tangents, rows, numbers}, *aim);
-}
-
-EXPORT void core_mark_segments(const continuation::Scanned* chunk, whole first_margin, whole kind, whole real, double flat, double past,
-                               double of_unknowns, double of_parameter, const continuation::Symmetries* symmetries, whole* flags, double* smallest) {
-    continuation::mark_segments(*chunk, first_margin, kind, real, flat, past, {of_unknowns, of_parameter}, *symmetries, flags, smallest);
 }
 
 // ---- algebra ---------------------------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from ..continuation.aims import Aim
 from ..continuation.corrector import Found
 from ..continuation.engine import Engine, Hit, Solved
 from ..continuation.solved import solved_point, solved_points
-from .multiplier_counts import counts_of
+from .multiplier_counts import counts
 
 FAR = 3.0  # decades between a multiplier and the circle
 
@@ -43,8 +43,8 @@ class Segment:
     @cached_property
     def counts(self) -> tuple[list[int], list[int]]:
         """Multipliers past the circle at both ends: real ones past 1, past -1, and complex pairs."""
-        engine, ends = self.engine, (self.a, self.b)
-        before, after = (counts_of(engine, end) for end in ends)
+        engine = self.engine
+        before, after = counts(engine, np.array([self.a.row, self.b.row])).tolist()
         return (before, before) if engine.adaptive and self._far_from_circle() else (before, after)
 
     def _far_from_circle(self) -> bool:

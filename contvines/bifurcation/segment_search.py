@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
+from ..continuation.loop import MARGIN
 from .consistency import unaccounted, unresolved
-from .dips import below_zero
-from .first_border import find_border, rounding
+from .evidence import Evidence, evidence, parabola_dips
+from .first_border import find_border, first_zero, rounding
 from .kind import Kind, Test
 from .kinds import BY_NAME, KINDS
 from .locate import locate, locate_singular
@@ -23,8 +24,13 @@ from .singular import singular
 from .symmetry_test import SymmetryTest
 from .user_functions import own_tests
 
-CLEAR = 1e-4  # distance from a meeting (in the metric) within which tangents and multipliers are those of its singular equations
-SAME = 1e-4  # part of a segment: what is closer is one
+PLACES = np.arange(1, 8) / 8.0  # of a segment at which its inside is looked at
+NARROWER, ROOF = (
+    3,
+    12,
+)  # times that a distance is looked at nearer, and the smallest margin, which may be a roof
+SHOWN = 1e-6  # margins that are certainly positive: where a doubled branch passes through the border of its root, as one round gets what
+# another one loses, equations are singular, and margins are known to half their digits
 
 
 class SegmentSearch:
@@ -56,22 +62,22 @@ class SegmentSearch:
         self.own = own_tests(engine, kinds, functions or {}, tuple(stops), BY_NAME["user"])
 
     def search(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
-        """The special points of one segment (positions in [0, 1]), those of users' tests apart."""
+        """The special points of one segment (positions in [0, 1])."""
         stop, before = self._stop(segment, real, depth)
         if before is not None:
             return [*before, *stop]
         found = stop
         for kind in self.kinds:
             found = [*found, *self._of_kind(kind, segment, found)]
-        found = _without_turnings(found)
+        found = _without_turnings(found, self.engine.settings.near)
         if not unaccounted(segment, found):
-            return found
+            return [*found, *self._own(segment)]
         middle = segment.at(0.5)
         if middle is None:
-            return found
+            return [*found, *self._own(segment)]
         if depth < self.deepest and segment.length > self.engine.settings.resolution:
             return self.both(segment, 0.5, middle, real, depth + 1)
-        return [*found, unresolved(segment, middle)]
+        return [*found, *self._own(segment), unresolved(segment, middle)]
 
     def _of_kind(self, kind: Kind, segment: Segment, found: Sequence[Located]) -> list[Located]:
         """The special points of a kind: its own search, or the zeros of its test functions that it verifies."""
@@ -111,13 +117,25 @@ class SegmentSearch:
                     found.append(event._replace(position=start + length * event.position))
         return found
 
+    def _own(self, segment: Segment) -> list[Located]:
+        """Zeros of users' tests."""
+        found = []
+        for number, own in enumerate(self.own):
+            if (own.at(segment.a) >= 0.0) != (own.at(segment.b) >= 0.0):
+                event = self.zero(own.kind, segment, Test(own.at, number))
+                if event is not None:
+                    role = Role.STOP if own.kind.ends else Role.SPECIAL
+                    found.append(event._replace(role=role, name=own.name))
+        return found
+
     # ------------------------------------------------------------------ where a branch ends
     def _stop(self, segment: Segment, real: bool, depth: int) -> tuple[list[Located], list[Located] | None]:
         """The border or the meetings at which the branch ends, and the special points before; None where these are not looked for yet."""
-        borders, last = self._borders(segment, real)
-        if borders and depth < self.engine.settings.halvings:
+        engine, borders, last = self.engine, *self._borders(segment, real)
+        settings = engine.settings
+        if borders and depth < settings.halvings:
             # behind a border multipliers may come back from infinity, and what they say of both ends together is nothing
-            short = borders[0].position - self.engine.settings.close / segment.length
+            short = borders[0].position - settings.close / segment.length
             if not short > 0.0:
                 return borders, []
             if last is not None:
@@ -126,7 +144,7 @@ class SegmentSearch:
         if events:
             # behind a meeting lies the image of what is before it, so that what was passed before it is passed again
             first = min(e.position for e in events)
-            short = first - max(self.engine.settings.aside * first, CLEAR / segment.length)
+            short = first - max(settings.aside * first, settings.near / segment.length)
             if not short > 0.0:
                 return events, []
             last = segment.at(short)
@@ -169,29 +187,102 @@ class SegmentSearch:
                 events.append(Located.at(root, kind, index, Role.MEETING))
         return events
 
-    # ------------------------------------------------------------------ tests of users
-    def own_points(
-        self, number: int, segment: Segment, ends: Sequence[float], dips: bool = False
-    ) -> list[Located]:
-        """Zeros of one of the users' tests on a segment at whose ends it has these values; two of them where it dips."""
-        own, (one, other) = self.own[number], ends
-        parts = [(0.0, segment, 1.0)]
-        if (one >= 0.0) == (other >= 0.0):
-            side = 1.0 if one >= 0.0 else -1.0
-            inside = below_zero(segment, lambda point: side * own.at(point)) if dips else None
-            if inside is None:
-                return []
-            s, middle = inside
-            halves = Segment(self.engine, segment.a, middle), Segment(self.engine, middle, segment.b)
-            parts = [(0.0, halves[0], s), (s, halves[1], 1.0 - s)]
-        role = Role.STOP if own.kind.ends else Role.SPECIAL
-        found = []
-        for start, part, length in parts:
-            event = self.zero(own.kind, part, Test(own.at, number))
-            if event is not None:
-                position = start + length * event.position
-                found.append(event._replace(position=position, role=role, name=own.name))
-        return found
+    # ------------------------------------------------------------------ what the ends of a segment do not tell
+    def told(self, points: Sequence[Solved]) -> Evidence:
+        """What some points tell."""
+        own = np.array([[own.at(point) for own in self.own] for point in points])
+        return evidence(
+            self.engine,
+            np.array([point.row for point in points]),
+            np.array([point.tangent[-1] for point in points]),
+            np.array([point.sign for point in points]),
+            self.engine.upright(points[0].p),
+            own.reshape(len(points), len(self.own)),
+        )
+
+    def inside(
+        self, segment: Segment, real: bool, columns: Sequence[int] = ()
+    ) -> tuple[float, Solved] | None:
+        """A point inside a segment that tells what neither end tells, with its place, or None.
+
+        A few places are looked at, then, for each suspicious distance (columns of `distances`), others near the one at which it is smallest: of
+        the smallest margin, which may be a roof, to the end, of others while the parabola through three of them passes zero.
+        """
+        if not real and (window := self.passed(segment)) is not None:
+            return window
+        ends = self.told([segment.a, segment.b])
+        smallest = ends.first_margin - 1
+
+        def look(low: float, high: float) -> tuple[list[tuple[float, Solved]], np.ndarray, np.ndarray]:
+            """Points between two places, their distances, and which of them tell something new."""
+            places = low + (high - low) * PLACES
+            found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
+            if not found:
+                return found, ends.distances[:0], np.zeros(0, dtype=bool)
+            seen, (one, other) = self.told([point for _, point in found]), ends.sides
+            new = ((seen.sides - one) * (seen.sides - other) * seen.sides * one * other != 0).any(axis=1)
+            if real and not ends.outside.any():
+                new |= seen.outside
+            elif not real and ends.outside.all():
+                new |= seen.distances[:, smallest] > SHOWN
+            return found, seen.distances, new
+
+        first = look(0.0, 1.0)
+        for column in [None, *columns]:
+            (found, distances, new), low, high, ends_here = first, 0.0, 1.0, ends.distances[:, column]
+            for _ in range(ROOF if column == smallest else NARROWER):
+                if new.any():
+                    return found[int(new.argmax())]
+                if column is None or not found:
+                    break
+                values = np.array([ends_here[0], *distances[:, column], ends_here[1]])
+                around = np.array([low, *(s for s, _ in found), high])
+                k = int(np.nan_to_num(np.abs(values[1:-1]), nan=np.inf).argmin()) + 1
+                three, gaps = values[k - 1 : k + 2], np.diff(around[k - 1 : k + 2])
+                if column != smallest and not parabola_dips(*(three * np.sign(three[0])), *gaps):
+                    break
+                low, high, ends_here = around[k - 1], around[k + 1], three[::2]
+                found, distances, new = look(low, high)
+        return None
+
+    def passed(self, segment: Segment) -> tuple[float, Solved] | None:
+        """A point of a virtual segment at which all margins are positive, between where the first ones come back and others are lost."""
+        engine = self.engine
+        below = [engine.margins(end.row) < MARGIN for end in (segment.a, segment.b)]
+        if not (below[0].any() and below[1].any()) or (below[0] & below[1]).any():
+            return None
+        begins, ends = (first_zero(segment, np.flatnonzero(which), False) for which in below)
+        if begins is None or ends is None or not begins.position < ends.position:
+            return None
+        middle = 0.5 * (begins.position + ends.position)
+        point = segment.at(middle)
+        return None if point is None or float(engine.smallest_margin(point.row)) < SHOWN else (middle, point)
+
+    def before_border(self, segment: Segment, border: Located) -> tuple[float, Solved] | None:
+        """A point up to a border where another margin is negative, though it is positive at both ends, or None."""
+        engine, place = self.engine, border.position
+        if not 0.0 < place < 1.0:
+            return None
+        left, middle, right = (engine.margins(point.row) for point in (segment.a, border.point, segment.b))
+        if (middle < MARGIN).any():  # one of a flight, say, that is over before the segment is
+            return place, border.point
+        rows, found = segment.rows(place * PLACES)
+        below = np.flatnonzero(found & (engine.smallest_margin(rows) < MARGIN))
+        for share in PLACES[below].tolist():
+            point = segment.at(share * place)
+            if point is not None:
+                return share * place, point
+        parts = place * segment.length, (1.0 - place) * segment.length
+        columns = np.flatnonzero(parabola_dips(left - MARGIN, middle - MARGIN, right - MARGIN, *parts))
+        if not len(columns):
+            return None
+        first = 5 + len(self.own)
+        inside = self.inside(Segment(engine, segment.a, border.point), True, (first + columns).tolist())
+        if inside is None or not engine.smallest_margin(inside[1].row) < MARGIN:
+            return None
+        # measured along the chord of the whole segment
+        gap = engine.join(inside[1].u, inside[1].p) - segment.za
+        return float(segment.border @ gap) / segment.length, inside[1]
 
     # ------------------------------------------------------------------ parts of segments
     def before(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
@@ -207,7 +298,7 @@ class SegmentSearch:
         ]
 
 
-def _without_turnings(found: list[Located]) -> list[Located]:
+def _without_turnings(found: list[Located], near: float) -> list[Located]:
     """Without folds at branch points of the segment: a side branch may turn where it meets the other one."""
     points = [e.position for e in found if e.kind == "branch-point"]
-    return [e for e in found if e.kind != "fold" or not any(abs(e.position - s) <= SAME for s in points)]
+    return [e for e in found if e.kind != "fold" or not any(abs(e.position - s) <= near for s in points)]

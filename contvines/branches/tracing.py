@@ -8,7 +8,6 @@ from typing import Any
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Role
-from ..bifurcation.near_symmetric_step import OTHER
 from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
@@ -20,7 +19,10 @@ from .records import pack, unpack
 
 # a branch that has come to an end like this is followed again where its mesh is too coarse
 UNFINISHED = (Status.RUNNING, Status.STEP_TOO_SMALL, Status.BORDER, Status.LEFT_INTERVAL, Status.CREEPING)
-AGAIN = {Role.LEAP: SHORTER, Role.LANDING: OTHER}  # parts of the steps that are traced again
+AGAIN = {
+    Role.LEAP: SHORTER,
+    Role.LANDING: 0.7,
+}  # parts of the steps that are traced again: those that end next to a meeting, and their successors, end elsewhere
 
 
 def trace_half(
@@ -80,9 +82,8 @@ def trace_half(
             half.status = Status.COARSE
             return half
         known = journal.recall(name)
-        scan = detector.scan(chunk, real)
         if known is None:
-            events = detector.look(chunk, scan, real)
+            events = detector.look(chunk, real)
             if len(chunk) > 1 and not isinstance(journal, NullJournal):
                 journal.record(name, pack(events, engine))
         else:
@@ -107,7 +108,7 @@ def trace_half(
             chunk.values,
             chunk.tangents,
             chunk.rows[:, : 2 * engine.m].copy(),  # the loop writes its next rows to the same place
-            scan.smallest,
+            engine.smallest_margin(chunk.rows),
         )
         here, total = 1, len(half)  # the first point is the last one of the chunk before
         for event in events:

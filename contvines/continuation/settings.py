@@ -24,6 +24,8 @@ BETWEEN = (
     "rounding",
     "aside",
     "close",
+    "near",
+    "at_end",
     "critical",
     "marginal",
     "located",
@@ -74,6 +76,11 @@ class Settings:
         Special points: part of a segment, either side of a place, by which signs and tangents there are told.
     close : float
         Special points: distance from a border (in the metric) of the point that tells one-sided slopes and limits.
+    near : float
+        Special points: part of a segment below which two places on it are one; distance from a meeting (in the metric) within which tangents
+        and multipliers are those of its singular equations.
+    at_end : float
+        Special points: distance (in the metric) from the end of a branch below which a bifurcation is that end.
     critical : float
         Special points: distance from the circle (the axis) at which a located multiplier counts as being on it.
     marginal : float
@@ -110,6 +117,8 @@ class Settings:
     rounding: float = 1e-12
     aside: float = 1e-3
     close: float = 1e-6
+    near: float = 1e-4
+    at_end: float = 1e-7
     critical: float = 1e-4
     marginal: float = 1e-9
     located: float = 1e-9

@@ -132,7 +132,7 @@ def _unresolved(run: Run, branch: Branch) -> None:
 def _stretch(engine: Engine, branch: Branch, half: HalfBranch, index: int, event: Located) -> Unresolved:
     """A stretch whose ends do not agree with what was found between them; the points beside it tell what is certain."""
     rows = half.joined().spectrum[[max(index - 1, 0), min(index + 1, len(branch) - 1)]]
-    before, after = (tuple(found) for found in counts(engine.spectrum(rows), engine.detection).tolist())
+    before, after = (tuple(found) for found in counts(engine, rows).tolist())
     low, high = sorted(event.bracket)
     reason = "determinant" if before == after else "multipliers"
     return Unresolved(branch.label, low, high, index, reason, before, after)

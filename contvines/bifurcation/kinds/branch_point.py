@@ -20,13 +20,12 @@ from ..kind import Kind
 from ..locate import Root, locate, locate_singular
 from ..located import Located, Role
 from ..location_error import blurred
-from ..multiplier_counts import balance, counts_of
+from ..multiplier_counts import balance, counts
 from ..multiplier_tests import passing
 from ..refine_branch_point import by_elimination, by_sign
 from ..segment import Segment
 from ..singular import alone, singular
 
-SAME = 1e-4  # part of a segment: what is closer is one
 EXACT = (
     1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
 )
@@ -43,8 +42,8 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
     counted = sum(e.kind == "branch-point" for e in points)
     if segment.a.sign * segment.b.sign < 0.0 and (counted + len(met)) % 2 == 0:
         root = by_sign(segment)
-        if root is not None and not _near(root.position, met):
-            turning = _near(root.position, folds)
+        if root is not None and not _near(segment, root.position, met):
+            turning = _near(segment, root.position, folds)
             # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
             if not turning or (root.point.residual <= EXACT and singular(engine, root.point)):
                 points.append(Located.at(root, _kind(segment, root)))
@@ -65,7 +64,7 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
     points = []
     for test in tests:
         root = locate(segment, test.function, jump=test.jump)
-        if root is None or not root.continuous or _near(root.position, folds + met):
+        if root is None or not root.continuous or _near(segment, root.position, folds + met):
             continue
         if abs(test.function(root.point)) > engine.settings.critical or _complex(segment, root.point):
             continue  # two real multipliers met and left the axis; none of them was at the boundary
@@ -118,14 +117,16 @@ def _exchange(segment: Segment) -> Located | None:
     engine = segment.engine
 
     def test(point: Solved) -> float:
-        return float(balance(engine.spectrum(point.row)[None, :], engine.detection)[0])
+        return float(balance(engine, point.row))
 
     if not test(segment.a) * test(segment.b) < 0.0:
         return None
     rough = locate(segment, test, tolerance=1e-6)
     if rough is None:
         return None
-    aim = aim_at_multiplier(engine.m, engine.detection, "plus", max(counts_of(engine, rough.point)[0], 1))
+    aim = aim_at_multiplier(
+        engine.m, engine.detection, "plus", max(int(counts(engine, rough.point.row)[0]), 1)
+    )
     if abs(test(rough.point)) > engine.settings.critical or (
         engine.detection != "real" and abs(aim(rough.point)) > engine.settings.critical
     ):
@@ -142,8 +143,8 @@ def _kind(segment: Segment, root: Root) -> str:
     return "branch-point" if known else "astray"
 
 
-def _near(position: float, others: list[float]) -> bool:
-    return any(abs(position - other) <= SAME for other in others)
+def _near(segment: Segment, position: float, others: list[float]) -> bool:
+    return any(abs(position - other) <= segment.engine.settings.near for other in others)
 
 
 KIND = Kind(

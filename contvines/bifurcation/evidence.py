@@ -1,0 +1,164 @@
+"""What points of a branch tell: on which side of special points each of them lies, and how far from these it is.
+
+Where a number of `sides` differs at the two ends of a segment, something lies between. Where none does, one of `distances` may come to
+zero between the points and go back: the parabola through three of them says so, and points inside the segment decide.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..continuation.engine import Engine
+from ..continuation.loop import MARGIN
+from .multiplier_counts import PAST, balance, sizes_by_sort
+
+UNLIKE = 0.2  # part of the largest of three distances of a pair by which its bend may differ between them
+TINY = np.finfo(float).tiny  # stands for zero where a logarithm or a bend is taken
+NEARBY = np.log(
+    2.0
+)  # distance from the circle of a pair that may have been past it since two real multipliers met
+SLOPE, PAIR = 0, 3  # columns of `distances`
+
+
+class Evidence(NamedTuple):
+    """Of n points.
+
+    Attributes
+    ----------
+    sides : ndarray of int, shape (n, k)
+        Direction of the parameter, sign of the bordered determinant, numbers of multipliers past the circle, sides of users' tests; 0
+        where nothing tells.
+    distances : ndarray, shape (n, j)
+        Numbers that pass zero at special points: the parameter's part of the tangent, of real multipliers on both sides and of pairs the nearest to the
+        circle, users' tests, the smallest margin, all margins.
+    outside : ndarray of bool, shape (n,)
+        Whether a margin is negative.
+    pairs : ndarray of bool, shape (n,)
+        Whether there are complex pairs.
+    first_margin : int
+        Column of the first margin.
+    """
+
+    sides: np.ndarray
+    distances: np.ndarray
+    outside: np.ndarray
+    pairs: np.ndarray
+    first_margin: int
+
+
+def evidence(
+    engine: Engine, rows: np.ndarray, slopes: np.ndarray, signs: np.ndarray, flat: float, own: np.ndarray
+) -> Evidence:
+    """What points tell.
+
+    Parameters
+    ----------
+    engine : Engine
+    rows : ndarray, shape (n, row_size)
+    slopes : ndarray, shape (n,)
+        The parameter's parts of the tangents; up to ``flat`` they are rounding.
+    signs : ndarray, shape (n,)
+        Of the bordered determinants.
+    flat : float
+    own : ndarray, shape (n, o)
+        Values of users' tests.
+    """
+    with np.errstate(all="ignore"):
+        sizes = sizes_by_sort(engine, rows)
+        past = np.array([(size > PAST).sum(axis=1) for size in sizes])
+        near = np.array([np.fmin.reduce(np.abs(size), axis=1, initial=np.inf) for size in sizes])
+        told = (near > PAST) & (near < np.inf)  # on the circle it is rounding
+        near = np.where(told, np.where(past % 2, -near, near), np.nan)
+        slopes = np.where(np.abs(slopes) > flat, slopes, np.nan)
+        sides = [np.nan_to_num(np.sign(slopes)), np.sign(signs), *(past + 1)]
+        tests = [*own.T, balance(engine, rows)] if engine.exchanges else own.T
+        sides += [np.where(values >= 0.0, 1, -1) for values in tests]
+        margins = rows[:, 2 * engine.m :] - MARGIN
+        smallest = np.fmin.reduce(margins, axis=1, initial=np.inf)
+    distances = np.column_stack([slopes, *near, own, smallest, margins])
+    pairs = np.asarray(np.isfinite(sizes[2]).any(axis=1))
+    return Evidence(np.column_stack(sides).astype(int), distances, smallest < 0.0, pairs, 5 + own.shape[1])
+
+
+def filled(sides: np.ndarray) -> np.ndarray:
+    """Sides, shape (n, k), in which a 0 has taken the side of the point before it; at the beginning that of the first point that has one."""
+    known = sides != 0
+    if known.all():
+        return sides
+    places = np.where(known, np.arange(len(sides))[:, None], -1)
+    last = np.maximum.accumulate(places, axis=0)
+    return np.take_along_axis(sides, np.where(last < 0, known.argmax(axis=0), last), axis=0)
+
+
+def suspicious(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
+    """Which distances may come to zero within segments and go back, shape (n - 1, j): parabolas through three neighbours of one sign do."""
+    values = seen.distances
+    found = np.zeros((len(lengths), values.shape[1]), dtype=bool)
+    if len(lengths) > 1:
+        three = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
+        pair = three[:, :, PAIR]
+        three[:, :, PAIR] = np.where(pair > 0.0, np.maximum(pair - UNLIKE * pair.max(axis=0), TINY), pair)
+        dip = parabola_dips(three[0], three[1], three[2], lengths[:-1, None], lengths[1:, None])
+        found[:-1] |= dip
+        found[1:] |= dip
+    return found
+
+
+def parabola_dips(
+    left: np.ndarray, middle: np.ndarray, right: np.ndarray, h1: np.ndarray | float, h2: np.ndarray | float
+) -> np.ndarray:
+    """Whether the parabola through three positive values at such distances passes zero between them."""
+    with np.errstate(all="ignore"):
+        before, after = (middle - left) / h1, (right - middle) / h2
+        bend, slope = (after - before) / (h1 + h2), (before * h2 + after * h1) / (h1 + h2)
+        vertex = -0.5 * slope / bend
+        found = (left > 0.0) & (middle > 0.0) & (right > 0.0) & (bend > 0.0) & (-h1 < vertex) & (vertex < h2)
+        return found & (middle - 0.25 * slope * slope / bend < 0.0)
+
+
+def turns_twice(slopes: np.ndarray, changes: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Segments with slopes of one sign at both ends in which the cubic with these, and this change, falls in between: two folds."""
+    with np.errstate(all="ignore"):
+        side = np.sign(slopes[:-1])
+        here, there, mean = side * slopes[:-1], side * slopes[1:], side * changes / lengths
+        bend, middle = 3.0 * (here + there - 2.0 * mean), 2.0 * here + there - 3.0 * mean
+        alike = (here > 0.0) & (there > 0.0)
+        return alike & (bend > 0.0) & (middle > 0.0) & (middle < bend) & (here * bend < middle * middle)
+
+
+def pairs_born(seen: Evidence) -> np.ndarray:
+    """Segments in which a complex pair near the circle comes about or vanishes, or next to these: nothing is smooth there, no parabola tells."""
+    near = np.abs(seen.distances[:, PAIR]) < NEARBY
+    changes = seen.pairs[:-1] != seen.pairs[1:]
+    beside = changes.copy()
+    beside[1:] |= changes[:-1]
+    beside[:-1] |= changes[1:]
+    return beside & (near[:-1] | near[1:])
+
+
+def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
+    """Segments of a virtual branch that may be real inside though both ends are not, shape (n - 1,).
+
+    A margin that is negative at both ends may be positive in between where the lines through the two points before and through
+    the two behind are, which lie above it wherever it bends downwards, or is a roof, as the reserve of friction is.
+    """
+    found = seen.outside[:-1] & seen.outside[1:]
+    margins = seen.distances[:, seen.first_margin :]
+    kept = (margins[:-1] < 0.0) & (margins[1:] < 0.0)
+    for j in np.flatnonzero(kept[found].any(axis=0)):
+        found &= _may_rise(margins[:, j], lengths) | ~kept[:, j]
+    return found
+
+
+def _may_rise(margin: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Segments in which both lines of a margin that is negative at both ends are positive at once; of a single segment nothing is known."""
+    if len(lengths) < 2:
+        return np.zeros(len(lengths), dtype=bool)
+    with np.errstate(all="ignore"):
+        slopes = np.diff(margin) / lengths
+        rises = np.where(slopes[:-1] > 0.0, -margin[1:-1] / slopes[:-1], np.inf)
+        falls = np.where(slopes[1:] < 0.0, lengths[:-1] - margin[1:-1] / slopes[1:], -np.inf)
+    begins, ends = np.append(0.0, rises), np.append(falls, lengths[-1])
+    return (begins < ends) & (begins < lengths) & (ends > 0.0)
