@@ -15,7 +15,8 @@ from scipy.optimize import brentq
 
 import contvines as cv
 from orbits.simulation import simulate
-from tests.orbits.machines.coupled.equations_of_motion import MACHINE, TIGHT, right_side
+from tests.machines import COUPLED
+from tests.orbits.machines.coupled.equations_of_motion import TIGHT, right_side
 
 pytestmark = pytest.mark.slow
 
@@ -42,7 +43,7 @@ def after_left(params, x):
     return [(v + eps) / (1 + eps), v_rate - eps * B / (1 + eps), (v - 1) / (1 + eps), B / (1 + eps)]
 
 
-def half(z, Omega, machine=MACHINE):
+def half(z, Omega, machine=COUPLED):
     """From the impact on the left with z[:4] to that on the right, whose mirror image is z[4:]: four residuals."""
     params = machine.vector({"frequency": Omega})
     eps, r, there = params[3], params[4], z[4:]
@@ -68,7 +69,7 @@ def newton(f, z):
     raise AssertionError("Newton's method does not converge")
 
 
-def spectrum(Omega, guess, machine=MACHINE):
+def spectrum(Omega, guess, machine=COUPLED):
     """The symmetric orbit near a guess and the multipliers of its half map."""
     x = newton(lambda x: half(np.r_[x, x], Omega, machine), guess)
     J = jacobian(lambda z: half(z, Omega, machine), np.r_[x, x])
@@ -101,7 +102,7 @@ def on_circle(multipliers):
     ],
 )
 def test_integrated_multipliers(value, condition, fast):
-    guess = np.array(MACHINE.symmetric_orbit(fast=fast, frequency=value).nodes[0])
+    guess = np.array(COUPLED.symmetric_orbit(fast=fast, frequency=value).nodes[0])
 
     def at(Omega):
         nonlocal guess
@@ -133,7 +134,7 @@ def integrated_fold(machine, value, inward):
 
 @pytest.mark.parametrize(("value", "inward"), [(FOLDS[0], 1e-6), (FOLDS[1], -1e-6)])
 def test_integrated_folds(value, inward):
-    assert integrated_fold(MACHINE, value, inward) == pytest.approx(value, abs=2e-11)
+    assert integrated_fold(COUPLED, value, inward) == pytest.approx(value, abs=2e-11)
 
 
 @pytest.mark.parametrize("value", VELOCITY_GRAZES)
@@ -142,13 +143,13 @@ def test_integrated_velocity_grazes(value):
 
     def grazing(z):
         x, duration, Omega = z[:4], z[4], z[5]
-        params = MACHINE.vector({"frequency": Omega})
+        params = COUPLED.vector({"frequency": Omega})
         y = fly(params, x[0], duration, after_left(params, x))
         rates = right_side(params, -1)(x[0] / Omega + duration, y)
         return np.r_[half(np.r_[x, x], Omega), y[1] - y[3], rates[1] - rates[3]]
 
-    x = np.array(MACHINE.symmetric_orbit(frequency=value).nodes[0])
-    params = MACHINE.vector({"frequency": value})
+    x = np.array(COUPLED.symmetric_orbit(frequency=value).nodes[0])
+    params = COUPLED.vector({"frequency": value})
     instants = np.linspace(0.3, 2.8, 51)
     rates = []
     for instant in instants:
@@ -165,7 +166,7 @@ def test_integrated_wall_grazes(value):
 
     def touching(z):
         psi, v, v_rate, Omega = z
-        params = MACHINE.vector({"frequency": Omega})
+        params = COUPLED.vector({"frequency": Omega})
         eps = params[3]
         rate = v_rate / (1 + eps)
         q1, p1, q2, p2 = fly(
@@ -173,7 +174,7 @@ def test_integrated_wall_grazes(value):
         )
         return np.array([p1 - p2, q1 - q2 + 1.0, q1 + eps * q2 + v, p1 + eps * p2 + v_rate])
 
-    nodes = MACHINE.sliding_orbit(frequency=value).nodes
+    nodes = COUPLED.sliding_orbit(frequency=value).nodes
     turn = nodes[np.argmax(nodes[:, 1])]
     z = newton(touching, np.r_[turn[[0, 2, 3]], value + 2e-6])
     assert z[3] == pytest.approx(value, abs=2e-11)
@@ -219,7 +220,7 @@ def joined(one, other):
 def test_the_symmetric_response_is_one_closed_curve():
     """Real from graze to graze, virtual in between; folds, breakings, Neimark-Sacker points and borders as integrated."""
     graph = cv.diagram(
-        MACHINE.orbit("LR", frequency=1.01), over="frequency", within=WITHIN, depth=0, virtual=True
+        COUPLED.orbit("LR", frequency=1.01), over="frequency", within=WITHIN, depth=0, virtual=True
     )
     pieces = [b for b in graph if b.description["word"] == "LR" and b.description["symmetric"]]
     chain = around(pieces)
@@ -253,7 +254,7 @@ def test_the_symmetric_response_is_one_closed_curve():
 
 def test_a_weakly_forced_response_is_an_isola():
     """G = 1: real all the way round, recognised as closed, with two folds, drawn closed."""
-    machine = MACHINE.changed(forcing=1.0)
+    machine = COUPLED.changed(forcing=1.0)
     graph = cv.diagram(machine.symmetric_orbit(frequency=1.0), over="frequency", within=WITHIN, depth=0)
     (branch,) = graph
     assert branch.real and branch.closed and branch.margin.min() > 0.0
@@ -290,7 +291,7 @@ def test_the_linear_regime_leads_to_all_others():
         return 0.5 * 0.211 - omega**2 * response
 
     slips = brentq(left_over, 0.9, 0.97, xtol=1e-15), brentq(left_over, 1.03, 1.1, xtol=1e-15)
-    graph = cv.diagram(MACHINE.orbit("", frequency=0.93), over="frequency", within=(0.92, 1.09), depth=2)
+    graph = cv.diagram(COUPLED.orbit("", frequency=0.93), over="frequency", within=(0.92, 1.09), depth=2)
     stuck = [branch for branch in graph if branch.description["word"] == ""]
     assert sorted(branch.range for branch in stuck) == [
         pytest.approx((0.92, slips[0]), abs=1e-11),
@@ -303,7 +304,7 @@ def test_the_linear_regime_leads_to_all_others():
 
 # ---------------------------------------------------------------------- free decay
 def test_free_decay_passes_through_impacts_sliding_and_rest():
-    machine = MACHINE.changed(forcing=0.0)
+    machine = COUPLED.changed(forcing=0.0)
     run = simulate(machine, {"q1": 1.2, "q2": 0.4}, periods=400)
     letters = run.letters
     last_hit = max(letters.rfind("L"), letters.rfind("R"))

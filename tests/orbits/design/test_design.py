@@ -48,6 +48,7 @@ def test_a_design_map_is_one_call():
     assert whole.sticking_limit().shape == (7,) or whole.sticking_limit().shape == (1, 7)
 
 
+@pytest.mark.slow
 @settings(max_examples=10, deadline=None)
 @given(ratio=st.floats(0.7, 1.3), stuck=st.booleans(), lam=st.floats(2.0, 20.0))
 def test_linear_response_is_the_settled_motion(ratio, stuck, lam):

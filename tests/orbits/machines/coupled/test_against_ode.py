@@ -10,7 +10,8 @@ from scipy.optimize import brentq
 
 from orbits.machines.coupled.closed_forms import stuck_state, symmetric_discriminant
 from orbits.simulation import simulate
-from tests.orbits.machines.coupled.equations_of_motion import MACHINE, TIGHT, event, integrate, right_side
+from tests.machines import COUPLED
+from tests.orbits.machines.coupled.equations_of_motion import TIGHT, event, integrate, right_side
 
 pytestmark = pytest.mark.slow
 
@@ -44,7 +45,7 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_simulated_events_are_those_of_the_integration(case):
     changes, start = CASES[case]
-    machine = MACHINE.changed(**changes)
+    machine = COUPLED.changed(**changes)
     params = machine.vector()
     count = 30
     run = simulate(machine, start, events=count)
@@ -91,7 +92,7 @@ def half_matrix(params, x):
 
 def solve(x, Omega):
     """The symmetric orbit LR at Omega from a guess, by Newton's method, and its half map's derivative."""
-    params = MACHINE.vector({"frequency": Omega})
+    params = COUPLED.vector({"frequency": Omega})
     for _ in range(12):
         M = half_matrix(params, x)
         step = np.linalg.solve(np.eye(4) - M, half_map(params, x) - x)
@@ -118,7 +119,7 @@ def critical(spectrum, kind):
     ],
 )
 def test_bifurcations_of_the_symmetric_response(kind, near, published):
-    orbit = MACHINE.symmetric_orbit(frequency=near)
+    orbit = COUPLED.symmetric_orbit(frequency=near)
     x = np.array(orbit.nodes[0])
 
     def by_integration(Omega):
@@ -127,7 +128,7 @@ def test_bifurcations_of_the_symmetric_response(kind, near, published):
         return critical(np.linalg.eigvals(M), kind)
 
     def compiled(Omega):
-        return critical(MACHINE.symmetric_orbit(frequency=Omega).half_multipliers, kind)
+        return critical(COUPLED.symmetric_orbit(frequency=Omega).half_multipliers, kind)
 
     a, b = near - 1e-4, near + 1e-4
     fa, fb = by_integration(a), by_integration(b)
@@ -147,7 +148,7 @@ def test_bifurcations_of_the_symmetric_response(kind, near, published):
 def test_folds_of_the_symmetric_response(inside, outside, published):
     """Where the closed form's discriminant vanishes the integrated half map has a multiplier +1."""
     fold = brentq(
-        lambda Omega: symmetric_discriminant(MACHINE.vector({"frequency": Omega})),
+        lambda Omega: symmetric_discriminant(COUPLED.vector({"frequency": Omega})),
         inside,
         outside,
         xtol=1e-15,
@@ -157,7 +158,7 @@ def test_folds_of_the_symmetric_response(inside, outside, published):
     Omega = fold + 1e-5 * np.sign(inside - fold)
     distances, places = [], []
     for fast in (True, False):
-        orbit = MACHINE.symmetric_orbit(fast=fast, frequency=Omega)
+        orbit = COUPLED.symmetric_orbit(fast=fast, frequency=Omega)
         x, M = solve(np.array(orbit.nodes[0]), Omega)
         np.testing.assert_allclose(x, orbit.nodes[0], atol=1e-9)
         distances.append(np.linalg.det(M - np.eye(4)))
@@ -172,7 +173,7 @@ def test_folds_of_the_symmetric_response(inside, outside, published):
 def test_multipliers_of_both_regimes_at_the_same_frequency():
     """Sliding from rest and impacts from q1 = q2 = b at sigma = -2.58: both stable, as simulated and as orbits."""
     Omega = 1.0 - 2.58 * 0.006
-    machine = MACHINE.changed(frequency=Omega, damping=0.9)
+    machine = COUPLED.changed(frequency=Omega, damping=0.9)
     run = simulate(machine, {}, periods=1500)
     assert set(run.letters[-20:]) == {"t"}
     orbit = machine.orbit("tt")
@@ -193,7 +194,7 @@ def test_multipliers_of_both_regimes_at_the_same_frequency():
 
 def test_stick_slip_at_the_published_detuning():
     """sigma = -9.04, from rest: the absorber sticks and slips."""
-    machine = MACHINE.changed(frequency=1.0 - 9.04 * 0.006, damping=0.9)
+    machine = COUPLED.changed(frequency=1.0 - 9.04 * 0.006, damping=0.9)
     run = simulate(machine, {}, periods=1500)
     assert run.letters[-4:] in ("susu", "usus")
     orbit = machine.orbit("susu")
@@ -205,7 +206,7 @@ def test_stick_slip_at_the_published_detuning():
 
 
 def test_a_stuck_start_stays_stuck_where_friction_holds():
-    machine = MACHINE.changed(forcing=0.5, frequency=0.9)
+    machine = COUPLED.changed(forcing=0.5, frequency=0.9)
     assert machine.stuck_response().real
     run = simulate(machine, stuck_state(machine.vector()), periods=50)
     assert run.codes.size == 0
@@ -228,7 +229,7 @@ def test_period_doubling_behind_the_borders():
 
     def by_integration(Omega):
         nonlocal x
-        params = MACHINE.vector({"frequency": Omega})
+        params = COUPLED.vector({"frequency": Omega})
         for _ in range(8):
             columns = []
             for j in range(4):
@@ -245,11 +246,11 @@ def test_period_doubling_behind_the_borders():
 
     def compiled(Omega):
         nonlocal orbit
-        orbit = MACHINE.orbit("LRtt", guess=orbit.nodes, frequency=Omega)
+        orbit = COUPLED.orbit("LRtt", guess=orbit.nodes, frequency=Omega)
         multipliers = orbit.multipliers
         return float(multipliers[np.abs(multipliers.imag) < 1e-8].real.min()) + 1.0
 
-    orbit = MACHINE.orbit("LRtt", frequency=0.9905)
+    orbit = COUPLED.orbit("LRtt", frequency=0.9905)
     x = np.array(orbit.nodes[0])
     found = brentq(compiled, 0.9905, 0.9909, xtol=1e-13)
     assert orbit.real
