@@ -10,17 +10,14 @@ import numpy as np
 
 from contvines.shared.figures import new_figure, styled
 from contvines.shared.near_arguments import hinting
-from orbits.plots import cavity_panels, state_panels
-from orbits.plots.shown import quantities
+from orbits.plots import panels as panel
+from orbits.plots.shown import quantities, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from orbits.orbit import Orbit
-
-DRAWN = {"native": cavity_panels, "page": state_panels}
-"""What draws the panels of the machines of a flow: `seen`, `phase` and `history`."""
 
 # parameters as in the diagrams
 SYMBOLS = {
@@ -83,8 +80,7 @@ def portrait(
     """
     if show is not None and show not in PANELS:
         raise ValueError(f"show = {show!r} is unknown; choose one of {', '.join(PANELS)}")
-    panel = DRAWN[orbit.model.flow]
-    seen = panel.seen(orbit, points)
+    seen = shown(orbit, points)
     with styled(style):
         if axes is None:
             size = figsize or ((9.6, 4.0) if show in (None, "both") else (4.8, 4.0))
@@ -109,9 +105,9 @@ def portrait(
                 )
             figure: Any = drawn[0].get_figure(root=True)
         if panels != "history":
-            panel.phase(drawn[0], orbit, seen)
+            panel.phase(drawn[0], seen, orbit.real)
         if panels != "phase":
-            panel.history(drawn[-1], orbit, seen)
+            panel.history(drawn[-1], seen, orbit.real)
             key(figure, drawn, axes is None, legend)
     return figure
 

@@ -28,7 +28,7 @@ def test_title_names_stability_and_parameters():
     first, second = figure.get_suptitle().splitlines()
     assert first == "LR, 2 impacts in 1 forcing period, symmetric, stable"
     assert second.startswith("$C$ = 0.55, $r$ = 0.76, ") and r"$\Omega$ = 1" in second
-    assert "left wall at $+1$" in figure.axes[0].get_xlabel()
+    assert "left wall at +1" in figure.axes[0].get_xlabel()
 
 
 def test_at_a_symmetry_breaking_an_orbit_is_marginal():
