@@ -6,8 +6,8 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.amounts import inside
-from contvines.command.options import SizeOption
-from contvines.command.run import StudyArgument
+from contvines.command.frame import check_plot, draw, tell
+from contvines.command.options import JsonOption, PlotOption, SizeOption, StudyArgument
 
 
 def basins(
@@ -33,37 +33,21 @@ def basins(
             help="Grow the stable manifolds of this graph's unstable motions.",
         ),
     ] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the plane in colours.")
-    ] = None,
+    plot: PlotOption = None,
     size: SizeOption = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")
-    ] = False,
+    json: JsonOption = False,
 ) -> None:
     """Basins of attraction in a plane of starts, their shares and their boundary's exponent."""
     import contvines
-    from contvines.command.compose import checked_study, population, say
+    from contvines.command.compose import population
+    from contvines.command.study import read_study
 
-    if plot is not None:
-        from contvines.plots.figures import check_picture, check_size
-
-        check_picture(plot)
-        check_size(size)
-    asked = checked_study(study)
+    check_plot(plot, size)
+    asked = read_study(study)
     starts = population(asked)
     units = getattr(starts, "units", {})
     value = inside("--at", at, asked.parameter, asked.within, units, f"{study}: [continue] within")
     graph: Any = None if saddles is None else contvines.load(saddles)
     found = contvines.basins(starts, at=value, plane=plane, points=points, saddles=graph)
-    if json:
-        from contvines.export import json_text
-
-        typer.echo(json_text(found.to_dict()))
-    else:
-        typer.echo(str(found))
-    if plot is not None:
-        from contvines.plots.figures import save_figure
-
-        save_figure(found.plot(figsize=size), plot)
-        say(f"drawn in {plot}")
+    tell(found, found.to_dict() if json else None)
+    draw(plot, lambda: found.plot(figsize=size))

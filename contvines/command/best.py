@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from contvines.command.frame import draw, tell
+from contvines.command.study_data import Sort, Study
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
-    from contvines.command.study import Study
     from contvines.survey import Survey
     from orbits.design import Choice
 
@@ -67,7 +68,6 @@ def choose(
     import dataclasses
 
     from contvines.command.compare import peaks_compared, told_compared
-    from contvines.command.compose import say
     from contvines.command.survey_study import (
         family_of,
         options_of,
@@ -128,11 +128,9 @@ def choose(
         evaluate, outcome, limits, largest=largest, tolerances=drawn, quantile=quantile, known=known
     )
     units = units_of(study, model)
-    alone = outcome in PEAKS and bool(study.quantities) and "damping" in model.parameter_names
+    alone = outcome in PEAKS and study.sort is Sort.PHYSICAL and "damping" in model.parameter_names
     chosen = model.with_(**choice.values) if alone else model
     if json_:
-        from contvines.export import json_text
-
         names = {*choice.values, *choice.others, outcome}
         said = {name: unit for name, unit in units.items() if name in names}
         about = {
@@ -142,18 +140,15 @@ def choose(
             **({"compared": peaks_compared(chosen, study.parameter, study.within, ALONE)} if alone else {}),
             **({"units": said} if said else {}),
         }
-        typer.echo(json_text(about))
+        tell(choice, about)
     elif not quiet:
         typer.echo(fitted(_told(choice, outcome, found, units, _wish(largest, quantile, len(drawn)), least)))
         if alone:
             typer.echo(fitted(told_compared(chosen, study.parameter, study.within, ALONE)))
     if plot is not None:
-        from contvines.plots.figures import save_figure
-
         figure = found.plot(outcome)
         _draw(figure, choice, list(plan.axes), "at worst" if quantile is None else f"{100.0 * quantile:g} %")
-        save_figure(figure, plot)
-        say(f"drawn in {plot}", quiet)
+        draw(plot, lambda: figure, quiet)
 
 
 def _comes(outcome: str, study: Any) -> bool:

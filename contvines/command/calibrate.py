@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.options import JsonOption, SizeOption
+from contvines.command.frame import check_plot, draw, tell
+from contvines.command.options import JsonOption, PlotOption, SizeOption
+from contvines.command.study_data import Sort, Study
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
@@ -61,10 +63,7 @@ def calibrate(
         ),
     ] = None,
     confidence: Annotated[float, typer.Option("--confidence", help="Of the intervals.")] = 0.95,
-    plot: Annotated[
-        Path | None,
-        typer.Option("--plot", metavar="FILE.png", help="Draw the data and what the estimate leaves over."),
-    ] = None,
+    plot: PlotOption = None,
     size: SizeOption = None,
     json_: JsonOption = False,
 ) -> None:
@@ -74,26 +73,23 @@ def calibrate(
     (or, with --release, of a free decay).
     A sweep holds steady responses in the order in which they were measured. Heads of columns may name units: time [ms].
     """
-    from contvines.command.compose import check_shaken, checked_study, say
+    from contvines.command.compose import check_shaken
+    from contvines.command.study import read_study
 
     if (impacts is None) == (sweep is None):
         both = "both are" if impacts is not None else "neither is"
         raise ValueError(
             f"--impacts and --sweep: {both} given; give one of them: --impacts times.csv or --sweep responses.csv."
         )
-    if plot is not None:
-        from contvines.plots.figures import check_picture, check_size
-
-        check_picture(plot)
-        check_size(size)
+    check_plot(plot, size)
     if release is not None and impacts is None:
         raise ValueError(f"--release {release}: this goes with --impacts.")
     if measure is not None and sweep is None:
         raise ValueError(f"--measure {measure}: this goes with --sweep.")
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"--confidence {confidence:g}: give a number between 0 and 1, for example 0.95.")
-    read = checked_study(study)
-    if read.machine is not None and release is not None:
+    read = read_study(study)
+    if read.sort is Sort.PAGE and release is not None:
         raise ValueError(
             f"--release {release}: a page says where its motions begin: give [start] state and --impacts."
         )
@@ -114,23 +110,16 @@ def calibrate(
             sentence + "." if sentence.startswith(str(path)) else f"{path}: {sentence}."
         ) from None
     units = {name: model.units[name] for name in names if model.units.get(name)}
-    if json_:
-        from contvines.export import json_text
-
-        typer.echo(json_text(as_json(found, units)))
-    else:
-        typer.echo(fitted(told(found, units, guesses)))
+    tell(fitted(told(found, units, guesses)), as_json(found, units) if json_ else None)
     if plot is not None:
         from contvines.graph.table import with_unit
-        from contvines.plots.figures import save_figure
         from contvines.plots.measured import plot_calibration
 
         over, unit, where, heights, label = places
         drawn = plot_calibration(
             where, found.residuals, heights, xlabel=with_unit(over, unit), ylabel=label, figsize=size
         )
-        save_figure(drawn, plot)
-        say(f"drawn in {plot}", json_)
+        draw(plot, lambda: drawn, json_)
 
 
 def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
@@ -183,22 +172,22 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
     return "\n".join(lines)
 
 
-def _guesses(study: Any, names: list[str]) -> tuple[Any, dict[str, float]]:
+def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
     """The machine told by the unknown parameters, and their values in the study."""
-    from contvines.command.compose import loose, machine
+    from contvines.command.compose import machine
     from orbits.machines.physical.quantities import near_quantity
 
     model = machine(study)
-    known = list(model.tables.QUANTITIES) if study.quantities else list(model.amount_names)
+    known = list(model.tables.QUANTITIES if study.sort is Sort.PHYSICAL else model.amount_names)
     for name in names:
         if name not in known:
             raise ValueError(
                 f"--unknown {name}: the model {study.name!r} has no such parameter{near_quantity(name, known)}; it has {', '.join(known)}."
             )
-        if study.quantities:
+        if study.sort is Sort.PHYSICAL:
             model = model.told_by(name)
-    values = model.quantities if study.quantities else model.parameters if study.machine else study.parameters
-    return model, {name: float({**values, **loose(study)}[name]) for name in names}
+    values = model.quantities if study.sort is Sort.PHYSICAL else study.parameters
+    return model, {name: float(values[name]) for name in names}
 
 
 def _limits(said: list[str], names: list[str], model: Any) -> dict[str, tuple[float, float]]:
@@ -240,7 +229,7 @@ def _limit(text: str, name: str, said: str, model: Any) -> float:
 
 
 def _from_impacts(
-    study: Any,
+    study: Study,
     model: Any,
     path: Path,
     guesses: dict[str, float],
@@ -248,14 +237,13 @@ def _from_impacts(
     release: str | None,
     confidence: float,
 ) -> tuple[Calibration, tuple[Any, ...]]:
-    from contvines.command.compose import loose
     from contvines.command.measured import Column, length_on_line, measured, scales
     from orbits.design.calibration import from_impacts
 
-    params = model.vector(loose(study))
+    params = model.vector(study.loose)
     length, unit, _, second = scales(model, params)
     (times,) = measured(path, (Column("time", second),))
-    start = study.state if study.machine is not None else None
+    start = study.state
     if release is not None:
         displacement = length_on_line(release, "--release", unit) / length
         if "damping" not in model.parameter_names:
@@ -264,7 +252,7 @@ def _from_impacts(
             )
         start, model = {"q1": displacement, "q2": displacement}, model.changed(forcing=0.0)
     found = from_impacts(
-        model, times, guesses, start=start, limits=bounds, fixed=loose(study), confidence=confidence
+        model, times, guesses, start=start, limits=bounds, fixed=study.loose, confidence=confidence
     )
     return found, (
         "time",
@@ -276,7 +264,7 @@ def _from_impacts(
 
 
 def _from_sweep(
-    study: Any,
+    study: Study,
     model: Any,
     path: Path,
     guesses: dict[str, float],
@@ -284,7 +272,6 @@ def _from_sweep(
     measure: str | None,
     confidence: float,
 ) -> tuple[Calibration, tuple[Any, ...]]:
-    from contvines.command.compose import loose
     from contvines.command.measured import Column, measured
     from contvines.command.physical_study import number_of
     from contvines.plots.style import axis_label
@@ -302,7 +289,7 @@ def _from_sweep(
     unit = model.units.get(name, "")
     own = model.units.get(over, "")
     values, heights = measured(path, (Column(over, own), Column("response", unit)))
-    if own and study.quantities:
+    if own and study.sort is Sort.PHYSICAL:
         for row, value in enumerate(values, 1):
             _, refusal = number_of(
                 model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}"
@@ -317,7 +304,7 @@ def _from_sweep(
         guesses,
         measure=name,
         limits=bounds,
-        fixed=loose(study),
+        fixed=study.loose,
         confidence=confidence,
     )
     return found, (over, own, values, heights, axis_label(name, unit=unit or None, notation=model.notation))

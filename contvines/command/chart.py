@@ -1,4 +1,4 @@
-"""`contvines chart`: all special points of a diagram followed in a second parameter."""
+"""`contvines chart` and `contvines locus`: one or all special points of a diagram followed in a second parameter."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -6,10 +6,74 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.amounts import interval
-from contvines.command.options import FreshOption, TrustOption
-from contvines.command.place import held
-from contvines.command.plane import PlotOption, QuietOption, VirtualOption, check, refuse_charts, tell
-from contvines.command.stored import finished_of, refuse_detached
+from contvines.command.frame import (
+    check_plot,
+    check_special,
+    draw,
+    finished_of,
+    held,
+    load_file,
+    place_of,
+    refuse_detached,
+    refuse_unfinished,
+    say,
+    working,
+)
+from contvines.command.options import (
+    FileArgument,
+    FreshOption,
+    LabelArgument,
+    PlotOption,
+    QuietOption,
+    TrustOption,
+    VirtualOption,
+)
+
+OutputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "-o",
+        "--output",
+        metavar="FILE.vines",
+        help="Where to keep it; by default FILE-LABEL.vines (locus) or FILE-chart.vines here.",
+    ),
+]
+
+
+def locus(
+    file: FileArgument,
+    label: LabelArgument,
+    over: Annotated[str, typer.Option("--over", metavar="NAME", help="The second parameter.")],
+    within: Annotated[
+        tuple[str, str],
+        typer.Option(
+            "--within", metavar="LOW HIGH", help="Its interval: numbers, or quantities as '0.1 mm' '0.6 mm'."
+        ),
+    ],
+    output: OutputOption = None,
+    plot: PlotOption = None,
+    fresh: FreshOption = False,
+    virtual: VirtualOption = False,
+    quiet: QuietOption = False,
+    trust: TrustOption = False,
+) -> None:
+    """Follow one special point of a result in a second parameter.
+
+    The locus ends with either interval: that of the diagram, and --within.
+    """
+    from contvines.loci.charting import chart_of_one
+
+    target = place_of(output, file, f"-{label}.vines")
+    check_plot(plot)
+    graph = load_file(file, trust)
+    check_special(graph, file, label)
+    refuse_detached(graph, label)
+    ends = interval("--within", within, over, graph.units)
+    with working("nothing is kept; the same command begins again", quiet) as progress:
+        found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress)
+    with held(target, quiet, fresh):
+        found.save(target)
+    _tell(found, target, plot, quiet)
 
 
 def chart(
@@ -29,12 +93,7 @@ def chart(
             help="Its interval, numbers or quantities as '0.1 mm' '0.6 mm'; by default [chart] within.",
         ),
     ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="FILE.vines", help="Where to keep it; by default NAME-chart.vines here."
-        ),
-    ] = None,
+    output: OutputOption = None,
     plot: PlotOption = None,
     fresh: FreshOption = False,
     virtual: VirtualOption = False,
@@ -42,27 +101,28 @@ def chart(
     trust: TrustOption = False,
 ) -> None:
     """Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted."""
-    from contvines.command.compose import beside, check_place
-
-    target = output or beside(file, "-chart.vines")
-    check_place(target)
-    check(plot, target, file)
+    target = place_of(output, file, "-chart.vines")
+    check_plot(plot)
     graph, over, ends = _diagram(file, over, within, trust, fresh)
     refuse_detached(
-        graph,
-        (label for label, point in graph.special.items() if point.kind not in ("end", "user")),
+        graph, *(label for label, point in graph.special.items() if point.kind not in ("end", "user"))
     )
     with held(target, quiet, fresh):
         found = _chart(graph, over, ends, virtual, target, quiet)
-    tell(found, target, plot, quiet)
+    _tell(found, target, plot, quiet)
+
+
+def _tell(found: Any, target: Path, plot: Path | None, quiet: bool) -> None:
+    """Say where a chart is kept, print it, draw it."""
+    say(f"kept in {target}", quiet)
+    if not quiet:
+        typer.echo(str(found))
+    draw(plot, found.plot, quiet)
 
 
 def _chart(graph: Any, over: str, ends: tuple[float, float], virtual: bool, target: Path, quiet: bool) -> Any:
     """The chart of a diagram: from its file if that is finished, computed else."""
-    from contvines.command.compose import say
-    from contvines.command.run import interruptible
     from contvines.loci.charting import chart as make
-    from contvines.progress import shown
     from contvines.store import Store
 
     fingerprint = _fingerprint(graph, over, ends, virtual)
@@ -72,7 +132,7 @@ def _chart(graph: Any, over: str, ends: tuple[float, float], virtual: bool, targ
         return found
     note = f"all finished points are kept in {target}; the same command goes on from there"
     with Store.attach(target, fingerprint, {"chart": [over, *ends]}) as store:
-        with interruptible(note), shown(not quiet) as progress:
+        with working(note, quiet) as progress:
             found = make(graph, over, ends, virtual=virtual, journal=store, progress=progress)
         store.tidy()
     return found
@@ -82,36 +142,32 @@ def _diagram(
     file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, fresh: bool
 ) -> tuple[Any, str, tuple[float, float]]:
     """The diagram to chart, made first if a study is given, and what to chart it over."""
-    from contvines.command.study import is_database
-    from contvines.store import load
+    from contvines.command.study import is_database, read_study
 
     if is_database(file):
-        graph = load(file, trust=trust)
-        refuse_charts(graph, file)
-        if not graph.finished:
-            raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
+        graph = load_file(file, trust)
+        refuse_unfinished(graph, file)
         if over is None or within is None:
             missing = "--over" if over is None else "--within"
             raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8 would do.")
         return graph, over, interval("--within", within, over, graph.units)
-    from contvines.command.compose import beside, checked_study
+    from contvines.command.frame import beside
     from contvines.command.run import diagram
 
-    study = checked_study(file)
-    said = None
-    if study.chart is not None:
-        over = over or study.chart.parameter
-        said = (study.chart.within[0], study.chart.within[1])
+    said = read_study(file).chart
+    if said is not None:
+        over = over or said.parameter
     if over is None or (within is None and said is None):
         raise ValueError(
             f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
             "parameter and within."
         )
     diagram(file, quiet=True, fresh=fresh)
-    graph = load(beside(file, ".vines"))
-    ends = said if within is None else interval("--within", within, over, graph.units)
-    assert ends is not None
-    return graph, over, ends
+    graph = load_file(beside(file, ".vines"))
+    if within is not None:
+        return graph, over, interval("--within", within, over, graph.units)
+    assert said is not None
+    return graph, over, (said.within[0], said.within[1])
 
 
 def _fingerprint(graph: Any, over: str, within: tuple[float, float], virtual: bool) -> str:

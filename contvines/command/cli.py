@@ -8,6 +8,7 @@ import atexit
 import gc
 import re
 import sys
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -78,8 +79,8 @@ def main(arguments: list[str] | None = None) -> None:
             stopped(str(error))
         print(f"contvines: {sentence(error)}", file=sys.stderr)
         sys.exit(1)
-    if {"-h", "--help"} & set(words):
-        from contvines.command.help_note import help_note
+    if {"-h", "--help"} & set(words) and any(Path(word).suffix in (".toml", ".vines") for word in words):
+        from contvines.command.asked_measures import help_note
 
         print(end=help_note(words))
     if status == 130:  # Ctrl-C outside the computation

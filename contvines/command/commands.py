@@ -20,7 +20,7 @@ COMMANDS = {
         "robustness",
         "The smallest kick that makes a stable motion go elsewhere, and the share of starts that reach it.",
     ),
-    "locus": ("locus", "Follow one special point of a result in a second parameter."),
+    "locus": ("chart", "Follow one special point of a result in a second parameter."),
     "chart": (
         "chart",
         "Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted.",

@@ -3,22 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np
     from matplotlib.axes import Axes
 
-CompareOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--compare",
-        metavar="KIND",
-        help="With a picture of responses: bare, tuned or friction; may be repeated.",
-    ),
-]
 LOOKS = {
     "bare": ("0.35", (0, (1, 1.2))),
     "tuned": ("#a6611a", (0, (6, 1.5, 1, 1.5))),
@@ -127,7 +117,7 @@ def peaks_compared(
             response = reference(kind, model, params) * model.gauge("length", params)
             place = int(response.argmax())
             low, high = values[max(place - 1, 0)], values[min(place + 1, POINTS - 1)]
-        found[kind] = float(response[place]), float(values[place])
+            found[kind] = float(response[place]), float(values[place])
     return found
 
 

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from contvines.command.frame import check_plot, tell
+from contvines.command.frame import draw as draw_in
+from contvines.command.options import JsonOption, StudyArgument
+from contvines.command.study_data import Sort, Study
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from orbits.design.figures import Design
-
-    from .study import Study
 
 DAMPING = 0.9  # the reduced model has none; the coupled model's default
 HALF_WIDTH = 0.02  # metres, of a dimensionless machine without a scale
@@ -35,12 +38,12 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
 
     from .study import StudyError
 
-    if study.machine is not None:
+    if study.sort not in (Sort.CATALOGUE, Sort.PHYSICAL):
         raise StudyError(
             f"{study.path}: [model] name = {study.name!r}: design figures are closed forms of the built-in absorbers; "
             "contvines survey asks many machines of a page."
         )
-    if study.quantities:
+    if study.sort is Sort.PHYSICAL:
         return _physical(study, cavity, natural_frequency)
     values = study.parameters
     fields: dict[str, Any] = {name: values[name] for name in ("restitution", "friction", "mass_ratio")}
@@ -79,13 +82,12 @@ def _physical(study: Study, cavity: float | None, natural_frequency: float | Non
 
     from orbits.design import Design
 
-    from .compose import machine as built
     from .study import StudyError
 
     for name, value in (("cavity", cavity), ("natural-frequency", natural_frequency)):
         if value is not None:
             raise StudyError(f"--{name} = {value!r}: the study says it already; leave --{name} out.")
-    model = built(study)
+    model = study.model
     params = model.vector()
     number = {name: float(value) for name, value in zip(model.parameter_names, params)}
     b, rate = number["half_width"], number["natural_rate"]
@@ -104,17 +106,15 @@ def assumptions(study: Study, cavity: float | None, natural_frequency: float | N
     """What `machine` assumes beyond the study, a sentence by name of the quantity; empty if nothing."""
     from orbits.design.figures import Design
 
-    from .schema import PARAMETERS
-
     found = {}
-    if not study.quantities and study.parameters["gravity"] != 0:
+    if study.sort is Sort.CATALOGUE and study.parameters["gravity"] != 0:
         found["acceleration"] = f"gravity is {Design.acceleration:g} m/s^2"
         if cavity is None and natural_frequency is None:
             found["half_width"] = (
                 f"the half-width of the cavity is {1e3 * HALF_WIDTH:g} mm, because the study is dimensionless; all lengths "
                 "are proportional to it; --half-width METRES or --natural-frequency HERTZ gives the machine's own"
             )
-    if "damping" not in (PARAMETERS[study.name] if study.quantities else study.parameters):
+    if "damping" not in (study.model.parameter_names if study.sort is Sort.PHYSICAL else study.parameters):
         found["damping"] = f"the oscillator's damping is lambda = {DAMPING:g}, because the study gives none"
     return found
 
@@ -264,7 +264,7 @@ def _map(panel: Any, mu: Any, b: Any, values: Any, here: tuple[float, float], ti
 
 
 def design(
-    study: Path = typer.Argument(..., metavar="STUDY.toml", help="The study whose machine is meant."),
+    study: StudyArgument,
     cavity: float | None = typer.Option(
         None,
         "--half-width",
@@ -284,31 +284,19 @@ def design(
         help="Inches; a small picture has the bounds over friction alone.",
     ),
     no_plot: bool = typer.Option(False, "--no-plot", help="No picture."),
-    json_: bool = typer.Option(False, "--json", help="Print one JSON object in SI units instead of a table."),
+    json_: JsonOption = False,
 ) -> None:
     """Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and
     sliding limits."""
-    from contvines.plots.figures import check_picture, check_size, save_figure
-
-    from .study import read_study
+    from contvines.command.study import read_study
 
     if no_plot and plot is not None:
         raise ValueError(f"--plot {plot} and --no-plot exclude each other; leave one of them out.")
     plot = None if no_plot else plot or Path(f"{study.stem}-design.png")
-    if plot is not None:
-        check_picture(plot)
-    check_size(size)
+    check_plot(plot, size)
     asked = read_study(study)
     figures = machine(asked, cavity, natural_frequency)
     assumed = assumptions(asked, cavity, natural_frequency)
-    if json_:
-        from contvines.export import json_text
-
-        typer.echo(json_text(as_json(figures, assumed)))
-    else:
-        typer.echo(table(f"Design figures of {study.name}", rows(figures, assumed), assumed.values()))
-    if plot is not None:
-        from contvines.command.compose import say
-
-        save_figure(draw(figures, size, assumed), plot)
-        say(f"drawn in {plot}")
+    told = table(f"Design figures of {study.name}", rows(figures, assumed), assumed.values())
+    tell(told, as_json(figures, assumed) if json_ else None)
+    draw_in(plot, lambda: draw(figures, size, assumed))

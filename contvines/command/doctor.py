@@ -8,6 +8,7 @@ from typing import Any
 
 import typer
 
+from contvines.command.frame import tell
 from contvines.command.options import JsonOption
 
 EXTRAS = {
@@ -36,9 +37,7 @@ def doctor(json: JsonOption = False) -> None:
     extras = {name: all(find_spec(part) for part in parts) for name, parts in EXTRAS.items()}
     test = self_test()
     if json:
-        from contvines.export import json_text
-
-        typer.echo(json_text({**made, "extras": extras, "self_test": test}))
+        tell(made, {**made, "extras": extras, "self_test": test})
     else:
         for name, value in made.items():
             typer.echo(f"{name:>10}  {value}")

@@ -1,7 +1,7 @@
 """`contvines schema`: the JSON Schema of studies, from which editors complete and check them."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -35,55 +35,41 @@ def schema(
 
 
 def study_schema() -> dict[str, Any]:
-    """The JSON Schema of every study: a machine by its name, the same in physical units, or a page of Python.
+    """The JSON Schema of every study: a machine by its name, the same in physical units, or a Python file's machine or flow.
 
     Returns
     -------
     dict
-        Of draft 7. Fields, types, limits and defaults are those of the pydantic models and of the machines' tables; what needs two
-        fields at once (a start outside its interval) is left to the commands.
+        Of draft 7. Fields, types, limits and defaults are those of the pydantic models; what needs two fields at once (a start outside
+        its interval) is left to the commands.
     """
+    from contvines.command.schema import FlowSections, PageSections, catalogue_model
     from orbits.machines.catalogue import NAMES
 
-    kinds = [_plain(name) for name in NAMES]
+    kinds = [_titled(inlined(catalogue_model(name)), f"the machine {name}") for name in NAMES]
     kinds += [made for made in map(_physical, NAMES) if made is not None]
+    own = [
+        _own(inlined(PageSections), "a machine of a Python file"),
+        _own(inlined(FlowSections), "a flow of a Python file"),
+    ]
     return {
         "$schema": DIALECT,
         "title": "a study of contvines",
         "type": "object",
-        "oneOf": [*kinds, _page()],
+        "oneOf": [*kinds, {"title": "what a Python file declares", "anyOf": own}],
     }
 
 
-def _plain(name: str) -> dict[str, Any]:
-    """A machine of the catalogue, in its own units."""
-    from pydantic import TypeAdapter
-
-    from contvines.command.schema import MODEL_SECTIONS, PARAMETERS, StudySections
-    from orbits.machines.catalogue import model_class
-
-    entries = {entry.name: entry for entry in model_class(name).settable}
-    model = inlined(MODEL_SECTIONS[name])
-    model["properties"] = {k: _explained(v, entries.get(k)) for k, v in model["properties"].items()}
-    start = {k: _explained(TypeAdapter(v).json_schema(), entries[k]) for k, v in PARAMETERS[name].items()}
-    return _joined(inlined(StudySections), f"the machine {name}", model, start)
-
-
-def _explained(field: dict[str, Any], entry: Any) -> dict[str, Any]:
-    """A field with its meaning and an example; words that stand for values are allowed beside numbers."""
-    if entry is None:
-        return field
-    if entry.words:  # limits behind a validator that turns words into numbers
-        limits = entry.limits.in_studies
-        number = {"type": "number", "minimum": limits.low, "maximum": limits.high}
-        default = {"default": field["default"]} if "default" in field else {}
-        field = {"anyOf": [{"enum": list(entry.words)}, number], **default}
-    return field | {"description": f"{entry.meaning}; for example {entry.example:g}"}
+def _titled(made: dict[str, Any], title: str) -> dict[str, Any]:
+    sections = {"model": made["properties"].pop("model") | {"title": title}, **made["properties"]}
+    return made | {"title": title, "properties": sections}
 
 
 def _physical(name: str) -> dict[str, Any] | None:
     """A machine in kilograms and hertz; quantities with a unit are text. None for one that has no quantities."""
-    from contvines.command.schema import StudySections
+    from pydantic import Field
+
+    from contvines.command.schema import StudySections, study_model
     from orbits.machines.catalogue import model_class
     from orbits.machines.physical.machine import tables
     from orbits.machines.physical.quantities import QuantityError
@@ -92,60 +78,34 @@ def _physical(name: str) -> dict[str, Any] | None:
         known = tables(model_class(name)).QUANTITIES
     except QuantityError:
         return None
-    fields = {key: _quantity(entry) for key, entry in known.items()}
-    title = f"the machine {name} in physical units"
-    own = {
-        "name": {"const": name},
-        "units": {"const": "si"},
-        "unusual": {"type": "boolean", "default": False, "description": "allow sizes that nobody builds"},
+    fields: dict[str, Any] = {
+        key: Annotated[
+            str if entry.unit else str | float,
+            Field(description=f"{entry.meaning}; for example {entry.example}"),
+        ]
+        for key, entry in known.items()
     }
-    model = {
-        "type": "object",
-        "properties": {**own, **fields},
-        "required": ["name"],
-        "additionalProperties": False,
+    settings: dict[str, Any] = {
+        "name": (Literal[name], ...),  # type: ignore[valid-type]
+        "units": (Literal["si"] | None, None),
+        "unusual": (Annotated[bool, Field(description="allow sizes that nobody builds")], False),
+        **{key: (fields[key] | None, entry.default) for key, entry in known.items()},
     }
-    made = _joined(_with_units(inlined(StudySections)), title, model, fields)
+    made = _with_units(inlined(study_model(StudySections, settings, fields)))
     made["properties"]["units"] = {"const": "si"}
     said = {"required": ["units"]}
-    return made | {"anyOf": [said, {"properties": {"model": said}}]}
-
-
-def _quantity(entry: Any) -> dict[str, Any]:
-    kind: dict[str, Any] = {"type": "string" if entry.unit else ["number", "string"]}
-    default = {} if entry.default is None else {"default": entry.default}
-    return kind | default | {"description": f"{entry.meaning}; for example {entry.example}"}
-
-
-def _page() -> dict[str, Any]:
-    """A machine from a page of Python, told from the others by the name of its file."""
-    from contvines.command.page_study import PageStudyFile
-
-    made = inlined(PageStudyFile)
-    made["title"] = "a machine from a page of Python"
-    made["properties"]["model"]["properties"]["name"] = {
-        "type": "string",
-        "pattern": r"\.py",
-        "description": 'a file beside the study, and the machine in it: "file.py:machine"',
+    return _titled(made, f"the machine {name} in physical units") | {
+        "anyOf": [said, {"properties": {"model": said}}]
     }
-    return made
 
 
-def _joined(
-    made: dict[str, Any], title: str, model: dict[str, Any], parameters: dict[str, Any]
-) -> dict[str, Any]:
-    """All sections of one machine: its own `[model]`, its parameters in `[start]`, their names where one is chosen."""
-    sections = made["properties"]
-    start = sections["start"]
-    start["properties"] |= {k: {n: v for n, v in f.items() if n != "default"} for k, f in parameters.items()}
-    start["additionalProperties"] = False
-    for section in ("continue", "chart"):
-        sections[section]["properties"]["parameter"] = {"enum": list(parameters)}
-    return made | {
-        "title": title,
-        "properties": {"model": model | {"title": title}, **sections},
-        "required": ["model", *made["required"]],
-    }
+def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
+    """What a Python file declares, told from the others by the name of its file; its parameters are known when that has run."""
+    about = 'a file beside the study, and the machine or flow in it: "file.py:name"'
+    name = {"type": "string", "pattern": r"\.py", "description": about}
+    made["properties"]["model"] = {"type": "object", "properties": {"name": name}, "required": ["name"]}
+    made["properties"]["start"]["additionalProperties"] = True
+    return made | {"title": title, "required": ["model", *made["required"]]}
 
 
 def inlined(model: Any) -> dict[str, Any]:
@@ -163,7 +123,7 @@ def inlined(model: Any) -> dict[str, Any]:
             kept = told(shared[kept.pop("$ref").rpartition("/")[2]]) | kept
         choices = [entry for entry in kept.get("anyOf", ()) if entry != {"type": "null"}]
         if len(choices) == 1:
-            kept = {k: v for k, v in kept.items() if k != "anyOf"} | choices[0]
+            kept = choices[0] | {k: v for k, v in kept.items() if k != "anyOf"}
         elif choices:
             kept["anyOf"] = choices
         return kept

@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
+from contvines.command.frame import beside, load_file, say_state
 from contvines.command.options import FileArgument, TrustOption
-from contvines.command.stored import say_unfinished, say_what_lacks
 
 
 class Format(StrEnum):
@@ -44,10 +44,8 @@ def export(
     is their mirror image. The stuck absorber has no events: its u are the
     oscillator's sine and cosine (0 in the reduced machine).
     """
-    from contvines.command.compose import beside
     from contvines.export import check_target
     from contvines.export import export as write
-    from contvines.store import load
 
     if to is None:
         ending = output.suffix.removeprefix(".") if output is not None else ""
@@ -60,14 +58,11 @@ def export(
     target = output or beside(file, f".{to.value}")
     check_target(target, to.value)
     measures = to in (Format.csv, Format.mat)
-    graph = load(file, problems=measures, trust=trust)
+    graph = load_file(file, trust, measures, charts=True)
     if hasattr(graph, "loci"):
         from contvines.export.charts import export_chart
 
         typer.echo(str(export_chart(graph, to.value, target)))
         return
-    if measures:
-        say_what_lacks(graph)
-    if not graph.finished:
-        say_unfinished(file)
+    say_state(graph, file, measures)
     typer.echo(str(write(graph, to.value, target)))

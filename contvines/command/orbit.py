@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.options import JsonOption, TrustOption
+from contvines.command.frame import check_plot, draw, load_file, say, tell
+from contvines.command.options import JsonOption, PlotOption, TrustOption
 from contvines.text_table import fitted
 
 
@@ -21,9 +22,7 @@ def orbit(
         ),
     ] = None,
     json: JsonOption = False,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw phase portrait and history.")
-    ] = None,
+    plot: PlotOption = None,
     animate: Annotated[
         Path | None,
         typer.Option(
@@ -33,31 +32,18 @@ def orbit(
     trust: TrustOption = False,
 ) -> None:
     """One orbit: its events, multipliers and margins."""
+    from contvines.plots.portrait import plot_portrait
+
     if animate is not None:
         from contvines.shared.animations import check_animation
 
         check_animation(animate)
-    if plot is not None:
-        from contvines.plots.figures import check_picture
 
-        check_picture(plot)
+    check_plot(plot)
     found = _orbit(file, label, trust)
-    if json:
-        from contvines.export import json_text
-
-        typer.echo(json_text(_plain(found)))
-    else:
-        typer.echo(fitted(_describe(found)))
-    if plot is not None:
-        from contvines.command.compose import say
-        from contvines.plots.figures import save_figure
-        from contvines.plots.portrait import plot_portrait
-
-        save_figure(plot_portrait(found), plot)
-        say(f"drawn in {plot}")
+    tell(fitted(_describe(found)), _plain(found) if json else None)
+    draw(plot, lambda: plot_portrait(found))
     if animate is not None:
-        from contvines.command.compose import say
-
         if not hasattr(found, "animate"):
             raise ValueError(f"--animate {animate}: this solution has no motion to show; --plot draws it")
         found.animate(animate)
@@ -65,20 +51,19 @@ def orbit(
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> Any:
-    from contvines.command.study import is_database
+    from contvines.command.study import is_database, read_study
 
     if not is_database(file) and file.suffix == ".toml":
-        from contvines.command.compose import checked_study, first_orbit
+        from contvines.command.compose import first_orbit
 
         if label is not None:
             raise ValueError(
                 f"{label}: a study has no labels yet; leave the label out, or give a .vines file."
             )
-        return first_orbit(checked_study(file))
+        return first_orbit(read_study(file))
     from contvines.problems.registry import without_problem
-    from contvines.store import load
 
-    graph = load(file, trust=trust)
+    graph = load_file(file, trust, charts=True)
     if label is None:
         raise ValueError(
             f"which orbit of {file}? Give one of the labels {', '.join([*graph.special, *graph.branches])}."

@@ -1,21 +1,46 @@
-"""Studies in physical units: `units = "si"`, and quantities as text.
+"""A study in physical units: `units = "si"`, and quantities as text.
 
 The quantities make a machine (`orbits.machines.physical`); intervals and values of whatever varies become numbers, counted in the unit
 in which the machine's quantity was given. What is left is a study like any other.
 """
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from contvines.command.catalogue_study import built, wrong_guess
+from contvines.command.schema import StudySections
+from contvines.command.study_data import Sort, Study, wrong_intervals
+from contvines.command.study_errors import refuse, validated
+from orbits.machines.catalogue import model_class
+from orbits.machines.physical import units
+from orbits.machines.physical.machine import physical, tables
+from orbits.machines.physical.quantities import QuantityError, near_quantity
 
 OWN = ("name", "units", "unusual")
 SAID = ("word", "periods", "guess")
 
 
-def is_physical(data: dict[str, Any]) -> bool:
-    """Whether a study asks for physical units."""
-    model = data.get("model")
-    return "units" in data or (isinstance(model, dict) and "units" in model)
+def read_physical(data: dict[str, Any], path: Path) -> Study:
+    """A study in physical units.
+
+    Raises
+    ------
+    StudyError
+    """
+    machine, plain, wrong = converted(data)
+    file = validated(StudySections, plain, wrong)
+    if machine is None and not wrong:
+        wrong = ["the section [model] is missing; it holds the machine's name and its quantities."]
+    refuse(wrong)
+    assert machine is not None
+    go, own = file.continue_, machine.quantities
+    unit = machine.units.get(go.parameter, "")
+    wrong = wrong_intervals(file, own.get(go.parameter), lambda name, value: "", unit)
+    refuse([*wrong, *wrong_guess(file.start.guess, machine)])
+    return built(Study.of(path, Sort.PHYSICAL, machine.name, own, file, model=machine))
 
 
 def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
@@ -30,43 +55,53 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     wrong : list of str
         Sentences.
     """
-    from orbits.machines.catalogue import model_class
-    from orbits.machines.physical.machine import physical, tables
-    from orbits.machines.physical.quantities import QuantityError
-
     model, start = data.get("model"), data.get("start")
     if not isinstance(model, dict) or not isinstance(start, dict):
-        return None, {key: value for key, value in data.items() if key != "units"}, []
+        return None, {key: value for key, value in data.items() if key not in ("units", "model")}, []
     plain = {key: value for key, value in data.items() if key not in ("units", "model")}
-    units = data.get("units", model.get("units"))
-    if units != "si":
-        return None, _without_texts(plain), [f'units = {units!r} is unknown; "si" would do, or leave it out.']
-    name = model.get("name")
+    plain["start"] = {key: value for key, value in start.items() if key in SAID}
+    said, name = data.get("units", model.get("units")), str(model.get("name"))
+    if said != "si":
+        return None, _without_texts(plain), [f'units = {said!r} is unknown; "si" would do, or leave it out.']
     try:
-        known = tables(model_class(str(name))).QUANTITIES
+        known = tables(model_class(name)).QUANTITIES
     except ValueError as error:
         return None, _without_texts(plain), [f"[model] {error}."]
     wrong = [
-        _unknown(section, key, value, known, extra)
+        f"[{section}] {key} = {value!r}: there is no such quantity{near_quantity(key, [*known, *extra])}; "
+        f"known are {', '.join([*extra, *known])}."
         for section, values, extra in (("model", model, OWN), ("start", start, SAID))
         for key, value in values.items()
         if key not in known and key not in extra
     ]
-    plain["start"] = {key: value for key, value in start.items() if key in SAID}
-    told = {key: (f"[start] {key}", value) for key, value in start.items() if key in known}
-    groups = {known[key].choice for key in told}
-    told |= {
-        key: (f"[model] {key}", value)
-        for key, value in model.items()
-        if key in known
-        and known[key].choice not in groups  # [start] replaces what [model] says of the same thing
-    }
-    machine = None
+    # [start] replaces what [model] says of the same thing
+    groups = {known[key].choice for key in start if key in known}
+    places = {key: "model" for key in model if key in known and known[key].choice not in groups}
+    places |= {key: "start" for key in start if key in known}
     try:
-        machine = physical(str(name), {k: v for k, (_, v) in told.items()}, bool(model.get("unusual", False)))
+        told = {key: data[section][key] for key, section in places.items()}
+        machine = physical(name, told, bool(model.get("unusual", False)))
     except QuantityError as error:
-        return None, _without_texts(plain), [*wrong, f"{_placed(str(error), told)}."]
-    return _numbers(machine, plain, known, wrong)
+        section = places.get(str(error).split(" ", 1)[0].rstrip(":"), "model")
+        return None, _without_texts(plain), [*wrong, f"[{section}] {error}."]
+    usual = _parameter(plain.get("continue"))
+    if usual in known:
+        machine = machine.told_by(usual)
+    for section, values in plain.items():
+        if isinstance(values, dict) and section not in ("start", "survey"):
+            plain[section], refused = _numbers(machine, known, section, values, usual)
+            wrong += refused
+    return machine, plain, wrong
+
+
+def _parameter(section: Any) -> str | None:
+    name = section.get("parameter") if isinstance(section, dict) else None
+    return name if isinstance(name, str) else None
+
+
+def _lists(values: dict[str, Any]) -> Iterator[tuple[str, list[Any]]]:
+    """The entries of a section that hold values of what varies."""
+    return ((key, values[key]) for key in ("within", "values") if isinstance(values.get(key), list))
 
 
 def _without_texts(plain: dict[str, Any]) -> dict[str, Any]:
@@ -74,60 +109,45 @@ def _without_texts(plain: dict[str, Any]) -> dict[str, Any]:
     found = {}
     for section, values in plain.items():
         found[section] = dict(values) if isinstance(values, dict) else values
-        for key in ("within", "values") if isinstance(values, dict) else ():
-            if isinstance(values.get(key), list) and any(isinstance(value, str) for value in values[key]):
-                found[section][key] = [float(i) for i in range(len(values[key]))]
+        for key, texts in _lists(values) if isinstance(values, dict) else ():
+            if any(isinstance(value, str) for value in texts):
+                found[section][key] = [float(i) for i in range(len(texts))]
         if isinstance(values, dict) and isinstance(values.get("bounds"), dict):
             found[section].pop("bounds")
     return found
 
 
 def _numbers(
-    machine: Any, plain: dict[str, Any], known: Any, wrong: list[str]
-) -> tuple[Any, dict[str, Any], list[str]]:
-    """The intervals and values in all sections as numbers; the machine tells them by the quantity that varies."""
-    go = plain.get("continue")
-    usual = go.get("parameter") if isinstance(go, dict) else None
-    if isinstance(usual, str) and usual in known:
-        machine = machine.told_by(usual)
-    sections = {}
-    for section, values in plain.items():
-        if not isinstance(values, dict) or section in ("start", "survey"):
-            sections[section] = values
-            continue
-        from orbits.machines.physical.quantities import near_quantity
-
-        name = values.get("parameter", usual)
-        changed = dict(values)
-        if isinstance(name, str) and name not in known and "parameter" in values:
-            wrong.append(
-                f"[{section}] parameter = {name!r}: the model {machine.name!r} has no such quantity"
-                f"{near_quantity(name, known)}; it has {', '.join(known)}."
-            )
-            changed["within"] = [0.0, 1.0]
-        for key in ("within", "values"):
-            if isinstance(values.get(key), list) and isinstance(name, str) and name in known:
-                told = machine.told_by(name)
-                places = [f"[{section}] {key}[{i}]" for i in range(len(values[key]))]
-                pairs = [number_of(told, name, *pair) for pair in zip(values[key], places, strict=True)]
-                refused = [refusal for _, refusal in pairs if refusal]
-                wrong += refused
-                # numbers that nothing is wrong with in place of refused ones, so that these are refused once
-                usual_value = told.quantities.get(name) or 1.0
-                sound = np.linspace(0.5 * usual_value, usual_value, len(pairs)).tolist()
-                changed[key] = sound if refused else [number for number, _ in pairs]
-        if isinstance(values.get("bounds"), dict):
-            changed["bounds"], refused = _bounds(machine.units, values["bounds"], section)
-            wrong += refused
-        sections[section] = changed
-    return machine, sections, wrong
+    machine: Any, known: Any, section: str, values: dict[str, Any], usual: str | None
+) -> tuple[dict[str, Any], list[str]]:
+    """A section with numbers in place of quantities, and refusals; the machine tells them by the quantity that varies."""
+    name, changed, wrong = _parameter(values) or usual, dict(values), []
+    if name is not None and name not in known and "parameter" in values:
+        wrong.append(
+            f"[{section}] parameter = {name!r}: the model {machine.name!r} has no such quantity"
+            f"{near_quantity(name, known)}; it has {', '.join(known)}."
+        )
+        changed["within"] = [0.0, 1.0]
+    if name is None:
+        return changed, wrong
+    for key, texts in _lists(values) if name in known else ():
+        told = machine.told_by(name)
+        pairs = [number_of(told, name, text, f"[{section}] {key}[{i}]") for i, text in enumerate(texts)]
+        refused = [refusal for _, refusal in pairs if refusal]
+        wrong += refused
+        # numbers that nothing is wrong with in place of refused ones, so that these are refused once
+        sound = told.quantities.get(name) or 1.0
+        changed[key] = (
+            np.linspace(0.5 * sound, sound, len(pairs)).tolist() if refused else [n for n, _ in pairs]
+        )
+    if isinstance(values.get("bounds"), dict):
+        changed["bounds"], refused = _bounds(machine.units, values["bounds"], section)
+        wrong += refused
+    return changed, wrong
 
 
 def _bounds(own: dict[str, str], bounds: dict[str, Any], section: str) -> tuple[dict[str, Any], list[str]]:
     """Bounds of measures counted in the units in which these are shown, and refusals; plain numbers are counted in them already."""
-    from orbits.machines.physical import units
-    from orbits.machines.physical.quantities import QuantityError
-
     found, wrong = {}, []
     for name, pair in bounds.items():
         found[name] = list(pair) if isinstance(pair, list) else pair
@@ -148,9 +168,6 @@ def number_of(
 
     A `spread` of values, their deviation, may be as small as it likes. What is neither text nor a number is left to others to refuse.
     """
-    from orbits.machines.physical import units
-    from orbits.machines.physical.quantities import QuantityError
-
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         return value, None
     quantity = machine.tables.QUANTITIES[name]
@@ -169,19 +186,3 @@ def number_of(
         except QuantityError as error:
             return value, f"{place} = {value!r}: {error}."
     return number, None
-
-
-def _unknown(section: str, key: str, value: Any, known: Any, extra: tuple[str, ...]) -> str:
-    from orbits.machines.physical.quantities import near_quantity
-
-    return (
-        f"[{section}] {key} = {value!r}: there is no such quantity{near_quantity(key, [*known, *extra])}; "
-        f"known are {', '.join([*extra, *known])}."
-    )
-
-
-def _placed(sentence: str, told: dict[str, tuple[str, Any]]) -> str:
-    """A refusal with the section of the quantity that it names first."""
-    first = sentence.split(" ", 1)[0].rstrip(":")
-    place = told[first][0] if first in told else f"[model] {first}"
-    return place + sentence[len(first) :]

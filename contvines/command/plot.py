@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.compare import CompareOption, check_compared, compared
-from contvines.command.options import FileArgument, SizeOption, TrustOption
-from contvines.command.stored import say_unfinished, say_what_lacks
+from contvines.command.compare import check_compared, compared
+from contvines.command.frame import beside, check_plot, load_file, say_state
+from contvines.command.options import CompareOption, FileArgument, SizeOption, TrustOption
 
 
 class Picture(StrEnum):
@@ -70,9 +70,7 @@ def plot(
     trust: TrustOption = False,
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
-    from contvines.command.compose import beside
-    from contvines.plots.figures import check_picture, check_size, check_style, save_figure
-    from contvines.store import load
+    from contvines.plots.figures import check_style, save_figure
 
     asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
     asked |= {"--compare": compare[0] if compare else None}
@@ -81,15 +79,14 @@ def plot(
     asked |= {"--no-legend": None if legend else "", "--branch": branch}
     _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
-    check_picture(target)
+    check_plot(target, size)
     check_style(style)
     for name, pair in (("--xlim", xlim), ("--ylim", ylim)):
         if pair is not None and not (math.isfinite(sum(pair)) and pair[0] < pair[1]):
             raise ValueError(
                 f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
             )
-    check_size(size)
-    graph = load(file, trust=trust)
+    graph = load_file(file, trust, charts=True)
     if hasattr(graph, "loci"):
         from contvines.plots.chart import plot_chart
 
@@ -97,9 +94,7 @@ def plot(
         save_figure(plot_chart(graph, figsize=size, style=style, legend=legend), target)
         typer.echo(str(target))
         return
-    say_what_lacks(graph)
-    if not graph.finished:
-        say_unfinished(file)
+    say_state(graph, file)
     if not graph.branches:
         raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
     if kind is Picture.diagram:

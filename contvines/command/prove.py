@@ -7,8 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.amounts import interval
-from contvines.command.options import TrustOption
-from contvines.command.place import held
+from contvines.command.frame import held, interruptible, load_file
+from contvines.command.options import JsonOption, TrustOption
 from contvines.text_table import fitted
 
 MANY = 2000  # boxes: checking more of them is announced
@@ -28,9 +28,7 @@ def prove(
             help="With FILE.vines: special points (PD1), orbits (B1:12), branches (B1); by default all special points.",
         ),
     ] = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print one JSON object, balls as decimal middle and radius.")
-    ] = False,
+    json: JsonOption = False,
     check: Annotated[
         bool,
         typer.Option("--check", help="Verify the certificates that are kept, by an independent checker."),
@@ -79,13 +77,14 @@ def prove(
 
 
 def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]:
-    from contvines.command.compose import checked_study, first_orbit
+    from contvines.command.compose import first_orbit
+    from contvines.command.study import read_study
 
     if labels:
         raise ValueError(
             f"{labels[0]}: a study has no labels yet; leave the label out, or give a .vines file."
         )
-    orbit = first_orbit(checked_study(file))
+    orbit = first_orbit(read_study(file))
     if not hasattr(orbit, "prove"):
         raise ValueError(
             f"{file}: its machine offers no proofs, for flights on a page have no closed form; machines of orbits that have one do"
@@ -103,12 +102,11 @@ def _of_file(
 def _proved(
     file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[str, str] | None
 ) -> dict[str, Any]:
-    from contvines.command.run import interruptible
     from contvines.graph.proving import prove as prove_labels
     from contvines.graph.proving import subject
-    from contvines.store import Store, load
+    from contvines.store import Store
 
-    graph = load(file, trust=trust)
+    graph = load_file(file, trust)
     if not (labels or graph.special):
         raise ValueError(f"{file} has no special points to prove; give branches or orbits, B1 or B1:12.")
     if within is not None and not (labels and all(label in graph.branches for label in labels)):
@@ -136,9 +134,7 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
     from contvines.store import printable
 
     if is_database(file):
-        from contvines.store import load
-
-        kept = load(file, problems=False).proofs
+        kept = load_file(file, problems=False).proofs
         found = {label: proof["certificate"] for label, proof in kept.items()}
     else:
         try:

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
+from contvines.command.frame import beside, load_file, say
 from contvines.command.options import TrustOption
 
 
@@ -28,7 +29,6 @@ def report(
     and the Python line that give it again. Of a survey: outcomes over what
     varies, and the machines behind each point.
     """
-    from contvines.command.compose import beside, say
     from contvines.report.page import check_page, write_report
 
     target = output or beside(file, ".html")
@@ -52,9 +52,8 @@ def _result(file: Path, trust: bool) -> Any:
             raise ValueError(f"{file}: all machines of the survey failed; its CSV says why.")
         return survey
     from contvines.loci.chart import Chart
-    from contvines.store import load
 
-    result: Any = load(file, trust=trust)
+    result = load_file(file, trust, charts=True)
     if isinstance(result, Chart):
         if not result.loci:
             raise ValueError(f"{file} has no finished locus yet; run the command that made it again.")

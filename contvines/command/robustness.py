@@ -1,12 +1,12 @@
 """`contvines robustness`: how far a stable motion is from being lost."""
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from contvines.command.amounts import inside
-from contvines.command.options import FileArgument, SizeOption, TrustOption
+from contvines.command.frame import check_plot, draw, load_file, tell
+from contvines.command.options import FileArgument, JsonOption, PlotOption, SizeOption, TrustOption
 
 
 def robustness(
@@ -30,13 +30,9 @@ def robustness(
         int, typer.Option("--starts", min=1, help="Starts that tell the share of the basin.")
     ] = 1024,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the starts.")] = 0,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the erosion curve of a branch.")
-    ] = None,
+    plot: PlotOption = None,
     size: SizeOption = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")
-    ] = False,
+    json: JsonOption = False,
     trust: TrustOption = False,
 ) -> None:
     """The smallest kick that makes a stable motion go elsewhere, and the share of starts that reach it.
@@ -45,14 +41,9 @@ def robustness(
     """
     import contvines
     from contvines.problems.registry import without_problem
-    from contvines.store import load
 
-    if plot is not None:
-        from contvines.plots.figures import check_picture, check_size
-
-        check_picture(plot)
-        check_size(size)
-    graph = load(file, trust=trust)
+    check_plot(plot, size)
+    graph = load_file(file, trust, charts=True)
     name, _, place = label.partition(":")
     branches = getattr(graph, "branches", {})
     if name not in branches:
@@ -76,15 +67,5 @@ def robustness(
         found = contvines.erosion(branch, values, starts=starts, seed=seed)
     else:
         found = contvines.robustness(branch, value, starts=starts, seed=seed, vary=tuple(vary or ()))
-    if json:
-        from contvines.export import json_text
-
-        typer.echo(json_text(found.to_dict()))
-    else:
-        typer.echo(str(found))
-    if plot is not None:
-        from contvines.plots.figures import save_figure
-
-        save_figure(found.plot(figsize=size), plot)
-        if not json:
-            typer.echo(f"drawn in {plot}")
+    tell(found, found.to_dict() if json else None)
+    draw(plot, lambda: found.plot(figsize=size), json)

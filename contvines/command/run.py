@@ -1,52 +1,45 @@
-"""`contvines diagram`, `trace` and `switch`: the commands that continue."""
+"""`contvines diagram`, `trace`, `atlas` and `switch`: the commands that continue."""
 
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from contvines.command.compare import CompareOption, check_compared
-from contvines.command.options import FreshOption, TrustOption
-from contvines.command.place import held
+from contvines.command.compare import check_compared
+from contvines.command.frame import (
+    check_plot,
+    check_special,
+    draw,
+    finished_of,
+    held,
+    interruptible,
+    load_file,
+    place_of,
+    refuse_unfinished,
+    say,
+    working,
+)
+from contvines.command.options import (
+    CompareOption,
+    FileArgument,
+    FreshOption,
+    LabelArgument,
+    PlotOption,
+    QuietOption,
+    StudyArgument,
+    TrustOption,
+)
 
-StudyArgument = Annotated[
-    Path, typer.Argument(metavar="STUDY.toml", help="The study: model, start, what to continue.")
-]
-FileArgument = Annotated[
-    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
-]
 OutputOption = Annotated[
     Path | None,
     typer.Option(
-        "-o", "--output", metavar="FILE.vines", help="Where to keep the graph; by default STUDY.vines here."
-    ),
-]
-TraceOutputOption = Annotated[
-    Path | None,
-    typer.Option(
         "-o",
         "--output",
         metavar="FILE.vines",
-        help="Where to keep the branch; by default STUDY-trace.vines here.",
+        help="Where to keep it; by default STUDY.vines (diagram) or STUDY-COMMAND.vines here.",
     ),
 ]
-AtlasOutputOption = Annotated[
-    Path | None,
-    typer.Option(
-        "-o",
-        "--output",
-        metavar="FILE.vines",
-        help="Where to keep the graph; by default STUDY-atlas.vines here.",
-    ),
-]
-PlotOption = Annotated[
-    Path | None,
-    typer.Option("--plot", metavar="FILE.png", help="Draw the bifurcation diagram (png, pdf or svg)."),
-]
-QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table.")]
 XOption = Annotated[str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")]
 YOption = Annotated[
     str | None,
@@ -80,7 +73,7 @@ def diagram(
 
 def atlas(
     study: StudyArgument,
-    output: AtlasOutputOption = None,
+    output: OutputOption = None,
     plot: PlotOption = None,
     fresh: FreshOption = False,
     quiet: QuietOption = False,
@@ -98,7 +91,7 @@ def atlas(
 
 def trace(
     study: StudyArgument,
-    output: TraceOutputOption = None,
+    output: OutputOption = None,
     plot: PlotOption = None,
     fresh: FreshOption = False,
     quiet: QuietOption = False,
@@ -111,7 +104,7 @@ def trace(
 
 def switch(
     file: FileArgument,
-    label: Annotated[str, typer.Argument(metavar="LABEL", help="A special point, for example SB1.")],
+    label: LabelArgument,
     quiet: QuietOption = False,
     trust: TrustOption = False,
 ) -> None:
@@ -134,24 +127,15 @@ def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, li
     """The graph of a file with what leaves a special point, and the branches that are new."""
     from contvines.continuation.settings import Settings
     from contvines.graph.automatic import switch as leave
-    from contvines.progress import shown
-    from contvines.store import Store, load
+    from contvines.store import Store
 
-    graph = load(file, trust=trust)
-    if not graph.finished:
-        raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
-    if label not in graph.special:
-        what = "is a branch" if label in graph.branches else "is no label of it"
-        raise ValueError(
-            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
-        )
-    own = Settings().to_dict()
-    settings = {
-        k: v for k, v in graph.settings.items() if k in own and k != "max_branches"
-    }  # trace allows one only
+    graph = load_file(file, trust)
+    refuse_unfinished(graph, file)
+    check_special(graph, file, label)
+    own = Settings().to_dict()  # of which trace allows one branch only
+    settings = {k: v for k, v in graph.settings.items() if k in own and k != "max_branches"}
     with (
-        interruptible(f"{file} is as it was"),
-        shown(not quiet) as progress,
+        working(f"{file} is as it was", quiet) as progress,
         warnings.catch_warnings(action="ignore", category=UserWarning),  # the caller prints the reason
     ):
         new = [graph.branches[name] for name in leave(graph, label, progress=progress, settings=settings)]
@@ -174,27 +158,17 @@ def _run(
     compare: list[str] | None = None,
     look: bool = False,
 ) -> None:
-    from contvines.command.compose import (
-        beside,
-        check_place,
-        check_shaken,
-        checked_study,
-        machine,
-        say,
-    )
-    from contvines.command.measures import check_axes, check_bounds
+    from contvines.command.asked_measures import check_axes, check_bounds
+    from contvines.command.compose import check_shaken
+    from contvines.command.study import read_study
 
-    study = checked_study(path)
+    study = read_study(path)
     check_axes(study, {"-x": x, "-y": y}, plot)
     check_bounds(study, command)
     check_shaken(study)
     check_compared(compare, plot is not None)
-    target = output or beside(path, ".vines" if command == "diagram" else f"-{command}.vines")
-    check_place(target)
-    if target.resolve() == path.resolve():
-        raise ValueError(f"{target}: this is the study itself; choose another name with -o.")
-    if plot is not None:
-        _check_picture(plot)
+    target = place_of(output, path, ".vines" if command == "diagram" else f"-{command}.vines")
+    check_plot(plot)
     with held(target, quiet, fresh):
         graph = _graph(study, command, target, quiet, problems=plot is not None, look=look)
     if not quiet:
@@ -203,21 +177,17 @@ def _run(
         from contvines.command.compare import told_compared
         from contvines.text_table import fitted
 
-        typer.echo("\n" + fitted(told_compared(machine(study), study.parameter, study.within, compare)))
+        typer.echo("\n" + fitted(told_compared(study.model, study.parameter, study.within, compare)))
     if command == "diagram" and graph.missing:
         from contvines.coexistence.missing import told
 
         say(told(graph, f"contvines atlas {path} adds what is connected to it"), quiet)
-    if plot is not None:
-        _draw(graph, x, y, plot, compare)
-        say(f"drawn in {plot}", quiet)
+    draw(plot, lambda: _picture(graph, x, y, compare), quiet)
 
 
 def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:
     """The graph of a study: from its file if that is finished, computed else."""
-    from contvines.command.compose import first_orbit, population, run_atlas, run_diagram, say
-    from contvines.command.stored import finished_of
-    from contvines.progress import shown
+    from contvines.command.compose import first_orbit, population, run_atlas, run_diagram
     from contvines.store import Store
 
     fingerprint = study.fingerprint(command)
@@ -226,33 +196,15 @@ def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: boo
         alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
         run = run_atlas if command == "atlas" else run_diagram
         seed = population(study) if command == "atlas" else first_orbit(study)
+        note = f"all finished points are kept in {target}; the same command goes on from there"
         with Store.attach(target, fingerprint, study.describe()) as store:
-            note = f"all finished points are kept in {target}; the same command goes on from there"
-            with interruptible(note), shown(not quiet) as progress:
+            with working(note, quiet) as progress:
                 graph = run(study, seed, journal=store, progress=progress, **alone)
             store.tidy()
         say(f"kept in {target}", quiet)
     elif graph.looked or not look:
         say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
     return _look(study, target) if look and not graph.looked else graph
-
-
-@contextmanager
-def interruptible(note: str) -> Iterator[None]:
-    """Ctrl-C ends the command with a sentence that says what is kept and how to go on."""
-    from contvines.command.compose import Interrupted
-
-    try:
-        yield
-    except KeyboardInterrupt:
-        raise Interrupted(note) from None
-
-
-def _check_picture(path: Path) -> None:
-    # kept apart from matplotlib: a wrong name is refused at once
-    from contvines.plots.figures import check_picture
-
-    check_picture(path)
 
 
 def _look(study: Any, target: Path) -> Any:
@@ -275,14 +227,11 @@ def _look(study: Any, target: Path) -> Any:
     return graph
 
 
-def _draw(graph: Any, x: str | None, y: str | None, path: Path, compare: list[str] | None = None) -> None:
-    from contvines.plots.figures import save_figure
-
+def _picture(graph: Any, x: str | None, y: str | None, compare: list[str] | None) -> Any:
     if graph.attractors:
         from contvines.plots.atlas import plot_atlas
 
-        save_figure(plot_atlas(graph, x, y), path)
-        return
+        return plot_atlas(graph, x, y)
     from contvines.command.compare import compared
 
-    save_figure(compared(graph, compare, x, y), path)
+    return compared(graph, compare, x, y)

@@ -1,25 +1,203 @@
-"""What a TOML study may hold: its sections, their fields and the range of every parameter."""
+"""What a TOML study may hold: its sections, their fields with what would do, and models of whole studies made from tables of parameters."""
 
-from typing import Annotated, Any, Literal, Union
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, model_serializer
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    WithJsonSchema,
+    create_model,
+    model_serializer,
+)
+from pydantic.fields import FieldInfo
 
-from orbits.machines.catalogue import NAMES, model_class
 from orbits.machines.parameters import Parameter
 
+LONGEST = 65_536  # letters of a word: 16 for each of the most forcing periods
 
-def kind(entry: Parameter) -> Any:
-    """The type of a parameter's values in a study: a number within its limits, or one of its words."""
-    limits = entry.limits.in_studies
-    low = {"gt": limits.low} if limits.open else {"ge": limits.low}
-    number = Annotated[float, Field(**low, le=limits.high)]  # type: ignore[arg-type]
-    if not entry.words:
-        return number
 
-    def coded(value: Any) -> Any:
-        return entry.words.get(value, value) if isinstance(value, str) else value
+class Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
-    return Annotated[float, BeforeValidator(coded), Field(**low, le=limits.high)]  # type: ignore[arg-type]
+
+def text(would_do: str, **limits: Any) -> Any:
+    """A field with limits and what would do, for refusals and for editors."""
+    return Field(description=would_do, **limits)
+
+
+Interval = Annotated[
+    list[float],
+    text("two finite numbers [low, high] with low < high", min_length=2, max_length=2),
+]
+Unbounded = Annotated[float, Field(allow_inf_nan=True)]
+Seed = Annotated[int, text("a whole number >= 0", ge=0)]
+PARAMETER = "the name of one of the model's parameters"
+
+
+class WordSection(Section):
+    """`[start]` of a machine: the first orbit; without a word the motion that settles from rest."""
+
+    word: Annotated[
+        str | None,
+        text("a word of events such as 'LR', 'LtL' or 'tt', or of maps such as 'LR RL'", max_length=LONGEST),
+    ] = None
+    periods: Annotated[int, text("a whole number from 1 to 4096", ge=1, le=4096)] = 1
+    guess: Annotated[
+        list[list[float]] | None, text("a list with one [phase, B or w] per event of the word")
+    ] = None
+
+
+class PageStart(WordSection):
+    """`[start]` of a machine on a page: the word may be left out (the attractor from `state` is taken)."""
+
+    state: Annotated[dict[str, float] | None, text("states by name, for example { x = 0.1 }")] = None
+
+
+class FlowStart(Section):
+    """`[start]` of a flow: where a motion begins whose cycle is followed; without it, the equilibrium near the flow's own start. ``box`` are
+    the ranges of the states from which an atlas and basins begin."""
+
+    state: Annotated[list[float] | None, text("one number for each state", min_length=1)] = None
+    box: Annotated[
+        list[Annotated[list[float], Field(min_length=2, max_length=2)]] | None,
+        text("a pair [low, high] for each state"),
+    ] = None
+
+
+class ContinueSection(Section):
+    """`[continue]`: the parameter, its interval and how far to go; measures within whose bounds branches stay."""
+
+    parameter: Annotated[str, text(PARAMETER)]
+    within: Interval
+    depth: Annotated[int, text("a whole number >= 0: how many switches deep", ge=0)] = 3
+    virtual: Annotated[bool, text("true or false")] = False
+    tolerance: Annotated[float | None, text("a number in (0, 1e-3], for example 1e-10", gt=0, le=1e-3)] = None
+    angle: Annotated[
+        float | None,
+        text("an angle between tangents in (0, 0.5] radians, for example 0.1", gt=0, le=0.5),
+    ] = None
+    max_step: Annotated[
+        float | None,
+        text("a number in (1e-9, 0.5], a share of the interval, for example 0.03", gt=1e-9, le=0.5),
+    ] = None
+    max_points: Annotated[int | None, text("a whole number >= 1, for example 20000", ge=1)] = None
+    max_branches: Annotated[int | None, text("a whole number >= 1, for example 200", ge=1)] = None
+    bounds: Annotated[
+        dict[str, Annotated[list[Unbounded], Field(min_length=2, max_length=2)]],
+        text("two numbers for each measure, for example bounds = { B = [-inf, 3.0] }"),
+    ] = {}
+    kinds: Annotated[
+        str | None, text('a file beside the study and a kind in it, for example "saddles.py:neutral"')
+    ] = None
+
+
+class SweepSection(Section):
+    """`[sweep]`, optional: the brute-force simulation of `contvines sweep`."""
+
+    within: Interval | None = None
+    count: Annotated[int, text("a whole number >= 2 and <= 1000000, for example 400", ge=2, le=1_000_000)] = (
+        400
+    )
+    transient: Annotated[
+        int,
+        text("a whole number of forcing periods from 0 to 1000000, for example 200", ge=0, le=1_000_000),
+    ] = 200
+    max_period: Annotated[
+        int, text("a whole number of forcing periods from 1 to 256, for example 16", ge=1, le=256)
+    ] = 16
+
+
+class AtlasSection(Section):
+    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed, how many
+    further values in a row must meet nothing new, and how much work it may take."""
+
+    values: Annotated[
+        Annotated[int, Field(ge=1, le=10_000)] | list[float],
+        text("a whole number of values from 1 to 10000, for example 16, or a list of values"),
+    ] = 16
+    starts: Annotated[
+        int, text("a whole number of starts from 1 to 10000000, for example 256", ge=1, le=10_000_000)
+    ] = 256
+    seed: Seed = 0
+    scan: Annotated[
+        int | None,
+        text("a whole number of further values from 0 to 1000000; 0: none", ge=0, le=1_000_000),
+    ] = None
+    budget: Annotated[int | None, text("a whole number of 1 or more, for example 500000", ge=1)] = None
+
+    @model_serializer(mode="wrap")
+    def _settings(self, write: Any) -> dict[str, Any]:
+        """Without a budget that was not given: files of studies that knew none are theirs still."""
+        return {name: value for name, value in write(self).items() if (name, value) != ("budget", None)}
+
+
+class ChartSection(Section):
+    """`[chart]`, optional: the second parameter of `contvines chart`."""
+
+    parameter: Annotated[str, text(PARAMETER)]
+    within: Interval
+
+
+class SurveySection(Section):
+    """`[survey]`, optional: the many machines of `contvines survey`."""
+
+    vary: Annotated[
+        dict[str, Any], text('names and their values, for example half_width = ["10 mm", "15 mm"]')
+    ] = {}
+    outcomes: Annotated[
+        list[str], text("a list of names, for example ['peak', 'activation']", min_length=1)
+    ] = ["peak"]
+    sampling: Annotated[Literal["latin", "sobol", "random"], text("'latin', 'sobol' or 'random'")] = "latin"
+    samples: Annotated[
+        int, text("a whole number >= 1 and <= 1000000, for example 32", ge=1, le=1_000_000)
+    ] = 32
+    seed: Seed = 1
+    gaps: Annotated[int, text("a whole number of values from 0 to 1000, for example 5", ge=0, le=1000)] = 5
+    values: Annotated[int, text("a whole number of values from 0 to 1000, for example 9", ge=0, le=1000)] = 0
+    starts: Annotated[int, text("a whole number of starts from 1 to 1000, for example 4", ge=1, le=1000)] = 1
+    atlas: Annotated[bool, text("true or false")] = False
+
+
+class FlowSections(Section):
+    """What a study of a flow has beside it."""
+
+    start: FlowStart = FlowStart()
+    continue_: Annotated[ContinueSection, Field(alias="continue")]
+    atlas: AtlasSection = AtlasSection()
+
+
+class _MachineSections(Section):
+    continue_: Annotated[ContinueSection, Field(alias="continue")]
+    sweep: SweepSection = SweepSection()
+    atlas: AtlasSection = AtlasSection()
+    chart: ChartSection | None = None
+    survey: SurveySection = SurveySection()
+
+
+class StudySections(_MachineSections):
+    """What every study of a built-in machine has beside it."""
+
+    start: WordSection
+
+
+class PageSections(_MachineSections):
+    """What every study of a machine of a Python file has beside it."""
+
+    start: PageStart = PageStart()
+
+
+class _AnyStart(Section):
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+
+class UnknownModel(_MachineSections):
+    """A study whose model is not known: all that can be checked without it."""
+
+    model: Any = None
+    start: _AnyStart
 
 
 def would_do(entry: Parameter) -> str:
@@ -38,123 +216,94 @@ def shown(number: float) -> str:
     return f"{number:g}".replace("e+0", "e").replace("e-0", "e-")
 
 
-class Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+def number(entry: Parameter) -> Any:
+    """The type of a parameter's values in a study: a number within its limits, or one of its words."""
+    limits = entry.limits.in_studies
+    ends = {"gt" if limits.open else "ge": limits.low, "le": limits.high}
+    about = {"description": f"{entry.meaning}; for example {entry.example:g}"}
+    kind = Annotated[float, Field(description=would_do(entry), json_schema_extra=about, **ends)]  # type: ignore[arg-type]
+    if not entry.words:
+        return kind
+
+    def coded(value: Any) -> Any:
+        return entry.words.get(value, value) if isinstance(value, str) else value
+
+    span = {"type": "number", "minimum": limits.low, "maximum": limits.high}
+    written = {"anyOf": [{"enum": list(entry.words)}, span], **about}
+    return Annotated[kind, BeforeValidator(coded), WithJsonSchema(written)]
 
 
-def _section(name: str) -> type[Section]:
-    """`[model]` of one machine: its fields, with the machine's own defaults."""
+def study_model(
+    base: type[Section], settings: Mapping[str, tuple[Any, Any]], parameters: Mapping[str, Any]
+) -> type[Section]:
+    """The model of a whole study.
+
+    Parameters
+    ----------
+    base : type of Section
+        The sections beside `[model]`.
+    settings : mapping
+        Fields of `[model]` by name: type and default, ``...`` where there is none.
+    parameters : mapping
+        Type of each parameter by name: `[start]` may give it, `[continue]` and `[chart]` may vary it.
+    """
+    chosen = Annotated[Literal[tuple(parameters)], text(PARAMETER)]  # type: ignore[valid-type]
+    kinds: dict[str, Any] = {name: kind_of(field) for name, field in base.model_fields.items()}
+    loose = {name: (kind | None, None) for name, kind in parameters.items()}
+    start = _section(kinds["start"], {k: v for k, v in loose.items() if k not in kinds["start"].model_fields})
+    go = _section(kinds["continue_"], {"parameter": (chosen, ...)})
+    first = base.model_fields["start"]
+    sections: dict[str, Any] = {
+        "model": (_section(Section, settings), ...),
+        "start": (start, ... if first.is_required() else start()),
+        "continue_": (Annotated[go, Field(alias="continue")], ...),
+    }
+    if "chart" in kinds:
+        sections["chart"] = (_section(kinds["chart"], {"parameter": (chosen, ...)}) | None, None)
+    return create_model(base.__name__, __base__=base, **sections)
+
+
+def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> Any:
+    """A section with further fields; they go by aliases, as their names may be those of a method of pydantic."""
+    own = {
+        name if name in base.model_fields else f"field_{place}": (
+            Annotated[kind, Field(alias=name)],
+            default,
+        )
+        for place, (name, (kind, default)) in enumerate(fields.items())
+    }
+    made = create_model(base.__name__, __base__=base, **own)  # type: ignore[call-overload]
+    made.__doc__ = base.__doc__
+    return made
+
+
+def kind_of(field: FieldInfo) -> Any:
+    """The section's model that a field of a study holds."""
+    from typing import get_args
+
+    kinds: Iterable[Any] = (field.annotation, *get_args(field.annotation))
+    return next(kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel))
+
+
+def given(section: Section, names: Iterable[str]) -> dict[str, Any]:
+    """The values of a section that stand in the study or have a default, among these names."""
+    values = section.model_dump(by_alias=True, exclude_none=True)
+    return {name: values[name] for name in names if name in values}
+
+
+def catalogue_model(name: str) -> type[Section]:
+    """The model of a study of a machine of the catalogue."""
+    from orbits.machines.catalogue import model_class
+
     machine = model_class(name)
-    fields: dict[str, Any] = {"name": (Literal[name], ...)}  # type: ignore[valid-type]
     defaults = machine.defaults()
+    settings: dict[str, Any] = {"name": (Literal[name], ...)}  # type: ignore[valid-type]
     for entry in machine.settable:
         if entry.name in defaults:
-            default = defaults[entry.name]
-            optional = default is None
-            wanted = kind(entry) | None if optional else kind(entry)
-            fields[entry.name] = (wanted, default if optional or default is ... else entry.number(default))
-    return create_model(f"{machine.__name__}Section", __base__=Section, **fields)
-
-
-MODEL_SECTIONS: dict[str, type[Section]] = {name: _section(name) for name in NAMES}
-ModelSection: Any = Annotated[Union[tuple(MODEL_SECTIONS.values())], Field(discriminator="name")]  # noqa: UP007
-
-
-LONGEST = 65_536  # letters of a word: 16 for each of the most forcing periods
-
-
-class StartSection(Section):
-    """`[start]`: the first orbit (without a word the motion that settles from rest); further keys override the model's parameters."""
-
-    model_config = ConfigDict(extra="allow", frozen=True, strict=True, allow_inf_nan=False)
-
-    word: Annotated[str, Field(max_length=LONGEST)] | None = None
-    periods: Annotated[int, Field(ge=1, le=4096)] = 1
-    guess: list[list[float]] | None = None
-
-
-Unbounded = Annotated[float, Field(allow_inf_nan=True)]
-
-
-class ContinueSection(Section):
-    """`[continue]`: the parameter, its interval and how far to go; measures within whose bounds branches stay."""
-
-    parameter: str
-    within: Annotated[list[float], Field(min_length=2, max_length=2)]
-    depth: Annotated[int, Field(ge=0)] = 3
-    virtual: bool = False
-    tolerance: Annotated[float, Field(gt=0, le=1e-3)] | None = None
-    angle: Annotated[float, Field(gt=0, le=0.5)] | None = None
-    max_step: Annotated[float, Field(gt=1e-9, le=0.5)] | None = None
-    max_points: Annotated[int, Field(ge=1)] | None = None
-    max_branches: Annotated[int, Field(ge=1)] | None = None
-    bounds: dict[str, Annotated[list[Unbounded], Field(min_length=2, max_length=2)]] = {}
-    kinds: str | None = None
-
-
-class SweepSection(Section):
-    """`[sweep]`, optional: the brute-force simulation of `contvines sweep`."""
-
-    within: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
-    count: Annotated[int, Field(ge=2, le=1_000_000)] = 400
-    transient: Annotated[int, Field(ge=0, le=1_000_000)] = 200
-    max_period: Annotated[int, Field(ge=1, le=256)] = 16
-
-
-class AtlasSection(Section):
-    """`[atlas]`, optional: where `contvines atlas` simulates, from how many starts, drawn with which seed, how many
-    further values in a row must meet nothing new, and how much work it may take."""
-
-    values: Annotated[int, Field(ge=1, le=10_000)] | list[float] = 16
-    starts: Annotated[int, Field(ge=1, le=10_000_000)] = 256
-    seed: Annotated[int, Field(ge=0)] = 0
-    scan: Annotated[int, Field(ge=0, le=1_000_000)] | None = None
-    budget: Annotated[int, Field(ge=1)] | None = None
-
-    @model_serializer(mode="wrap")
-    def _settings(self, write: Any) -> dict[str, Any]:
-        """Without a budget that was not given: files of studies that knew none are theirs still."""
-        return {name: value for name, value in write(self).items() if (name, value) != ("budget", None)}
-
-
-class ChartSection(Section):
-    """`[chart]`, optional: the second parameter of `contvines chart`."""
-
-    parameter: str
-    within: Annotated[list[float], Field(min_length=2, max_length=2)]
-
-
-class SurveySection(Section):
-    """`[survey]`, optional: the many machines of `contvines survey`."""
-
-    vary: dict[str, Any] = {}
-    outcomes: Annotated[list[str], Field(min_length=1)] = ["peak"]
-    sampling: Literal["latin", "sobol", "random"] = "latin"
-    samples: Annotated[int, Field(ge=1, le=1_000_000)] = 32
-    seed: Annotated[int, Field(ge=0)] = 1
-    gaps: Annotated[int, Field(ge=0, le=1000)] = 5
-    values: Annotated[int, Field(ge=0, le=1000)] = 0
-    starts: Annotated[int, Field(ge=1, le=1000)] = 1
-    atlas: bool = False
-
-
-class StudySections(Section):
-    """What every study has beside its machine."""
-
-    start: StartSection
-    continue_: Annotated[ContinueSection, Field(alias="continue")]
-    sweep: SweepSection = SweepSection()
-    atlas: AtlasSection = AtlasSection()
-    chart: ChartSection | None = None
-    survey: SurveySection = SurveySection()
-
-
-class StudyFile(StudySections):
-    model: ModelSection  # type: ignore[valid-type]
-
-
-PARAMETERS: dict[str, dict[str, Any]] = {
-    name: {entry.name: kind(entry) for entry in model_class(name).settable} for name in NAMES
-}
-"""Type of every parameter of every machine; those that are given with each orbit come from [start]."""
-EXCITATION: dict[str, str] = {name: model_class(name).driven_by for name in NAMES}
+            default, kind = defaults[entry.name], number(entry)
+            left = default is None or default is ...
+            settings[entry.name] = (
+                kind | None if default is None else kind,
+                default if left else entry.number(default),
+            )
+    return study_model(StudySections, settings, {entry.name: number(entry) for entry in machine.settable})

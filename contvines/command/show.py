@@ -2,25 +2,22 @@
 
 import typer
 
+from contvines.command.frame import load_file, say_state, tell
 from contvines.command.options import FileArgument, JsonOption
-from contvines.command.stored import say_unfinished
 
 
 def show(file: FileArgument, json: JsonOption = False) -> None:
     """List branches, special points and switches."""
     from contvines.provenance import as_text
-    from contvines.store import Store, load
+    from contvines.store import Store
 
-    graph = load(file, problems=False)
+    graph = load_file(file, problems=False, charts=True)
     with Store.open(file) as store:
         made = store.made
     if json:
-        from contvines.export import json_text
-
-        typer.echo(json_text({**graph.to_dict(), "made": made}))
+        tell(graph, {**graph.to_dict(), "made": made})
         return
-    if not graph.finished:
-        say_unfinished(file)
+    say_state(graph, file, problems=False)
     typer.echo(str(graph))
     if made:
         typer.echo(as_text(made))

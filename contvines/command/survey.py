@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.options import FreshOption
+from contvines.command.frame import beside, check_plot, draw, refuse_source, tell
+from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
@@ -22,10 +23,7 @@ def survey(
             help="Where to; by default STUDY-survey.nc here, CSV beside it.",
         ),
     ] = None,
-    plot: Annotated[
-        Path | None,
-        typer.Option("--plot", metavar="FILE.png", help="Draw an outcome: a map, or a curve with bands."),
-    ] = None,
+    plot: PlotOption = None,
     outcome: Annotated[
         str | None, typer.Option("--outcome", help="Which outcome to draw; by default the first.")
     ] = None,
@@ -55,16 +53,21 @@ def survey(
         ),
     ] = None,
     fresh: FreshOption = False,
-    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
+    json_: JsonOption = False,
+    quiet: QuietOption = False,
 ) -> None:
     """Survey many machines; goes on with an unfinished survey."""
-    from contvines.command.compose import beside, check_shaken, checked_study, say
+    from contvines.command.compose import check_shaken
+    from contvines.command.study import read_study
+    from contvines.export import check_target
 
-    read = checked_study(study)
+    read = read_study(study)
     check_shaken(read, read.survey.vary)
     target = output or beside(study, "-survey.nc")
-    _check_places(study, target, plot)
+    refuse_source(target, study)
+    check_target(target, "nc")
+    check_target(target.with_suffix(".csv"), "csv")
+    check_plot(plot)
     if over and best is None:
         raise ValueError(f"--over {' '.join(over)}: this goes with --best; say what is wanted.")
     if covered is not None and best is None:
@@ -81,17 +84,9 @@ def survey(
     from contvines.command.surveying import surveyed
 
     found = surveyed(read, target, workers, cluster, fresh, quiet)
-    if json_:
-        from contvines.export import json_text
-
-        typer.echo(json_text(as_json(found)))
-    elif not quiet:
-        typer.echo(str(found))
-    if plot is not None:
-        from contvines.plots.figures import save_figure
-
-        save_figure(found.plot(outcome), plot)
-        say(f"drawn in {plot}", quiet)
+    if json_ or not quiet:
+        tell(found, as_json(found) if json_ else None)
+    draw(plot, lambda: found.plot(outcome), quiet)
 
 
 def as_json(found: "Survey") -> dict[str, Any]:
@@ -106,16 +101,3 @@ def as_json(found: "Survey") -> dict[str, Any]:
     ]
     said: dict[str, Any] = {"units": found.units} if found.units else {}
     return {"parameters": list(found.plan.names), "outcomes": list(found.columns), **said, "rows": rows}
-
-
-def _check_places(study: Path, target: Path, plot: Path | None) -> None:
-    from contvines.export import check_target
-
-    if target.resolve() == study.resolve():
-        raise ValueError(f"{target}: this is the study itself; choose another name with -o.")
-    check_target(target, "nc")
-    check_target(target.with_suffix(".csv"), "csv")
-    if plot is not None:
-        from contvines.plots.figures import check_picture
-
-        check_picture(plot)

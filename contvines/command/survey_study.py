@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.command.own_code import own_code, run_file
+from contvines.command.study_data import Sort, Study
+
 if TYPE_CHECKING:
-    from contvines.command.study import Study
     from contvines.survey.plan import Plan
 
 TEXTS = ("within", "values", "normal", "uniform")
@@ -25,16 +25,12 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
         If the plan cannot be; the sentence names the field, the value and what would do.
     """
     from contvines.command.compose import machine
-    from contvines.command.schema import PARAMETERS
     from contvines.survey import planned
     from orbits.machines.physical.quantities import near_quantity
 
     said = dict(study.survey.vary if vary is None else vary)
     model = machine(study)
-    if study.machine is not None:
-        known = list(model.parameters)
-    else:
-        known = list(model.tables.QUANTITIES) if study.quantities else list(PARAMETERS[study.name])
+    known = list(names_of(study))
     for name in said:
         if name not in known:
             raise ValueError(
@@ -45,7 +41,7 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
             raise ValueError(
                 f"{study.path}: [survey] vary.{name}: every diagram runs over {name} already; vary something else."
             )
-        if study.quantities:
+        if study.sort is Sort.PHYSICAL:
             model = model.told_by(name)
             said[name] = _numbers(model, name, said[name], f"{study.path}: [survey] vary.{name}")
     try:
@@ -54,14 +50,22 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
         raise ValueError(f"{study.path}: {error}.") from None
 
 
+def names_of(study: Study) -> Iterable[str]:
+    """Names of all that may vary in the machine of a study."""
+    if study.sort is Sort.PAGE:
+        return study.model.parameters
+    if study.sort is Sort.PHYSICAL:
+        return study.model.tables.QUANTITIES
+    return [entry.name for entry in study.model.settable]
+
+
 def family_of(study: Study, model: Any) -> Any:
     """The machines of a study's survey."""
-    from contvines.command.compose import loose
     from orbits.design import Family
 
     return Family(
-        model, study.word, study.periods, study.guess, loose(study), study.parameter, study.within,
-        study.state if study.machine is not None else None,
+        model, study.word, study.periods, study.guess, study.loose, study.parameter, study.within,
+        study.state,
     )  # fmt: skip
 
 
@@ -74,7 +78,6 @@ def outcomes_of(study: Study) -> list[Any]:
         If a name or a file is unknown.
     """
     from contvines.command.machine_outcomes import OWN
-    from contvines.command.own_code import own_code
     from contvines.survey.survey import outcome_named
 
     found = []
@@ -89,7 +92,7 @@ def outcomes_of(study: Study) -> list[Any]:
             if file.endswith(".py"):
                 place = own_code(study.path, file, f"[survey] outcomes: {said!r}")
                 found.append(UserOutcome.of(place, function))
-            elif study.machine is not None and said in OWN:
+            elif study.sort is Sort.PAGE and said in OWN:
                 raise ValueError(
                     f"[survey] outcomes: {said!r} is told by the built-in machines alone; for a page give a function of your "
                     'own: "file.py:function"'
@@ -109,17 +112,16 @@ def _spelled(study: Study) -> list[str]:
     ValueError
         If a motion that is to be stable has no word.
     """
-    from contvines.command.compose import loose, machine
     from orbits.words import Word
 
-    if study.machine is not None:
+    if study.sort is Sort.PAGE:
         return list(study.survey.outcomes)
     found = []
     for said in study.survey.outcomes:
         kind, _, text = said.partition(":")
         if kind in ("stable", "share") and text:
-            model = machine(study)
-            params = model.vector(loose(study))
+            model = study.model
+            params = model.vector(study.loose)
             try:
                 word = Word.parse(text, frictionless=model.frictionless(params))
             except ValueError as error:
@@ -188,27 +190,17 @@ class UserOutcome:
         """
         if not path.is_file():
             raise ValueError(f"[survey] outcomes: there is no file {path}")
-        if not callable(getattr(_module(str(path)), function, None)):
+        if not callable(getattr(_module(path), function, None)):
             raise ValueError(f"[survey] outcomes: {path} has no function {function!r}")
         return cls(str(path.resolve()), function)
 
     def __call__(self, found: Any) -> Mapping[str, float]:
-        value = getattr(_module(self.path), self.function)(found)
+        value = getattr(_module(Path(self.path)), self.function)(found)
         return value if isinstance(value, Mapping) else {self.function: float(value)}
 
 
-@cache
-def _module(path: str) -> Any:
-    spec = importlib.util.spec_from_file_location(f"outcomes_{Path(path).stem}", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        raise ValueError(
-            f"[survey] outcomes: {path} cannot be run ({type(error).__name__}: {error})"
-        ) from None
-    return module
+def _module(path: Path) -> Any:
+    return run_file(path, "[survey] outcomes")
 
 
 def _numbers(model: Any, name: str, said: Any, place: str) -> Any:

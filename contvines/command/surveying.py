@@ -5,15 +5,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from contvines.command.place import held
+from contvines.command.frame import held, interruptible, say
+from contvines.command.study_data import Study
 
 if TYPE_CHECKING:
-    from contvines.command.study import Study
     from contvines.survey import Survey
 
 
 def surveyed(
-    study: "Study", target: Path, workers: int | None, cluster: str | None, fresh: bool, quiet: bool
+    study: Study, target: Path, workers: int | None, cluster: str | None, fresh: bool, quiet: bool
 ) -> "Survey":
     """The survey of a study, from its file if that is finished.
 
@@ -31,9 +31,8 @@ def surveyed(
         return _computed(study, target, workers, cluster, quiet) if found is None else found
 
 
-def _finished(study: "Study", target: Path, quiet: bool) -> "Survey | None":
+def _finished(study: Study, target: Path, quiet: bool) -> "Survey | None":
     """The survey in its file; None if there is none, or its run was ended before it had written all."""
-    from contvines.command.compose import say
     from contvines.command.survey_study import asked_of, plan_and_machine
     from contvines.command.sweep_rows import journal_of, refuse_another
     from contvines.survey import load_survey
@@ -56,11 +55,8 @@ def _finished(study: "Study", target: Path, quiet: bool) -> "Survey | None":
     return kept
 
 
-def _computed(
-    study: "Study", target: Path, workers: int | None, cluster: str | None, quiet: bool
-) -> "Survey":
+def _computed(study: Study, target: Path, workers: int | None, cluster: str | None, quiet: bool) -> "Survey":
     """The survey, machine by machine; those that an unfinished run has kept are not computed again."""
-    from contvines.command.compose import Interrupted, say
     from contvines.command.survey_study import (
         asked_of,
         family_of,
@@ -75,16 +71,13 @@ def _computed(
 
     plan, model = plan_and_machine(study)
     outcomes, family, journal = outcomes_of(study), family_of(study, model), journal_of(target)
-    with without_main():
+    note = f"all finished machines are kept in {journal}; the same command goes on from there"
+    with without_main(), interruptible(note):
         try:
             found = run(
                 family, plan, over=study.parameter, within=study.within, outcomes=outcomes, workers=workers, cluster=cluster,
                 journal=journal, units=units_of(study, model), about=asked_of(study), progress=not quiet, **ways_of(study), **options_of(study),
             )  # fmt: skip
-        except KeyboardInterrupt:
-            raise Interrupted(
-                f"all finished machines are kept in {journal}; the same command goes on from there"
-            ) from None
         except ValueError as error:
             raise ValueError(f"{study.path}: {str(error).rstrip('.')}.") from error
     try:

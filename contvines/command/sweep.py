@@ -5,8 +5,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.options import FreshOption, SizeOption
-from contvines.command.place import held
+from contvines.command.frame import (
+    Interrupted,
+    beside,
+    check_plot,
+    counting,
+    draw,
+    held,
+    refuse_source,
+    say,
+)
+from contvines.command.options import FreshOption, PlotOption, QuietOption, SizeOption
 from contvines.text_table import Table, terminal_width
 
 if TYPE_CHECKING:
@@ -23,21 +32,16 @@ def sweep(
         Path | None,
         typer.Option("-o", "--output", metavar="FILE.csv", help="Where to; by default STUDY-sweep.csv here."),
     ] = None,
-    plot: Annotated[
-        Path | None,
-        typer.Option(
-            "--plot", metavar="FILE.png", help="Draw the attractors: B at every impact, or largest |q1|."
-        ),
-    ] = None,
+    plot: PlotOption = None,
     size: SizeOption = None,
     over: Annotated[
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
     ] = None,
     fresh: FreshOption = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no summary.")] = False,
+    quiet: QuietOption = False,
 ) -> None:
     """Simulate over the parameter, carrying the state on; goes on with an unfinished sweep."""
-    from contvines.command.compose import beside, check_shaken, say
+    from contvines.command.compose import check_shaken
     from contvines.command.study import read_study
     from contvines.command.sweep_rows import header_of, journal_of, refuse_another
     from contvines.export import check_target
@@ -45,8 +49,7 @@ def sweep(
     read = read_study(study)
     check_shaken(read)
     target = output or beside(study, "-sweep.csv")
-    if target.resolve() == study.resolve():
-        raise ValueError(f"{target}: this is the study itself; choose another name with -o.")
+    refuse_source(target, study)
     check_target(target, "csv")
     graph: Any = None
     if over is not None:
@@ -55,41 +58,33 @@ def sweep(
         graph = graph_beneath(over, read)
         if plot is None:
             raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
-    if plot is not None:
-        from contvines.plots.figures import check_picture, check_size
-
-        check_picture(plot)
-        check_size(size)
+    check_plot(plot, size)
     with held(target, quiet, fresh, (journal_of(target),)):
         refuse_another(target, header_of(read, down))
         rows = _simulate(read, down, target, quiet)
     say(f"kept in {target}", quiet)
     if not quiet:
         typer.echo(_summary(rows, read.parameter))
-    if plot is not None:
-        from contvines.command.sweep_picture import picture
-        from contvines.plots.figures import save_figure
+    from contvines.command.sweep_picture import picture
 
-        save_figure(picture(rows, read, graph, size), plot)
-        say(f"drawn in {plot}", quiet)
+    draw(plot, lambda: picture(rows, read, graph, size), quiet)
 
 
 def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Kept]":
     """All rows, each written to the file as soon as it is there; those of an unfinished run are not repeated."""
     import numpy as np
 
-    from contvines.command.compose import Interrupted, loose, machine, say
+    from contvines.command.compose import machine
     from contvines.command.sweep_rows import FIRST, Rows, kept
-
-    model = machine(study)
     from orbits.attractors.search import measure_names
     from orbits.attractors.sweep import sweep as simulate
 
+    model = machine(study)
     low, high = study.sweep.within or study.within
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
-    others: dict[str, Any] = {k: v for k, v in loose(study).items() if k != study.parameter}
+    others: dict[str, Any] = {k: v for k, v in study.loose.items() if k != study.parameter}
     names = [n for n in measure_names(model) if n not in FIRST]
-    with Rows(target, study, down, names) as file, _counter(len(values), quiet) as count:
+    with Rows(target, study, down, names) as file, counting("sweep", len(values), quiet) as count:
         done = len(file.rows)
         if done:
             say(f"{target} is unfinished: going on after {done} of {len(values)} values.", quiet)
@@ -97,8 +92,9 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
 
         def keep(row: Any) -> None:
             file.keep(kept(row, "down" if down else "up", names))
-            count()
+            count(1)
 
+        then = "the same command goes on from there, from the state reached" if file.lasting else "no more"
         try:
             if done < len(values):
                 simulate(
@@ -112,41 +108,10 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
                     **others,
                 )
         except KeyboardInterrupt:
-            then = (
-                "the same command goes on from there, from the state reached" if file.lasting else "no more"
-            )
             raise Interrupted(
                 f"{len(file.rows)} of {len(values)} values are kept in {target}; {then}"
             ) from None
     return file.rows
-
-
-class _counter:
-    """Counts values on a terminal, silent elsewhere."""
-
-    def __init__(self, total: int, quiet: bool):
-        import sys
-
-        self.total, self.shown = total, sys.stderr.isatty() and not quiet
-        self.done, self.progress = 0, None
-
-    def __enter__(self) -> Any:
-        if self.shown:
-            from rich.console import Console
-            from rich.progress import Progress
-
-            self.progress = Progress(console=Console(stderr=True), transient=True)
-            self.progress.start()
-            self.task = self.progress.add_task("sweep", total=self.total)
-        return self
-
-    def __call__(self, values: int = 1) -> None:
-        if self.progress is not None:
-            self.progress.advance(self.task, values)
-
-    def __exit__(self, *_: object) -> None:
-        if self.progress is not None:
-            self.progress.stop()
 
 
 def _summary(rows: "list[Kept]", parameter: str) -> str:

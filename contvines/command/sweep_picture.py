@@ -4,14 +4,15 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.command.study_data import Sort, Study
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from contvines.command.study import Study
     from contvines.command.sweep_rows import Kept
 
 
-def graph_beneath(path: Path, study: "Study") -> Any:
+def graph_beneath(path: Path, study: Study) -> Any:
     """The graph of a file, if it is one of the study's machine in the study's parameter.
 
     Raises
@@ -54,15 +55,12 @@ def _graph_machine(graph: Any) -> dict[str, Any]:
     return known
 
 
-def _study_machine(study: "Study") -> dict[str, Any]:
-    from contvines.command.compose import loose, machine
-
-    model = machine(study)
-    if study.quantities:
+def _study_machine(study: Study) -> dict[str, Any]:
+    model = study.model
+    if study.sort is Sort.PHYSICAL:
         return {"name": study.name, **dict(zip(model.parameter_names, model.vector().tolist()))}
-    vector = model.vector({**loose(study), study.parameter: study.parameters[study.parameter]})
-    name = study.name if study.machine is None else study.machine.name
-    return {"name": name, **dict(zip(model.parameter_names, vector.tolist()))}
+    vector = model.vector({**study.loose, study.parameter: study.parameters[study.parameter]})
+    return {"name": model.name, **dict(zip(model.parameter_names, vector.tolist()))}
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -76,25 +74,23 @@ def _shown(value: Any) -> str:
 
 
 def picture(
-    rows: "list[Kept]", study: "Study", graph: Any, size: tuple[float, float] | None = None
+    rows: "list[Kept]", study: Study, graph: Any, size: tuple[float, float] | None = None
 ) -> "Figure":
     """The attractors of a sweep as dots, over a graph if there is one."""
-    from contvines.command.compose import machine
     from contvines.plots.sweep import plot_sweep
-    from orbits.machines.catalogue import model_class
 
-    page = study.machine is not None
+    model, page = study.model, study.sort is Sort.PAGE
     look: dict[str, Any] = {
-        **({} if page else {"units": machine(study).units, "notation": machine(study).notation}),
+        **({} if page else {"units": model.units, "notation": model.notation}),
         "figsize": size,
     }
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
     if page:  # impact speeds, or how far the first state goes
-        walls = any(hasattr(contact, "gap") for contact in study.machine.contacts)
-        measure = "approach_speed" if walls else f"max_{study.machine.states[0]}"
+        walls = any(hasattr(contact, "gap") for contact in model.contacts)
+        measure = "approach_speed" if walls else f"max_{model.states[0]}"
     else:
-        measure = model_class(study.name).swept_measure
+        measure = model.swept_measure
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
         return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, **look)

@@ -7,13 +7,11 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import gettempdir
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 from contvines.command.compose import machine
+from contvines.command.study_data import Sort, Study
 from contvines.graph.table import with_unit
-
-if TYPE_CHECKING:
-    from contvines.command.study import Study
 
 FIRST = ("value", "direction", "attractor", "word", "periods", "impacts")
 LAST = ("symmetric", "nodes")
@@ -100,9 +98,9 @@ class Rows:
     and goes when the sweep is finished.
     """
 
-    def __init__(self, target: Path, study: "Study", down: bool, names: list[str]) -> None:
+    def __init__(self, target: Path, study: Study, down: bool, names: list[str]) -> None:
         self.target, self.names = target, names
-        units = machine(study).units if study.quantities else {}
+        units = machine(study).units if study.sort is Sort.PHYSICAL else {}
         self.units = {
             "value": units.get(study.parameter, ""),
             **{name: units.get(name, "") for name in names},
@@ -179,7 +177,7 @@ class Rows:
         return found
 
 
-def header_of(study: "Study", down: bool) -> dict[str, str]:
+def header_of(study: Study, down: bool) -> dict[str, str]:
     """First line of a sweep's journal, with a digest of all that decides its rows: runs that must give the same CSV share it."""
     text = json.dumps(
         {"study": study.describe(), "sweep": study.sweep.model_dump(), "down": down}, sort_keys=True

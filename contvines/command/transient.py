@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.options import JsonOption, SizeOption
+from contvines.command.frame import check_plot, draw, say, tell
+from contvines.command.options import JsonOption, PlotOption, SizeOption
+from contvines.command.study_data import Sort, Study
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,10 +45,7 @@ def transient(
             "-o", "--output", metavar="FILE.csv", help="The motion (or the energy of a decay) over time."
         ),
     ] = None,
-    plot: Annotated[
-        Path | None,
-        typer.Option("--plot", metavar="FILE.png", help="Draw it, with the bare oscillator beside."),
-    ] = None,
+    plot: PlotOption = None,
     size: SizeOption = None,
     json_: JsonOption = False,
 ) -> None:
@@ -54,7 +53,8 @@ def transient(
 
     The record is a CSV of time and acceleration; its heads may name units (time [ms], acceleration [g]).
     """
-    from contvines.command.compose import checked_study, say
+    from contvines.command.compose import machine
+    from contvines.command.study import read_study
     from contvines.export import check_target
 
     if (release is None) == (record is None):
@@ -67,31 +67,19 @@ def transient(
         raise ValueError(f"--tail {tail}: this goes with --record.")
     if output is not None:
         check_target(output, "csv")
-    if plot is not None:
-        from contvines.plots.figures import check_picture, check_size
-
-        check_picture(plot)
-        check_size(size)
-    read = checked_study(study)
-    if read.machine is not None:
+    check_plot(plot, size)
+    read = read_study(study)
+    machine(read)
+    if read.sort is Sort.PAGE:
         raise ValueError(
             f"{study}: [model] name = {read.name!r}: transients are those of the built-in machine 'coupled'."
         )
     found = _released(read, release) if release is not None else _recorded(read, record, tail)  # type: ignore[arg-type]
-    if json_:
-        from contvines.export import json_text
-
-        typer.echo(json_text(found.as_json()))
-    else:
-        typer.echo(str(found))
+    tell(found, found.as_json() if json_ else None)
     if output is not None:
         found.write(output)
         say(f"kept in {output}", json_)
-    if plot is not None:
-        from contvines.plots.figures import save_figure
-
-        save_figure(found.draw(size), plot)
-        say(f"drawn in {plot}", json_)
+    draw(plot, lambda: found.draw(size), json_)
 
 
 class Told:
@@ -150,19 +138,12 @@ class Told:
         return plot_transient(self.series, self.hits, figsize=size)
 
 
-def _params(study: Any) -> tuple[Any, Any]:
-    from contvines.command.compose import loose, machine
-
-    model = machine(study)
-    return model, model.vector(loose(study))
-
-
-def _released(study: Any, text: str) -> Told:
+def _released(study: Study, text: str) -> Told:
     from contvines.command.measured import length_on_line, scales
     from orbits.design.transients import free_decay
     from orbits.machines.physical import units
 
-    model, params = _params(study)
+    model, params = study.model, study.model.vector(study.loose)
     length, unit, seconds, second = scales(model, params)
     displacement = length_on_line(text, "--release", unit)
     metres = displacement * (units.size(unit, "m") or 1.0) if unit else 0.0
@@ -191,13 +172,13 @@ def _released(study: Any, text: str) -> Told:
     return Told(f"Free decay of {study.path.name} from {text}", rows, series)
 
 
-def _recorded(study: Any, path: Path, tail: str | None) -> Told:
+def _recorded(study: Study, path: Path, tail: str | None) -> Told:
     import numpy as np
 
     from contvines.command.measured import Column, length_on_line, measured, scales
     from orbits.design.transients import recorded
 
-    model, params = _params(study)
+    model, params = study.model, study.model.vector(study.loose)
     length, unit, seconds, second = scales(model, params)
     rate = "m/s^2" if unit else ""
     times, acceleration = measured(path, (Column("time", second), Column("acceleration", rate)))

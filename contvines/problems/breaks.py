@@ -39,7 +39,7 @@ def find_break(
     noise : float or ndarray
         Standard deviation of f: what is no larger than a few of it is neither kink nor jump.
     """
-    low, high = -length, length
+    low, high, t, values, k, step = -length, length, np.zeros(0), rows, 0, 0.0
     for _ in range(ROUNDS):
         t = np.linspace(low, high, POINTS + 1)
         values = np.array([f(x) for x in t]) / rows
@@ -49,7 +49,7 @@ def find_break(
         if second.max() < NOISY * float(np.max(noise / rows)):
             return None
         k = int(np.argmax(second)) + 1
-        step = t[1] - t[0]
+        step = float(t[1] - t[0])
         low, high = t[max(k - 2, 0)], t[min(k + 2, POINTS)]
     if step < 1e-13 * max(abs(low), abs(high)):
         return None

@@ -168,7 +168,7 @@ def _refined(
         size = np.abs(sides).max(axis=0)
         size[size == 0.0] = 1.0
         scale = float(np.abs(work.jacobian.data).max(initial=0.0))
-        before = math.inf
+        before = error = math.inf
         for _ in range(sweeps):
             rest = sides - _product(work, border, x)
             rough = np.abs(rest).max(axis=0) / np.maximum(size, scale * np.abs(x).max(axis=0))

@@ -225,6 +225,7 @@ def load_survey(path: str | Path) -> Survey:
         If there is no such file, it is not that of a survey, or it is damaged.
     """
     data = read(Path(path))
+    damaged = PlanError(f"{path}: this is not the NetCDF file of a survey, or it is damaged")
     try:
         about = json.loads(data.attrs["about"])
         # in the order of the dimensions: that of the notes about the survey is the alphabet's
@@ -239,7 +240,7 @@ def load_survey(path: str | Path) -> Survey:
         plan = Plan(axes, samples)
         whole = all(values.shape == plan.shape for values in (notes, *columns.values()))
     except (LookupError, ValueError, TypeError, AttributeError):
-        whole = False
+        raise damaged from None
     if not whole:
-        raise PlanError(f"{path}: this is not the NetCDF file of a survey, or it is damaged")
+        raise damaged
     return Survey(plan, columns, notes, units, about, notation)

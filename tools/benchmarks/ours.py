@@ -3,7 +3,8 @@
 import numpy as np
 
 import contvines as cv
-from contvines.command.compose import checked_study, first_orbit, run_diagram
+from contvines.command.compose import first_orbit, run_diagram
+from contvines.command.study import read_study
 from contvines.continuation import loop as source
 from contvines.continuation.arrays import Metric
 from contvines.continuation.bracketing import SIZE
@@ -97,7 +98,7 @@ class Diagram:
     """The whole automatic diagram of a study in a warm process: all branches, borders crossed, special points replayed."""
 
     def __init__(self, path):
-        self.study = checked_study(path)
+        self.study = read_study(path)
         self.seed = first_orbit(self.study)
 
     def run(self):

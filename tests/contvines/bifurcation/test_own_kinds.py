@@ -115,22 +115,23 @@ flow = cv.FlowProblem(lambda x, p: bazykin(x, p), [20.0, 5.5], {"alpha": 0.4, "d
 
 
 def test_studies_name_kinds_in_a_file(tmp_path, monkeypatch):
-    from contvines.command.compose import checked_study, first_orbit, run_diagram
+    from contvines.command.compose import first_orbit, run_diagram
+    from contvines.command.study import read_study
 
     (tmp_path / "neutral_saddle.py").write_text(EXAMPLE.read_text())
     (tmp_path / "model.py").write_text(MODEL)
     (tmp_path / "study.toml").write_text(STUDY.format(name="NEUTRAL_SADDLE"))
     monkeypatch.syspath_prepend(str(tmp_path))
-    study = checked_study(tmp_path / "study.toml")
+    study = read_study(tmp_path / "study.toml")
     graph = run_diagram(study, first_orbit(study))
     inner = max(graph.of_kind("neutral-saddle"), key=lambda point: point.u[1])
     assert inner.value == pytest.approx(saddle(0.15, [*inner.u, inner.value])[2], abs=1e-10)
     before = study.fingerprint()
     (tmp_path / "neutral_saddle.py").write_text(EXAMPLE.read_text() + "\n# changed\n")
-    assert checked_study(tmp_path / "study.toml").fingerprint() != before
+    assert read_study(tmp_path / "study.toml").fingerprint() != before
     (tmp_path / "study.toml").write_text(STUDY.format(name="SADDLE"))
     with pytest.raises(ValueError, match="has no kind 'SADDLE'; it has NEUTRAL_SADDLE"):
-        checked_study(tmp_path / "study.toml")
+        read_study(tmp_path / "study.toml")
 
 
 def test_a_kind_with_a_condition_is_followed_in_two_parameters():

@@ -8,7 +8,8 @@ import pytest
 
 import contvines as cv
 from contvines.command.compare import draw_compared, peaks_compared
-from contvines.command.compose import checked_study, first_orbit, machine
+from contvines.command.compose import first_orbit, machine
+from contvines.command.study import read_study
 
 STUDY = """
 units = "si"
@@ -35,7 +36,7 @@ within = ["2.9 Hz", "3.1 Hz"]
 def graph(tmp_path_factory):
     path = tmp_path_factory.mktemp("compared") / "study.toml"
     path.write_text(STUDY)
-    return cv.diagram(first_orbit(checked_study(path)), over="frequency", within=(2.9, 3.1), depth=0)
+    return cv.diagram(first_orbit(read_study(path)), over="frequency", within=(2.9, 3.1), depth=0)
 
 
 def test_the_bare_oscillator_of_a_shaken_base_in_millimetres(graph):
@@ -53,7 +54,7 @@ def test_the_bare_oscillator_of_a_shaken_base_in_millimetres(graph):
 def test_peaks_to_compare_with_are_those_of_two_oscillators_in_the_frequency_domain():
     """The bare oscillator on its shaken base, and Den Hartog's absorber on it: tuned to f_0/(1 + mu), c = 2 m omega_0 sqrt(3 mu/(8 (1 + mu)^3))."""
     study = Path(__file__).parents[3] / "examples" / "design" / "absorber.toml"
-    model = machine(checked_study(study))
+    model = machine(read_study(study))
     r, zeta, mu = np.linspace(7.0, 9.0, 400_001) / 8.0, 0.007, 0.032 / 3.8
     load = 0.3 * (1.0 + 2j * zeta * r)  # mm, over the oscillator's stiffness
     own = 1.0 - r**2 + 2j * zeta * r

@@ -69,7 +69,7 @@ REFUSED = {
     'name = "none.py:machine"': "there is no such file",
     'name = "../elsewhere/stop.py:machine"': "a study runs Python files of its own folder (or of folders in it) only",
     'name = "/elsewhere/stop.py:machine"': '"stop.py" would do',
-    'name = "stop.py:machine"\nmass = 1.0': "the machine 'stop' has no such parameter",
+    'name = "stop.py:machine"\nmass = 1.0': "[model] mass = 1.0: there is no such field; known are ",
     'name = "stop.py:machine"\ndamping = "much"': "[model] damping = 'much' is not a number",
     'name = "stop.py:machine"\nrestitution = 2.0': "the restitution of wall 'R' is above 0 and at most 1",
 }

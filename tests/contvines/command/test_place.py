@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from contvines.command.place import held
+from contvines.command.frame import held
 from contvines.graph.persistence import same_graph
 from contvines.store import load
 
@@ -133,7 +133,7 @@ def test_a_survey_that_was_ended_before_its_last_file(run, tmp_path, study):
 HOLDING = """
 import sys
 from pathlib import Path
-from contvines.command.place import held
+from contvines.command.frame import held
 with held(Path(sys.argv[1]), quiet=False):
     print("held", flush=True)
     sys.stdin.read(1)

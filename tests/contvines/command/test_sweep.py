@@ -99,7 +99,7 @@ def table(path):
 )
 def test_a_row_is_a_start_of_the_same_orbit(run, tmp_path, form, parameter, within, count, words):
     """Word, periods and nodes pasted into [start] give the simulator's orbit; its multipliers are differences."""
-    from contvines.command.compose import loose, machine
+    from contvines.command.compose import machine
     from contvines.command.study import read_study
     from orbits.attractors import sweep
 
@@ -109,7 +109,7 @@ def test_a_row_is_a_start_of_the_same_orbit(run, tmp_path, form, parameter, with
     assert list(rows[0])[:6] == ["value", "direction", "attractor", "word", "periods", "impacts"]
     assert list(rows[0])[-2:] == ["symmetric", "nodes"]
     read = read_study(path)
-    others = {k: v for k, v in loose(read).items() if k != parameter}
+    others = {k: v for k, v in read.loose.items() if k != parameter}
     seen = sweep(
         machine(read), parameter, [float(r["value"]) for r in rows], transient=read.sweep.transient, **others
     )

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from contvines.branches.ending import Ending
-from contvines.command.place import held
+from contvines.command.frame import held
 from contvines.graph.persistence import same_graph
 from contvines.store import APPLICATION_ID, VERSION, Store, StoreError, load, save
 from tests.contvines import fakes

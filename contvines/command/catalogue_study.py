@@ -1,0 +1,103 @@
+"""A study of a built-in machine in its own numbers."""
+
+from pathlib import Path
+from typing import Any
+
+from contvines.command.schema import UnknownModel, catalogue_model, given, number, would_do
+from contvines.command.study_data import Sort, Study, wrong_intervals
+from contvines.command.study_errors import StudyError, refuse, validated
+from contvines.shared.near_names import did_you_mean
+from orbits.machines.building import build
+from orbits.machines.catalogue import NAMES, model_class
+from orbits.words import Word
+
+
+def read_catalogue(data: dict[str, Any], path: Path) -> Study:
+    """A study whose `[model]` names a machine of the catalogue.
+
+    Raises
+    ------
+    StudyError
+    """
+    model = data.get("model")
+    name = model.get("name") if isinstance(model, dict) else None
+    if name not in NAMES:
+        refuse(_without_machine(data, model, name))
+    name = str(name)
+    file = validated(catalogue_model(name), data)
+    machine = model_class(name)
+    entries = {entry.name: entry for entry in machine.settable}
+    values = {**given(file.model, entries), **given(file.start, entries)}
+    parameters = {key: float(values[key]) for key in entries if key in values}
+
+    def refusal(parameter: str, value: float) -> str:
+        from pydantic import TypeAdapter, ValidationError
+
+        try:
+            TypeAdapter(number(entries[parameter])).validate_python(value)
+        except ValidationError:
+            return f" leaves the range of {parameter} at {value!r}; {would_do(entries[parameter])} would do at both ends."
+        return ""
+
+    go = file.continue_
+    wrong = wrong_intervals(file, parameters.get(go.parameter), refusal)
+    if go.parameter not in parameters and not wrong:
+        low, high = go.within
+        wrong.append(
+            f"[start] {go.parameter} is missing: it is the continuation parameter's first value; a number from {low!r} to {high!r} would do."
+        )
+    elif machine.driven_by not in parameters and machine.driven_by != go.parameter:
+        wrong.append(
+            f"[start] {machine.driven_by} is missing; {would_do(entries[machine.driven_by])} would do."
+        )
+    refuse([*wrong, *wrong_guess(file.start.guess, machine)])
+    loose = {key: value for key, value in parameters.items() if key not in machine.field_names()}
+    own = {key: value for key, value in parameters.items() if key not in loose}
+    try:
+        made = build({"name": name, **own})
+    except ValueError as error:
+        raise StudyError(f"[model] {error}") from error
+    return built(Study.of(path, Sort.CATALOGUE, name, parameters, file, model=made, loose=loose))
+
+
+def _without_machine(data: dict[str, Any], model: Any, name: Any) -> list[str]:
+    """What is wrong with a study of which nobody knows whose it is."""
+    names = " or ".join(repr(known) for known in NAMES)
+    if name is not None:
+        hint = did_you_mean(name, NAMES) if isinstance(name, str) else ""
+        wrong = f"[model] name = {repr(name)[:60]}: no such model{hint}; {names} would do."
+    elif isinstance(model, dict):
+        wrong = f"[model] name is missing; {names} would do."
+    elif model is None:
+        wrong = 'the section [model] is missing; it holds name = "absorber" and its parameters.'
+    else:
+        wrong = f"model = {repr(model)[:60]} is not a section; write [model] on a line of its own, its keys below."
+    validated(UnknownModel, data, [wrong])
+    return [wrong]
+
+
+def wrong_guess(guess: list[list[float]] | None, machine: Any) -> list[str]:
+    """Nodes of a guess with the wrong count of numbers."""
+    names = machine.node_names
+    return [
+        f"[start] guess[{i}] = {node!r} has {len(node)} numbers; each event needs [{', '.join(names)}]."
+        for i, node in enumerate(guess or ())
+        if len(node) != len(names)
+    ]
+
+
+def built(study: Study) -> Study:
+    """The study, if its values go together and its word can be.
+
+    Raises
+    ------
+    StudyError
+    """
+    section = "model"
+    try:
+        vector = study.model.vector(study.loose)
+        section = "start"
+        Word.parse(study.word or "", frictionless=study.model.frictionless(vector))
+    except ValueError as error:
+        raise StudyError(f"[{section}] {error}") from error
+    return study

@@ -1,0 +1,236 @@
+"""The frame of every verb: the place of its result, progress, Ctrl-C, and what is printed and drawn at the end."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from contvines.text_table import fitted
+
+
+class Interrupted(Exception):
+    """Ctrl-C in the middle of the work; the message says what is kept and how to go on."""
+
+
+def say(text: str, quiet: bool = False) -> None:
+    """A remark for the user, on stderr so that results on stdout stay clean."""
+    if not quiet:
+        print(fitted(text), file=sys.stderr)
+
+
+# ---------------------------------------------------------------------- places
+def beside(path: Path, ending: str) -> Path:
+    """The default place of a result: the study's or file's name with another ending, in the current folder."""
+    return Path(path.stem + ending)
+
+
+def place_of(output: Path | None, source: Path, ending: str) -> Path:
+    """Where a .vines file goes: the place that was asked for, or the default; refused before any work if it will not do."""
+    from contvines.file_names import refuse_ending
+
+    path = output or beside(source, ending)
+    if path.is_dir():
+        raise ValueError(f"{path}: this is a folder; give the name of a file with -o.")
+    if not path.parent.is_dir():
+        raise ValueError(
+            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
+        )
+    refuse_ending(path, "vines")
+    refuse_source(path, source)
+    return path
+
+
+def refuse_source(path: Path, source: Path) -> None:
+    """A result does not replace what it is made from."""
+    if path.resolve() == source.resolve():
+        what = "the study" if source.suffix == ".toml" else "the file"
+        raise ValueError(f"{path}: this is {what} itself; choose another name with -o.")
+
+
+@contextmanager
+def held(target: Path, quiet: bool, fresh: bool = False, others: tuple[Path, ...] = ()) -> Iterator[None]:
+    """Be the only run at work on a file; wait for another one first. What killed runs have left beside it is removed.
+
+    Parameters
+    ----------
+    target : Path
+        A .vines file, or another one that a run writes piece by piece.
+    quiet : bool
+    fresh : bool
+        Set aside the file that is there.
+    others : tuple of Path
+        Files that belong to the target, and are set aside with it.
+
+    Raises
+    ------
+    ValueError
+        If a file cannot be set aside.
+    """
+    from contvines.store.header import TAILS
+    from contvines.store.publishing import remove_drafts
+    from contvines.store.turns import locked, set_aside
+
+    if not target.parent.is_dir() or (target.exists() and not target.is_file()):  # a pipe, or a terminal
+        yield
+        return
+    logs = [target.with_name(target.name + tail) for tail in TAILS]
+    with locked(target, lambda: say(f"another run is at work on {target}: waiting until it ends.", quiet)):
+        remove_drafts(target)
+        if fresh:
+            _fold(target)
+            try:
+                aside = set_aside(target, *others, *logs)
+            except OSError as error:
+                raise ValueError(
+                    f"{target}: cannot be set aside ({error.strerror}); choose another name with -o."
+                ) from None
+            if aside is not None:
+                say(f"{target} is set aside as {aside}", quiet)
+        yield
+        if any(log.exists() for log in logs):
+            _fold(target)
+
+
+def _fold(target: Path) -> None:
+    """Fold its log into a .vines file, unless that is damaged."""
+    from contvines.store import Store, StoreError
+
+    if target.suffix == ".vines" and target.exists():
+        with suppress(StoreError), Store.open(target, write=True) as store:
+            store.tidy()
+
+
+# ---------------------------------------------------------------------- work
+@contextmanager
+def interruptible(note: str) -> Iterator[None]:
+    """Ctrl-C ends the command with a sentence that says what is kept and how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise Interrupted(note) from None
+
+
+@contextmanager
+def working(note: str, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
+    """Interruptible work; gives what to hand to ``progress=``, which tells a terminal, or a log, where the work is."""
+    from contvines.progress import shown
+
+    with interruptible(note), shown(not quiet) as progress:
+        yield progress
+
+
+@contextmanager
+def counting(name: str, total: int, quiet: bool) -> Iterator[Callable[[int], None]]:
+    """What counts finished pieces of work; a bar on stderr if that is a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda done: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    # no thread that draws by itself: beside one, workers could not be copies of this process
+    with Progress(console=Console(stderr=True), transient=True, auto_refresh=False) as progress:
+        task = progress.add_task(name, total=total)
+        yield lambda done: progress.update(task, advance=done, refresh=True)
+
+
+def finished_of(target: Path, fingerprint: str, quiet: bool, *, problems: bool) -> Any:
+    """The finished result of a run in its file; None if the run is still to be done, or to be gone on with.
+
+    Raises
+    ------
+    ValueError
+        If the file is refused, or belongs to another run.
+    """
+    from contvines.store import Store
+
+    if not target.exists():
+        return None
+    with Store.open(target) as store:
+        store.require(fingerprint)
+        if store.finished:
+            return store.graph(problems=problems)
+        say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
+        return None
+
+
+# ---------------------------------------------------------------------- results
+def load_file(file: Path, trust: bool = False, problems: bool = True, charts: bool = False) -> Any:
+    """The graph of a file, or its chart where the verb takes charts."""
+    from contvines.store import load
+
+    graph = load(file, problems=problems, trust=trust)
+    if not charts and not hasattr(graph, "special"):
+        raise ValueError(f"{file}: this file holds a chart; give one that `contvines diagram` has made.")
+    return graph
+
+
+def check_special(graph: Any, file: Path, label: str) -> None:
+    """Refuse a label that is not that of a special point."""
+    if label not in graph.special:
+        what = "is a branch" if label in graph.branches else "is no label of it"
+        raise ValueError(
+            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
+        )
+
+
+def refuse_detached(graph: Any, *labels: str) -> None:
+    """Special points whose problem is not at hand, before work starts: a sentence that says why, and what would do."""
+    from contvines.problems.registry import without_problem
+
+    for label in labels:
+        point = graph.special[label]
+        if point.problem is None:
+            branch = graph.branches.get(point.branch)
+            raise ValueError(without_problem(label, None if branch is None else branch.description))
+
+
+def refuse_unfinished(graph: Any, file: Path) -> None:
+    """Work on a result begins when that is finished."""
+    if not graph.finished:
+        raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
+
+
+def say_state(graph: Any, file: Path, problems: bool = True) -> None:
+    """Branches that were loaded as numbers only, and why; whether the run goes on."""
+    from contvines.problems.registry import without_problem
+
+    for branch in graph.branches.values() if problems else ():
+        if branch.problem is None and branch.description.get("factory"):
+            typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
+            break
+    if not graph.finished:
+        typer.echo(
+            f"{file} is unfinished: its run goes on, or was stopped; the same command continues it.", err=True
+        )
+
+
+def tell(found: Any, data: Any = None) -> None:
+    """Print a result: one JSON object where there is `data`, else as text."""
+    if data is None:
+        typer.echo(str(found))
+        return
+    from contvines.export import json_text
+
+    typer.echo(json_text(data))
+
+
+def check_plot(plot: Path | None, size: tuple[float, float] | None = None) -> None:
+    """Refuse, before any work, a picture that could not be written. Kept apart from matplotlib."""
+    if plot is not None:
+        from contvines.plots.figures import check_picture, check_size
+
+        check_picture(plot)
+        check_size(size)
+
+
+def draw(plot: Path | None, figure: Callable[[], Any], quiet: bool = False) -> None:
+    """Draw a picture where one is wanted, and say where it is."""
+    if plot is not None:
+        from contvines.plots.figures import save_figure
+
+        save_figure(figure(), plot)
+        say(f"drawn in {plot}", quiet)

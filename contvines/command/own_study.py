@@ -1,0 +1,96 @@
+"""A study of what a Python file beside it declares: `[model] name = "file.py:name"`, a machine (a page) or a contvines.FlowProblem.
+
+The file is run when the study is read: the user has named it. It lies in the study's folder or below, so that a study runs nothing that
+has not come with it.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from contvines.command.own_code import own_code
+from contvines.command.schema import FlowSections, PageSections, given, study_model, text
+from contvines.command.study_data import Sort, Study, wrong_intervals
+from contvines.command.study_errors import StudyError, refuse, validated
+
+
+def read_own(data: dict[str, Any], path: Path) -> Study:
+    """A study whose `[model]` names a Python file.
+
+    Raises
+    ------
+    StudyError, OSError
+    """
+    from contvines.flows.files import load_flow
+
+    said = str(data["model"]["name"])
+    page, _, name = said.partition(":")
+    if not name:
+        raise StudyError(
+            f'[model] name = {said!r} names a page but no machine on it; "{page}:machine" would do.'
+        )
+    file = own_code(path, page, f"[model] name = {said!r}")
+    flow = load_flow(file, name) if file.is_file() else None
+    return _page(data, path, file, name) if flow is None else _flow(data, path, flow)
+
+
+def _values(
+    sections: Any, base: Any, known: Mapping[str, float], data: dict[str, Any]
+) -> tuple[Any, dict[str, float]]:
+    """The checked sections, and the values that they give to parameters."""
+    kinds: dict[str, Any] = {
+        name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in known.items()
+    }
+    settings: dict[str, Any] = {"name": (Annotated[str, Field(pattern=r"\.py")], ...)}
+    settings = {**{name: (kind | None, None) for name, kind in kinds.items()}, **settings}
+    file = validated(study_model(base, settings, kinds), data)
+    return file, {**given(file.model, kinds), **given(file.start, kinds)}
+
+
+def _flow(data: dict[str, Any], path: Path, flow: Any) -> Study:
+    known = dict(flow.values.values)
+    file, values = _values(data, FlowSections, known, data)
+    parameters = {**known, **{name: float(value) for name, value in values.items()}}
+    wrong = wrong_intervals(file, parameters[file.continue_.parameter], lambda name, value: "")
+    state, box, size = file.start.state, file.start.box, len(flow.x0)
+    if state is not None and len(state) != size:
+        wrong.append(f"[start] state has {len(state)} numbers; the flow has {size} states.")
+    if box is not None and len(box) != size:
+        pairs = f"{len(box)} pair{'s' if len(box) > 1 else ''}"
+        wrong.append(f"[start] box has {pairs}; the flow has {size} states.")
+    elif box is not None and not all(low < high for low, high in box):
+        wrong.append(f"[start] box = {box!r}: each pair is (low, high), low < high.")
+    refuse(wrong)
+    return Study.of(path, Sort.FLOW, str(data["model"]["name"]), parameters, file, flow=flow)
+
+
+def _page(data: dict[str, Any], path: Path, page: Path, name: str) -> Study:
+    from orbits.machines.page.loading import load_page
+
+    machine = load_page(page, name)
+    file, values = _values(data, PageSections, machine.parameters, data)
+
+    def refusal(parameter: str, value: float) -> str:
+        try:
+            machine.check_value(parameter, value)
+        except ValueError as error:
+            return f": {error}."
+        return ""
+
+    parameters = {**machine.parameters, **{key: float(value) for key, value in values.items()}}
+    wrong = wrong_intervals(file, parameters[file.continue_.parameter], refusal)
+    known = (*machine.states, "phase")
+    for key in file.start.state or {}:
+        if key not in known:
+            wrong.append(f"[start] state has {key!r}; it may have {', '.join(known)}.")
+    if not wrong:
+        try:
+            machine.word(file.start.word or "", machine.vector(values))
+        except ValueError as error:
+            wrong.append(f"[start] {error}")
+    refuse(wrong)
+    return Study.of(
+        path, Sort.PAGE, str(data["model"]["name"]), parameters, file, model=machine, loose=parameters
+    )
