@@ -8,7 +8,8 @@ import numpy as np
 
 from orbits.attractors import find_attractor
 from orbits.flows.protocol import Equations, Flow, SimulationError
-from orbits.simulation.section import Section, section_of
+from orbits.simulation.runs import simulator_of
+from orbits.simulation.section import Section
 from orbits.words import Word
 
 
@@ -67,8 +68,14 @@ class Simulated:
         """
         if not len(self.equations.unit):
             raise ValueError("the absorber that never slides has no section")
-        index = self.model.place_of(self.parameter)
-        return section_of(self.model, self.values(p), self.word, self.periods, index, self.equations.unit[0])
+        params = self.values(p)
+        if self.model.flow == "page":
+            from orbits.simulation.page_section import section_of
+
+            return section_of(
+                self.model, params, self.word, self.periods, self.model.place_of(self.parameter)
+            )
+        return Section(simulator_of(self.model, params), self.word, self.periods, self.equations.unit[0])
 
 
 def _told(word: Word) -> str:

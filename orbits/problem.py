@@ -18,7 +18,6 @@ from orbits.cycles.identity import canonical, size_of_one
 from orbits.flows.catalogue import flow_of
 from orbits.flows.plain_kernels import PLAIN
 from orbits.machines.building import build
-from orbits.machines.page.stored import machine_again
 from orbits.machines.path import along
 from orbits.motions import Simulated
 from orbits.orbit import Orbit
@@ -341,6 +340,8 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
     """
     settings, params = description["model"], np.array(description["params"], dtype=float)
     if "page" in settings:
+        from orbits.machines.page.stored import machine_again
+
         model: Any = machine_again(settings, trust)
         if model is None:
             return None

@@ -7,12 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from orbits.attractors import observation, page, recurrence
+from orbits.attractors import observation, recurrence
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.simulation.runs import simulator_of
 
-RECOGNISED: dict[str, Any] = {"native": recurrence, "page": page}
-OBSERVED: dict[str, Any] = {"native": observation, "page": page}
+
+def recognising(model: Any) -> Any:
+    """The module that recognises what motions of a machine recur to."""
+    if model.flow == "page":
+        from orbits.attractors import page
+
+        return page
+    return recurrence
+
+
+def observing(model: Any) -> Any:
+    """The module that tells of them in a sweep."""
+    return recognising(model) if model.flow == "page" else observation
+
+
 """How an attractor is recognised, and what is observed on it, by the flow of its machine."""
 TOLERANCE = 1e-6  # largest difference of two nodes that may count as a return
 SAME = 1e-4  # difference of the nodes of one motion met twice
@@ -63,30 +76,30 @@ def find_attractor(
         raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
     if transient is not None and not (np.isfinite(transient) and transient >= 0.0):
         raise SimulationError(f"transient = {transient}: give a number of forcing periods, 0 or above")
-    how = RECOGNISED[model.flow]
+    how = recognising(model)
     simulator = simulator_of(model, model.vector(parameters))
     simulator.put(start)
     length = how.TRANSIENT if transient is None else transient
     tries = how.PATIENCE if patience is None else patience
     found = how.attracted(simulator, length, max_period, tolerance, tries)
-    return OBSERVED[model.flow].lasting(found) if observed else found
+    return observing(model).lasting(found) if observed else found
 
 
 def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0) -> Any:
     """The attractor of the motion on which a simulator is, which is moved on; None: as patient as a sweep."""
-    how = RECOGNISED[simulator.model.flow]
+    how = recognising(simulator.model)
     tries = how.IN_SWEEPS if patience is None else patience
     return how.attracted(simulator, transient, max_period, TOLERANCE, tries)
 
 
 def described(found: Any) -> tuple[Any, dict[str, float]]:
     """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
-    return OBSERVED[found.model.flow].described(found)
+    return observing(found.model).described(found)
 
 
 def measure_names(model: Any) -> tuple[str, ...]:
     """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
-    return OBSERVED[model.flow].measure_names(model)
+    return observing(model).measure_names(model)
 
 
 def different_attractors(

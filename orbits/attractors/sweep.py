@@ -11,7 +11,7 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from contvines.shared.processes import ATTEMPTS, spread
-from orbits.attractors.search import OBSERVED, described, find_attractor, goes_on
+from orbits.attractors.search import described, find_attractor, goes_on, observing
 from orbits.flows.protocol import SimulationError
 from orbits.simulation.runs import simulator_of
 
@@ -50,7 +50,7 @@ class SweepRow:
     @property
     def dots(self) -> list[float]:
         """What a picture shows of it."""
-        return OBSERVED[self.detail.model.flow].dots(self.detail, self.measures)
+        return observing(self.detail.model).dots(self.detail, self.measures)
 
 
 def sweep(

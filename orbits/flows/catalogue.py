@@ -1,16 +1,24 @@
-"""The flows by the names that machines call them."""
+"""The flows by the names that machines call them; one is imported when a machine asks for it."""
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
-from orbits.flows.native.flow import NativeFlow
-from orbits.flows.page.flow import PageFlow
 from orbits.flows.protocol import Flow
-
-FLOWS: dict[str, Flow] = {"native": NativeFlow(), "page": PageFlow()}
 
 
 def flow_of(model: Any) -> Flow:
     """The flow of a machine."""
-    return FLOWS[model.flow]
+    return _flow(model.flow)
+
+
+@cache
+def _flow(name: str) -> Flow:
+    if name == "page":
+        from orbits.flows.page.flow import PageFlow
+
+        return PageFlow()
+    from orbits.flows.native.flow import NativeFlow
+
+    return NativeFlow()

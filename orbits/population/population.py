@@ -12,9 +12,7 @@ from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import SOLVED, Motion
 from orbits.attractors.returning import returning_cycles
-from orbits.machines.page.machine import Machine
 from orbits.population.native import NativeStarts
-from orbits.population.page import PageStarts
 from orbits.population.sorting import Sorting
 from orbits.problem import rebuild
 
@@ -49,7 +47,9 @@ class Population:
     ) -> None:
         self.model, self.parameter = model, parameter
         self.parameters = {k: v for k, v in dict(parameters or {}).items() if k != parameter}
-        kind: Any = PageStarts if isinstance(model, Machine) else NativeStarts
+        kind: Any = NativeStarts
+        if model.flow == "page":
+            from orbits.population.page import PageStarts as kind
         self._sort = kind(model, parameter, self.parameters)
         self.workers = workers
         self.across, self.brief = self._sort.across, self._sort.brief

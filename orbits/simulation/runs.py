@@ -10,16 +10,17 @@ import numpy as np
 
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.simulation.driver import MOST_EVENTS
-from orbits.simulation.native import NativeSimulator
-from orbits.simulation.page import PageSimulator
-
-SIMULATORS = {"native": NativeSimulator, "page": PageSimulator}
-"""By the flow of the machine."""
 
 
 def simulator_of(model: Any, params: np.ndarray) -> Simulator:
     """The simulator of a machine at these parameters; the contract is at the top of `orbits.flows.protocol`."""
-    return SIMULATORS[model.flow](model, params)
+    if model.flow == "page":
+        from orbits.simulation.page import PageSimulator
+
+        return PageSimulator(model, params)
+    from orbits.simulation.native import NativeSimulator
+
+    return NativeSimulator(model, params)
 
 
 def simulate(

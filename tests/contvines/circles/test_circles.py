@@ -96,7 +96,7 @@ def bodies(machine):
 @pytest.mark.slow
 def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
     pytest.importorskip("heyoka")
-    from orbits.simulation.section import section_of
+    from orbits.simulation.page_section import section_of
     from tools.pages.pages import page
 
     found = coupled["NS1"].circles(to=1.0245)
@@ -121,7 +121,7 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
 def test_the_modulated_response_of_the_coupled_absorber_attracts():
     """With little forcing the pair leaves the unit circle supercritically: another simulator settles on the circle, which beats slowly."""
     pytest.importorskip("heyoka")
-    from orbits.simulation.section import section_of
+    from orbits.simulation.page_section import section_of
     from tools.pages.pages import page
 
     settings = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}

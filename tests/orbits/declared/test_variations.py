@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import DryFriction, Machine, Switch, Wall
-from orbits.simulation.section import VariedSection, section_of
+from orbits.simulation.page_section import VariedSection, section_of
 from orbits.symbols import cos, sin, sqrt
 from orbits.words import Word
 
