@@ -11,7 +11,7 @@ The branch is then traced again from the point before the gap, with shorter step
 from __future__ import annotations
 
 from .consistency import unresolved
-from .determinant_sign import certain
+from .determinant import certain
 from .located import Located, Role
 from .location_error import singular_within
 from .segment import Segment

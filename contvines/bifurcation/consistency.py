@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..continuation.engine import Solved
-from .determinant_test import turned
+from .determinant import turned
 from .located import Located, Role
 from .segment import Segment
 

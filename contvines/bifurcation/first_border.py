@@ -14,9 +14,7 @@ from .kinds import BORDERS
 from .locate import Root, locate
 from .segment import Segment
 
-TIED = 1e-9  # margins that differ by less vanish together
-BEHIND = (1e-3, 1e-2)  # part of a segment behind a border at which it shows which margins have passed zero
-MARGIN_ROUNDING = 4e-16  # of margins, in units of the machine's own size
+MARGIN_ROUNDING = 2.0 * np.finfo(float).eps  # of margins, in units of the machine's own size
 TOLD = 10.0  # times that: a difference of margins which is no rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 
@@ -81,11 +79,12 @@ def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray
     rounds touch zero there, and come back; that they are negative at the end of the segment is another matter.
     """
     here = segment.engine.margins(root.point.row)[falling]
-    for step in BEHIND:
+    settings = segment.engine.settings
+    for step in (settings.aside, 10.0 * settings.aside):
         point = segment.at(root.position + step)
         if point is not None:
             there = segment.engine.margins(point.row)[falling]
-            passing = falling[(there < MARGIN) & (here <= here.min() + np.sqrt(TIED))]
+            passing = falling[(there < MARGIN) & (here <= here.min() + np.sqrt(settings.tied))]
             if len(passing):
                 return passing
     return falling
@@ -133,6 +132,6 @@ def _which(engine: Engine, margins: np.ndarray, falling: NDArray[np.intp]) -> in
 
     rounding, so those that are as small as the smallest one count as equal, and the order of kinds decides.
     """
-    tied = falling[margins[falling] <= margins[falling].min() + TIED]
+    tied = falling[margins[falling] <= margins[falling].min() + engine.settings.tied]
     kinds = [engine.problem.margin_kind(int(j)) for j in tied]
     return int(tied[min(range(len(tied)), key=lambda i: (ORDER.get(kinds[i], len(ORDER)), i))])

@@ -91,7 +91,7 @@ def locate(
         s = 0.0 if abs(fa) < abs(fb) else 1.0
         return Root(s, solved[s], 0.0)
     s, low, high, flow, fhigh = bracketed_root(value, 0.0, 1.0, fa, fb, tolerance, jump)
-    width = abs(solved[high].p - solved[low].p) + 4e-16 * abs(solved[s].p)
+    width = abs(solved[high].p - solved[low].p) + 2.0 * np.finfo(float).eps * abs(solved[s].p)
     return Root(s, solved[s], max(width, solved[s].correction * 1e-3), abs(fhigh - flow) <= JUMP)
 
 

@@ -243,7 +243,7 @@ def _roots(limits: list[list[float]]) -> NDArray[np.complex128]:
     finite = sorted(_zeros(limits[poles][poles:]), key=lambda one: (-abs(one), -one.real, -one.imag))
     # beside the border these are roots of x^k + c_1 x^(k-1) + ..., over the distance
     growing = _zeros([limits[k][k] for k in range(poles + 1)])
-    growing = [UNBOUNDED * one / max(abs(one), 1e-300) for one in growing]
+    growing = [UNBOUNDED * one / max(abs(one), np.finfo(float).tiny) for one in growing]
     missing = len(limits[0]) - 1 - len(growing) - len(finite)
     return np.array([*growing, *finite, *[0.0] * missing], dtype=np.complex128)
 

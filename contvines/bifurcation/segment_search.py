@@ -10,6 +10,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from .consistency import unaccounted, unresolved
+from .determinant import singular
 from .evidence import Evidence, evidence, parabola_dips
 from .first_border import find_border, first_zero, rounding
 from .kind import Kind, Test
@@ -20,7 +21,6 @@ from .location_error import blurred
 from .one_sided_limits import one_sided
 from .point_on_branch import PointOnBranch
 from .segment import Segment
-from .singular import singular
 from .symmetry_test import SymmetryTest
 from .user_functions import own_tests
 
@@ -29,8 +29,6 @@ NARROWER, ROOF = (
     3,
     12,
 )  # times that a distance is looked at nearer, and the smallest margin, which may be a roof
-SHOWN = 1e-6  # margins that are certainly positive: where a doubled branch passes through the border of its root, as one round gets what
-# another one loses, equations are singular, and margins are known to half their digits
 
 
 class SegmentSearch:
@@ -224,7 +222,7 @@ class SegmentSearch:
             if real and not ends.outside.any():
                 new |= seen.outside
             elif not real and ends.outside.all():
-                new |= seen.distances[:, smallest] > SHOWN
+                new |= seen.distances[:, smallest] > self.engine.settings.shown
             return found, seen.distances, new
 
         first = look(0.0, 1.0)
@@ -256,7 +254,11 @@ class SegmentSearch:
             return None
         middle = 0.5 * (begins.position + ends.position)
         point = segment.at(middle)
-        return None if point is None or float(engine.smallest_margin(point.row)) < SHOWN else (middle, point)
+        return (
+            None
+            if point is None or float(engine.smallest_margin(point.row)) < engine.settings.shown
+            else (middle, point)
+        )
 
     def before_border(self, segment: Segment, border: Located) -> tuple[float, Solved] | None:
         """A point up to a border where another margin is negative, though it is positive at both ends, or None."""

@@ -216,7 +216,7 @@ def _multiple(
                 size = engine.norm(direction)
                 direction = direction / size
                 near = (1.0 - abs(engine.inner(direction, other)) for other, _ in found)
-                if all(distance > 1e-4 for distance in near):
+                if all(distance > engine.settings.near for distance in near):
                     found.append((direction, (point.p - p) / size**2))
 
     search([0.0])

@@ -68,5 +68,5 @@ class SymmetryTest:
         if self.affine is not None:
             order, signs, _ = self.affine
             return signs * v[order]
-        scale = 1e-5 / max(float(np.abs(v).max()), 1e-300)
+        scale = 1e-5 / max(float(np.abs(v).max()), np.finfo(float).tiny)
         return (self.symmetry.apply(u + scale * v) - self.symmetry.apply(u - scale * v)) / (2.0 * scale)

@@ -25,7 +25,6 @@ FLAT = 1e-13  # changes of the parameter (in its unit) that tell a bend, times t
 NOISY = 1e3  # ... and times the noise of the equations
 BENT = 0.3  # part by which bends of one branch may differ, so near to where it leaves
 UNRESOLVED = 1e-15  # changes of the parameter (in its unit), times the distance at which they are seen, that are rounding
-BESIDE = 1e-4  # ... where that distance is as small: further along, a branch may come back to the very value
 TURNING = ("fold", "branch-point")  # what rounding makes of solutions of nearly singular systems
 
 
@@ -133,7 +132,9 @@ def without_rounding(engine: Engine, origin: Solved, half: HalfBranch) -> HalfBr
 def _unresolved(engine: Engine, origin: Solved, half: HalfBranch, i: int) -> bool:
     u, p, _ = half.at(i)
     distance = engine.norm(engine.join(u - origin.u, p - origin.p))
-    return distance < BESIDE and abs(p - origin.p) * distance < UNRESOLVED * engine.parameter_unit(origin.p)
+    return distance < engine.settings.near and abs(
+        p - origin.p
+    ) * distance < UNRESOLVED * engine.parameter_unit(origin.p)
 
 
 def _bend(engine: Engine, origin: Solved, point: Solved) -> float:

@@ -25,6 +25,8 @@ BETWEEN = (
     "aside",
     "close",
     "near",
+    "shown",
+    "tied",
     "at_end",
     "critical",
     "marginal",
@@ -79,6 +81,11 @@ class Settings:
     near : float
         Special points: part of a segment below which two places on it are one; distance from a meeting (in the metric) within which tangents
         and multipliers are those of its singular equations.
+    shown : float
+        Special points: margins that are certainly positive where a virtual branch is real between two points: where a doubled branch passes
+        through the border of its root, as one round gets what another one loses, margins are known to half their digits.
+    tied : float
+        Special points: margins that differ by less vanish together.
     at_end : float
         Special points: distance (in the metric) from the end of a branch below which a bifurcation is that end.
     critical : float
@@ -118,6 +125,8 @@ class Settings:
     aside: float = 1e-3
     close: float = 1e-6
     near: float = 1e-4
+    shown: float = 1e-6
+    tied: float = 1e-9
     at_end: float = 1e-7
     critical: float = 1e-4
     marginal: float = 1e-9

@@ -198,7 +198,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
             + "; ".join(dict.fromkeys(ending.sentence(name) for ending in endings))
         )
     few = pending.kind is Origin.REST and len(half) < 4
-    if few and np.ptp(half.joined().values) < 1e-6 * run.unit(first.p):
+    if few and np.ptp(half.joined().values) < run.settings.same * run.unit(first.p):
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return

@@ -14,17 +14,14 @@ import numpy as np
 
 from ...continuation.aims import aim_at_multiplier
 from ...continuation.engine import Solved
-from ..determinant_sign import passes_for_certain
-from ..determinant_test import passes, turned
+from ..determinant import alone, by_elimination, by_sign, passes, passes_for_certain, singular, turned
 from ..kind import Kind
 from ..locate import Root, locate, locate_singular
 from ..located import Located, Role
 from ..location_error import blurred
 from ..multiplier_counts import balance, counts
 from ..multiplier_tests import passing
-from ..refine_branch_point import by_elimination, by_sign
 from ..segment import Segment
-from ..singular import alone, singular
 
 EXACT = (
     1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
@@ -95,7 +92,7 @@ def _sharpened(segment: Segment, points: list[Located]) -> list[Located]:
     points = [e for e in points if e.kind == "branch-point"]
     aims = {test.index: test.function for test in passing(segment, "plus")}
     while points:
-        group = [e for e in points if abs(e.position - points[0].position) <= 1e-6]
+        group = [e for e in points if abs(e.position - points[0].position) <= engine.settings.close]
         points = [e for e in points if e not in group]
         gaps = [0.4 * abs(e.position - group[0].position) for e in points]
         mean = partial(_mean, [aims[e.index] for e in group])
@@ -121,7 +118,7 @@ def _exchange(segment: Segment) -> Located | None:
 
     if not test(segment.a) * test(segment.b) < 0.0:
         return None
-    rough = locate(segment, test, tolerance=1e-6)
+    rough = locate(segment, test, tolerance=engine.settings.close)
     if rough is None:
         return None
     aim = aim_at_multiplier(

@@ -51,7 +51,7 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
         Which multiplier; see :func:`contvines.continuation.aims.aim_at_multiplier`.
     """
     kind = engine.problem.spectrum
-    if kind == "none" or abs(point.tangent[-1]) < 1e-9:
+    if kind == "none" or abs(point.tangent[-1]) < engine.settings.upright:
         return None
     aim = aim_at_multiplier(engine.m, kind, name, k)
     ends = _beside(engine, point)

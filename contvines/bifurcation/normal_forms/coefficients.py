@@ -308,7 +308,7 @@ class Forms:
         q, w = self.null(multiplier)
         # the phase in which real and imaginary parts are orthogonal
         square = np.sum(q * q)
-        q = q * np.exp(-0.5j * np.angle(square)) if abs(square) > 1e-300 else q
+        q = q * np.exp(-0.5j * np.angle(square)) if abs(square) > np.finfo(float).tiny else q
         one: Any = self.extended(q, multiplier)
         a, b = self.line_of(one.real), self.line_of(one.imag)
         twice = 2.0 * multiplier if self.flow else multiplier**2

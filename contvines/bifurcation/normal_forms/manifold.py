@@ -145,7 +145,7 @@ class Reduction:
         sizes = np.abs(lines @ self.real.T @ np.eye(self.m)).max(axis=1)
         values = []
         for line, size in zip(lines, sizes):
-            r = self.radius / (size * max(float(np.abs(self.vectors).max()), 1e-300))
+            r = self.radius / (size * max(float(np.abs(self.vectors).max()), np.finfo(float).tiny))
             with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
                 samples = self._rest(np.outer(r * nodes, self.real @ line))
             if not np.isfinite(samples).all():

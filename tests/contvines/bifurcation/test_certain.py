@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.bifurcation.determinant_sign import ROUNDING, certain, passes_for_certain
+from contvines.bifurcation.determinant import ROUNDING, certain, passes_for_certain
 from contvines.bifurcation.segment import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
