@@ -1,4 +1,4 @@
-// The numbers of a shaken cavity from the parameters of its machines; see orbits/machines/absorber/law.py and cavity/law.py.
+// The numbers of a shaken cavity from the parameters of its machines; see orbits/machines/reference/law.py.
 #pragma once
 #include "math.hpp"
 

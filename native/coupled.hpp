@@ -1,5 +1,5 @@
 // The absorber on its oscillator between two events, in closed form: for numbers, and for numbers with derivatives. Simulation, cycles
-// and margins use the same motion. In words: orbits/machines/coupled/maps.py.
+// and margins use the same motion. In words: orbits/machines/reference/maps.py.
 #pragma once
 #include "dual.hpp"
 

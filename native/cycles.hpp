@@ -30,7 +30,7 @@ inline whole arrival_of(const Cycle& c, whole i) {
 // The mode after the event at the end of segment i, and before event i.
 inline double mode_after(const Cycle& c, whole i) { return i + 1 < c.length ? double(c.modes[i + 1]) : c.twist * double(c.modes[0]); }
 inline double mode_before(const Cycle& c, whole i) { return i > 0 ? double(c.modes[i - 1]) : c.twist * double(c.modes[c.length - 1]); }
-// The last event that is followed by a flight: its displacement equation is what the pin replaces (orbits/machines/pinning.py).
+// The last event that is followed by a flight: its displacement equation is what the pin replaces (orbits/machines/reference/maps.py).
 inline whole last_flight(const Cycle& c) { return c.modes[c.length - 1] != 0 ? c.length - 1 : c.length - 2; }
 
 // Replace the displacement equation of the last flight of an impact-free motion by w_i + w_{i+1} = middle, the sum of the walls' places;

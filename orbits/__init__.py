@@ -6,9 +6,9 @@ import importlib
 from typing import Any
 
 _PLACES = {
-    "Absorber": "orbits.machines.absorber.machine",
-    "Cavity": "orbits.machines.cavity.machine",
-    "Coupled": "orbits.machines.coupled.machine",
+    "Absorber": "orbits.machines.absorber",
+    "Cavity": "orbits.machines.cavity",
+    "Coupled": "orbits.machines.coupled",
     "DryFriction": "orbits.contacts.dry_friction",
     "Machine": "orbits.machines.page.machine",
     "Scales": "orbits.design.scales",

@@ -8,13 +8,13 @@ import itertools
 import numpy as np
 
 from orbits import Absorber, Orbit
-from orbits.machines.absorber.closed_forms import friction_number, restitution_ratio, symmetry_breaking_square
+from orbits.machines.closed_forms.absorber import friction_number, restitution_ratio, symmetry_breaking_square
 from orbits.starts.find import polish
 
 
 def limits(machine: Absorber) -> tuple[float, float]:
     """C^2 at the fold and at the symmetry breaking."""
-    from orbits.machines.absorber.closed_forms import fold_square
+    from orbits.machines.closed_forms.absorber import fold_square
 
     R = restitution_ratio(machine.restitution)
     H = friction_number(machine.friction, machine.gravity, machine.mass_ratio, machine.frequency)

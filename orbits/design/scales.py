@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass
 from typing import Self
 
-from orbits.machines.coupled.machine import Coupled
+from orbits.machines.coupled import Coupled
 from orbits.machines.parameters import ParameterError
 
 STANDARD_GRAVITY = 9.81

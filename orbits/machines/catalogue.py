@@ -11,12 +11,13 @@ from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.parameters import ParameterError
+from orbits.machines.reference.machine import reference
 from orbits.machines.stepping import Machine
 
 PLACES = {
-    "absorber": ("orbits.machines.absorber.machine", "Absorber"),
-    "cavity": ("orbits.machines.cavity.machine", "Cavity"),
-    "coupled": ("orbits.machines.coupled.machine", "Coupled"),
+    "absorber": ("orbits.machines.absorber", "Absorber"),
+    "cavity": ("orbits.machines.cavity", "Cavity"),
+    "coupled": ("orbits.machines.coupled", "Coupled"),
 }
 """Module and class of each machine."""
 NAMES = tuple(PLACES)
@@ -50,29 +51,28 @@ def usual(name: str) -> tuple[Model, dict[str, float]]:
 @cache
 def stepper(name: str) -> Machine:
     """The stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
-    reference = model_class(name).stepper()
-    return _machine(name, reference, stepper_functions(name, reference))
+    return _machine(name, stepper_functions(name, reference(name)))
 
 
 def reference_stepper(name: str) -> Machine:
     """The same in plain Python, which the native core is compared with."""
-    reference = model_class(name).stepper()
-    return _machine(name, reference, reference)
+    return _machine(name, reference(name))
 
 
-def _machine(name: str, reference: Any, functions: Any) -> Machine:
+def _machine(name: str, functions: Any) -> Machine:
     chosen = model_class(name)
+    moving = chosen.moving_cavity
     return Machine(
         name,
-        reference.STATE,
-        reference.ROW,
+        8 if moving else 6,
+        7 if moving else 5,
         functions.launch,
         functions.advance,
         functions.sample,
         functions.works,
         functions.energies,
         chosen.walls,
-        chosen.moving_cavity,
+        moving,
     )
 
 

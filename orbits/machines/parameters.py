@@ -121,3 +121,8 @@ class Parameter:
         """The word for a value where there is one, else the number."""
         number = self.number(value)
         return next((word for word, code in self.words.items() if code == number), number)
+
+
+FRICTION = Parameter("friction", "Coulomb coefficient", NOT_NEGATIVE, r"\mu", "", 0.5)
+GRAVITY = Parameter("gravity", "g / (b omega_0^2)", NOT_NEGATIVE, r"\tilde g", "b omega_0^2", 0.211)
+FREQUENCY = Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", "omega_0", 1.0)

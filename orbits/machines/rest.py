@@ -5,35 +5,111 @@ Its equations are linear, K u = f with few unknowns, and its only border is the 
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 
+from orbits.machines.reference.law import LAWS, Law
 
-class Rest(Protocol):
-    """What a machine knows of its absorber at rest; parameter vectors have shape (P,), unknowns (N,)."""
 
-    unknowns: int
-    """Number N of unknowns."""
+class Rest:
+    """The absorber at rest in a shaken cavity; the one unknown is its position, kept at w = 0. Parameter vectors have shape (P,)."""
+
+    unknowns = 1
+
+    def __init__(self, name: str) -> None:
+        self._law = LAWS[name]
+
+    def law(self, params: np.ndarray) -> Law:
+        """The numbers of the equations of motion."""
+        return self._law(np.asarray(params, dtype=float))
 
     def equations(self, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Matrix K (N, N) and right-hand side f (N,)."""
-        ...
+        return np.eye(1), np.zeros(1)
 
     def reserve(self, params: np.ndarray, u: np.ndarray) -> float:
-        """Friction acceleration left before the absorber slips."""
-        ...
+        """Friction acceleration left before the absorber slips, of the two directions the nearer to slipping."""
+        return min(self.reserves(params, u))
+
+    def reserves(self, params: np.ndarray, u: np.ndarray | None = None) -> tuple[float, float]:
+        """The same of both directions: gravity along the cavity helps one and hinders the other."""
+        law = self.law(params)
+        size = (
+            float(law.amplitude)
+            if law.prescribed
+            else float(np.hypot(*(self.solved(params) if u is None else u)))
+        )
+        shaking = size * float(law.omega) ** 2
+        return float(law.pull_left) - shaking, float(-law.pull_right) - shaking
+
+    def solved(self, params: np.ndarray) -> np.ndarray:
+        """The unknowns."""
+        return np.linalg.solve(*self.equations(params))
 
     def multipliers(self, params: np.ndarray) -> np.ndarray:
         """Multipliers over one forcing period, complex, shape (m,) with m the same for all parameters."""
-        ...
+        return np.zeros(0, complex)
 
     def cavity_motion(
         self, params: np.ndarray, u: np.ndarray, phase: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """v and v' at some phases."""
-        ...
+        law = self.law(params)
+        return law.amplitude * np.sin(phase), law.amplitude * law.omega * np.cos(phase)
 
     def measure(self, name: str, params: np.ndarray, u: np.ndarray) -> float:
         """A measure that has a meaning without events; nan for any other."""
-        ...
+        return float(self.law(params).amplitude) ** 2 if name == "C2" else np.nan
+
+
+class RestOnOscillator(Rest):
+    """The absorber at rest on its oscillator: a linear response q1 = X sin Psi + Y cos Psi with the mass 1 + eps, about the place where both rest."""
+
+    unknowns = 2
+
+    def equations(self, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        law = self.law(params)
+        stiffness, drag = 1.0 - law.whole * law.omega**2, law.drag * law.omega
+        return np.array([[stiffness, -drag], [drag, stiffness]]), law.force * np.array([1.0, law.base])
+
+    def multipliers(self, params: np.ndarray) -> np.ndarray:
+        law = self.law(params)
+        return np.exp(np.roots([law.whole, law.drag, 1.0]).astype(complex) * 2.0 * np.pi / law.omega)
+
+    def cavity_motion(
+        self, params: np.ndarray, u: np.ndarray, phase: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        law = self.law(params)
+        X, Y = law.whole * u
+        return X * np.sin(phase) + Y * np.cos(phase), law.omega * (X * np.cos(phase) - Y * np.sin(phase))
+
+    def measure(self, name: str, params: np.ndarray, u: np.ndarray) -> float:
+        law, size = self.law(params), float(np.hypot(u[0], u[1]))
+        ground = float(law.drag / law.eps) * np.pi * float(law.omega) * size**2
+        true = ground + share_of_the_base(law, 1, np.pi * float(u[0]))
+        return {
+            "max_abs_q1": size,
+            "amplitude": float(law.whole) * size,
+            "C2": (float(law.whole) * size) ** 2,
+            "v_phase": float(np.arctan2(u[1], u[0])),
+            "input_work": true,
+            "damping_loss": true,
+            "force_work": ground,  # lambda times the integral of q1'^2
+            "grounded_damping_loss": ground,
+        }.get(name, np.nan)
+
+
+def share_of_the_base(law: Law, periods: int, overlap: float) -> float:
+    """What the base's motion adds to the loss in the damper: lambda times the integral of (q1' - e')^2 - q1'^2, per mass of the absorber.
+
+    By parts the integral of q1' e' is Omega^2 times that of q1 e; `overlap` is the integral of q1 sin Psi over the phase.
+    """
+    own = np.pi * periods * law.omega * law.force**2
+    chi_lambda: Any = law.base / (law.omega * law.eps)
+    return float(chi_lambda * (own - 2.0 * law.omega * law.force * overlap))
+
+
+def rest_of(name: str) -> Rest:
+    """The rest of the machine called `name`."""
+    return (RestOnOscillator if name == "coupled" else Rest)(name)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import contvines as cv
 from orbits import Absorber, Coupled
 from orbits.attractors import find_attractors, sweep
-from orbits.machines.absorber.closed_forms import (
+from orbits.machines.closed_forms.absorber import (
     fold_beta,
     fold_square,
     friction_number,

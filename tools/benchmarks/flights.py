@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from orbits import Absorber
 from orbits.machines.catalogue import stepper as machine
-from orbits.machines.coupled.machine import Coupled
+from orbits.machines.coupled import Coupled
 from orbits.simulation.driver import buffers, first_state
 
 from .floor import PLAIN, library

@@ -21,6 +21,7 @@ from orbits.elimination.block_cyclic import bordered
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.machines import path
 from orbits.machines.base import Model
+from orbits.machines.reference.machine import Reference, reference
 from orbits.words.alphabet import CODES
 
 STICK, SLIP = CODES["s"], CODES["u"]
@@ -40,7 +41,7 @@ class ReferenceKernels(PlainKernels):
 
     Parameters
     ----------
-    maps : module
+    maps : Reference
         `linearise`, `margins` and `unpin` of the model.
     """
 
@@ -50,7 +51,7 @@ class ReferenceKernels(PlainKernels):
     assign = staticmethod(path.assign)
     transpose = staticmethod(rearranged.transpose)
 
-    def __init__(self, maps: Any) -> None:
+    def __init__(self, maps: Reference) -> None:
         self.maps = maps
 
     def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
@@ -102,10 +103,10 @@ class ReferenceKernels(PlainKernels):
 
 
 @cache
-def _assembled(maps: Any, name: str, in_native: bool) -> NativeKernels | ReferenceKernels:
-    return NativeKernels(native_table(TABLES[name])) if in_native else ReferenceKernels(maps)
+def _assembled(name: str, in_native: bool) -> NativeKernels | ReferenceKernels:
+    return NativeKernels(native_table(TABLES[name])) if in_native else ReferenceKernels(reference(name))
 
 
 def assemble(model: Model) -> NativeKernels | ReferenceKernels:
     """The kernels for `model`, made once per process."""
-    return _assembled(model.kernels, model.name, native() and model.name in TABLES)
+    return _assembled(model.name, native())

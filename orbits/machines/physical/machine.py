@@ -22,6 +22,7 @@ from orbits.machines.path import along
 from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent, near_quantity
 from orbits.machines.physical.ratios import check_ratios
+from orbits.machines.physical.tables import PLACES
 
 
 def tables(model: type[Model]) -> ModuleType:
@@ -32,13 +33,11 @@ def tables(model: type[Model]) -> ModuleType:
     QuantityError
         If the machine has none.
     """
-    room = model.__module__.rpartition(".")[0]
-    try:
-        return importlib.import_module(f"{room}.quantities")
-    except ModuleNotFoundError:
+    if model.name not in PLACES:
         raise QuantityError(
             f'units = "si": the machine {model.name!r} has no physical quantities of its own; leave units out'
-        ) from None
+        )
+    return importlib.import_module(f"orbits.machines.physical.tables.{PLACES[model.name]}")
 
 
 def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section: str = "") -> Any:

@@ -11,6 +11,7 @@ from orbits import arguments
 from orbits.flows.native.cycle_equations import Equations
 from orbits.flows.native.kernels import TABLES, NativeKernels, ReferenceKernels
 from orbits.machines.catalogue import usual
+from orbits.machines.reference.machine import reference
 from orbits.words import Word
 
 pytestmark = pytest.mark.skipif(not native(), reason="no native core")
@@ -41,7 +42,7 @@ def drawn(name, text, seed, symmetric, without_friction):
     nodes[:, 0] = draw.uniform(0.0, system.shift, system.length)
     if seed % 3:  # else durations of both signs, as on virtual branches
         nodes[:, 0].sort()
-    return system, nodes.ravel(), NativeKernels(native_table(TABLES[name])), ReferenceKernels(model.kernels)
+    return system, nodes.ravel(), NativeKernels(native_table(TABLES[name])), ReferenceKernels(reference(name))
 
 
 def close(one, other, tolerance=1e-12):
@@ -135,7 +136,7 @@ def test_newton_finds_what_the_reference_finds():
     system = Equations(model, Word.parse("LR"), 1, "amplitude", params, False)
     guess = system.reduce(next(model.start_nodes(Word.parse("LR"), 1, params))) + 0.03
     found = []
-    for kernels in (NativeKernels(native_table(0)), ReferenceKernels(model.kernels)):
+    for kernels in (NativeKernels(native_table(0)), ReferenceKernels(reference("absorber"))):
         u, border = guess.copy(), np.zeros(system.dimension + 1)
         border[-1] = 1.0
         work, step, tangent = system.workspace(), np.zeros_like(border), np.zeros_like(border)

@@ -5,9 +5,10 @@ import pytest
 
 from contvines.core.library import native
 from orbits import Absorber, Coupled
+from orbits.flows.native import driven_measures
 from orbits.flows.native.sampling import positions_of, reference_positions
 from orbits.machines.catalogue import reference_stepper, stepper
-from orbits.machines.coupled import measures, segments
+from orbits.machines.reference.machine import reference
 from orbits.simulation.runs import simulate
 
 pytestmark = pytest.mark.skipif(not native(), reason="the native core is not loaded")
@@ -42,8 +43,8 @@ def test_shapes_of_segments():
     run = simulate(machine, {"w_rate": 0.7, "v": 0.4}, events=12)
     states, lengths = run.states[:-1][:12], run.lengths[:12]
     found, wanted = np.empty((2, len(states), 4))
-    measures._shapes(states, run.params, lengths, found)
-    segments.shapes(states, run.params, lengths, wanted)
+    driven_measures._shapes(states, run.params, lengths, found)
+    reference("coupled").shapes(states, run.params, lengths, wanted)
     np.testing.assert_allclose(found, wanted, atol=1e-12)
     for state, length, row in zip(states, lengths, found):
         ahead = np.linspace(0.0, length, 20001)

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 import contvines as cv
 from orbits import Absorber, Cavity, ParameterError
 from orbits.attractors import find_attractor
-from orbits.machines.absorber.closed_forms import (
+from orbits.machines.closed_forms.absorber import (
     friction_number,
     restitution_ratio,
     symmetry_breaking_square,

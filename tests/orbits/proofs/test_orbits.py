@@ -238,7 +238,7 @@ def test_without_friction_flights_may_reverse():
 def test_the_cavity_with_unlike_walls_and_a_slope():
     """Level and with equal sides it is the absorber, with the same nodes; else its own, against the floating orbit."""
     from orbits.attractors import find_attractor
-    from orbits.machines.cavity.machine import Cavity
+    from orbits.machines.cavity import Cavity
 
     level = Cavity(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
     same = level.orbit("LR", 1, guess=ABSORBER.symmetric_orbit(amplitude=0.6).nodes, amplitude=0.6).prove()

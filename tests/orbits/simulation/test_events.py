@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from orbits.machines.absorber.machine import Absorber
+from orbits.machines.absorber import Absorber
 from orbits.simulation import simulate
 from tests.machines import ABSORBER
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from orbits.machines.absorber.machine import Absorber
+from orbits.machines.absorber import Absorber
 from orbits.simulation import simulate
 from tests.machines import ABSORBER
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import fsolve
 
 from orbits.attractors import find_attractor
-from orbits.machines.absorber.machine import Absorber
+from orbits.machines.absorber import Absorber
 from orbits.simulation import replay, replay_nodes
 
 R, A = 0.76, 1.006 * 0.5 * 0.211

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from orbits import Absorber
 from orbits.flows.native.kernels import assemble
-from orbits.machines.absorber import maps
+from orbits.machines.reference.machine import reference
 from orbits.problem import OrbitProblem
 from orbits.words import Word
 
@@ -26,14 +26,14 @@ def some_nodes(problem, seed):
 
 def residual(problem, u, p):
     work = problem.workspace()
-    maps.linearise(problem.data, u, p, work)
+    reference("absorber").linearise(problem.data, u, p, work)
     return work[0].ravel().copy()
 
 
 def dense(problem, u, p):
     """F, and the matrix [dF/du, dF/dp] put together from the blocks."""
     work = problem.workspace()
-    maps.linearise(problem.data, u, p, work)
+    reference("absorber").linearise(problem.data, u, p, work)
     F, A, D, Q = work[:4]
     n, N = 2, problem.dimension
     J = np.zeros((N, N + 1))
@@ -151,7 +151,7 @@ def pre_impact_multipliers(orbit):
 @settings(max_examples=40, deadline=None)
 @given(r=st.floats(0.2, 1.0), mu=st.floats(0.0, 0.6), omega=st.floats(0.5, 2.0), above=st.floats(0.01, 0.5))
 def test_pre_impact_maps_have_the_same_multipliers(r, mu, omega, above):
-    from orbits.machines.absorber.closed_forms import fold_square, friction_number, restitution_ratio
+    from orbits.machines.closed_forms.absorber import fold_square, friction_number, restitution_ratio
 
     machine = Absorber(restitution=r, friction=mu, gravity=0.2, mass_ratio=0.01, frequency=omega)
     least = float(fold_square(restitution_ratio(r), friction_number(mu, 0.2, 0.01, omega)))
@@ -169,7 +169,7 @@ def test_short_flights_from_rest_to_rest_keep_their_digits(lasting):
     work = problem.workspace()
     start = 0.9
     end = start + lasting
-    maps.linearise(problem.data, np.array([start, 0.1, end, 0.1]), 0.8, work)
+    reference("absorber").linearise(problem.data, np.array([start, 0.1, end, 0.1]), 0.8, work)
     with mp.workdps(50):
         a, Omega, mode = mp.mpf(0.4) * mp.mpf(0.3) * (1 + mp.mpf(0.02)), mp.mpf(1.2), word.modes[0]
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from orbits.machines.coupled.closed_forms import stuck_state, symmetric_discriminant
+from orbits.machines.closed_forms.coupled import stuck_state, symmetric_discriminant
 from orbits.simulation import simulate
 from tests.machines import COUPLED
 from tests.orbits.machines.coupled.equations_of_motion import TIGHT, event, integrate, right_side

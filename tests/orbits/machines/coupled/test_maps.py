@@ -7,15 +7,15 @@ import pytest
 from orbits import Coupled
 from orbits.arguments import cycle_data, workspace
 from orbits.flows.native.kernels import ReferenceKernels
-from orbits.machines.coupled import maps
-from orbits.machines.coupled.flow import first_zero, wave
-from orbits.machines.coupled.maps import margins
 from orbits.machines.path import single
+from orbits.machines.reference.machine import reference
+from orbits.machines.reference.oscillation import Oscillation, first_zero
 from tests.machines import COUPLED
 from tests.orbits.machines.coupled.motion import path
 
 L, R, T, S, U = range(5)
-linearise = ReferenceKernels(maps).linearise
+linearise = ReferenceKernels(reference("coupled")).linearise
+margins = reference("coupled").margins
 # arriving event and the modes: every kind of segment
 SEGMENTS = [
     (L, -1, R, 1),
@@ -206,28 +206,26 @@ def test_first_zero_finds_every_zero():
     """Against sign changes on a fine grid, for sums of a harmonic and a damped oscillation with nearby frequencies."""
     generator = np.random.default_rng(3)
     for _ in range(200):
-        constant, P, Q, A, B = generator.normal(size=5)
-        Omega, beta, alpha, phase = (
-            *generator.uniform(0.4, 2.5, 2),
-            generator.uniform(0.0, 0.3),
-            generator.uniform(0, 6),
-        )
+        h0, h1, z0, z1 = generator.normal(size=4)
+        omega, beta, alpha = *generator.uniform(0.4, 2.5, 2), generator.uniform(0.0, 0.3)
         if generator.random() < 0.5:
-            beta = Omega * (1.0 + 0.01 * generator.normal())
-        wave_of = (constant, P, Q, A, B, Omega, alpha, beta, phase)
+            beta = omega * (1.0 + 0.01 * generator.normal())
+        q = Oscillation(omega, alpha, beta, h0, h1, z0, z1)
         tau = np.linspace(0.0, 12.0, 24001)
-        Psi = phase + Omega * tau
-        values = constant + P * np.sin(Psi) + Q * np.cos(Psi)
-        values += np.exp(-alpha * tau) * (A * np.cos(beta * tau) + B * np.sin(beta * tau))
-        expected = tau[1:][values[1:] * values[:-1] < 0.0]
+        third = omega**2 * (omega * h0 * np.sin(omega * tau) - h1 * np.cos(omega * tau))
+        A, B = z0, (z1 + alpha * z0) / beta
+        for _ in range(3):  # derivatives of exp(-alpha tau) (A cos beta tau + B sin beta tau)
+            A, B = beta * B - alpha * A, -beta * A - alpha * B
+        third += np.exp(-alpha * tau) * (A * np.cos(beta * tau) + B * np.sin(beta * tau))
+        expected = tau[1:][third[1:] * third[:-1] < 0.0]
+
+        def look(t, q=q):
+            at = q.at(t)
+            return at.h3 + at.z3, q.fourth(at)
+
         found, place = [], 0.0
-        while True:
-            place, slope = first_zero(*wave_of, place, 12.0)
-            if place >= 12.0:
-                break
-            value, rate = wave(*wave_of, place)
-            assert abs(value) < 1e-13
-            assert slope == pytest.approx(rate, abs=1e-6)
+        while (place := first_zero(look, place, 12.0, q.driven(5) + q.own(5, place), 1e-15)) < 12.0:
+            assert abs(look(place)[0]) < 1e-12
             found.append(place)
         assert len(found) >= len(expected)  # the grid may miss a pair, `first_zero` may not
         for grid in expected:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, romb
 
-from orbits.machines.absorber.closed_forms import symmetric_square
-from orbits.machines.coupled.closed_forms import response, stuck_frequencies, stuck_response
-from orbits.machines.coupled.segments import shapes
+from orbits.machines.closed_forms.absorber import symmetric_square
+from orbits.machines.closed_forms.coupled import response, stuck_frequencies, stuck_response
+from orbits.machines.reference.machine import reference
 from tests.machines import COUPLED
 from tests.orbits.machines.coupled.motion import path
 
@@ -131,13 +131,13 @@ def test_integrals_over_a_whole_turn_are_exact(frequency):
     state = np.array([[0.3, 0.1, 0.0, 0.0, 0.0, 0.0, 0.7, -0.4]])
     length = 2.0 * np.pi * max(1.0, frequency) * 0.999
     whole, first, second = (np.empty((1, 4)) for _ in range(3))
-    shapes(state, params, np.array([length]), whole)
-    shapes(state, params, np.array([0.37 * length]), first)
+    reference("coupled").shapes(state, params, np.array([length]), whole)
+    reference("coupled").shapes(state, params, np.array([0.37 * length]), first)
     states, _, _ = path(params, 0, 0.3, 0.1, 0.0, 0.7, -0.4, 0.37 * length / frequency, 1)
     q1, p1, q2, p2 = states[-1, :4]
     eps = params[3]
     later = np.array([[0.3 + 0.37 * length, q1 - q2, 0.0, 0.0, 0.0, 0.0, q1 + eps * q2, p1 + eps * p2]])
-    shapes(later, params, np.array([0.63 * length]), second)
+    reference("coupled").shapes(later, params, np.array([0.63 * length]), second)
     assert whole[0, 1:] == pytest.approx(first[0, 1:] + second[0, 1:], abs=1e-13)
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from orbits.machines.catalogue import stepper as machine
-from orbits.machines.coupled import stepper
 from orbits.machines.physical import physical
+from orbits.machines.reference.machine import reference
 from orbits.simulation.driver import first_state
 
 CASE = {
@@ -21,7 +21,7 @@ def test_units_change_no_motion():
     begin = first_state(
         model, machine(model.name), params, {"w": 0.3, "w_rate": 0.4, "v": 0.1, "v_rate": -0.2}
     )
-    ends = []
+    ends, stepper = [], reference("coupled")
     for vector in (params, plain):
         state, positions = begin.copy(), np.zeros((5, 4))
         stepper.launch(state, vector)

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import simpson
 
-from orbits.machines.coupled import segments
+from orbits.machines.reference.machine import reference
 from tests.orbits.machines.coupled.motion import path
 
+SEGMENTS = reference("coupled")
 PARAMS = np.array(
     [2.1, 0.97, 0.8, 0.15, 0.7, 0.4, 0.3, 0.6, 0.15]
 )  # forcing, frequency, damping, mass ratio, r, mu, g, excitation, slope
@@ -24,7 +25,7 @@ def state_of(mode):
 def test_positions_and_velocities(mode, ahead):
     state, numbers = state_of(mode)
     out = np.empty((1, 4))
-    segments.sample(state[None], PARAMS, np.array([ahead]), out)
+    SEGMENTS.sample(state[None], PARAMS, np.array([ahead]), out)
     eps = PARAMS[3]
     q1, p1, q2, p2 = path(PARAMS, mode, *numbers, ahead / PARAMS[1], 7)[0][-1, :4]
     assert out[0] == pytest.approx([q1 - q2, p1 - p2, q1 + eps * q2, p1 + eps * p2], abs=1e-13)
@@ -37,7 +38,7 @@ def test_works_are_integrals_and_balance_the_energy(mode, ahead):
     G, Omega, lam, eps, _, mu, g, chi, slope = PARAMS
     state, numbers = state_of(mode)
     works, energies = np.empty((1, 3)), np.empty(2)
-    segments.works(state[None], PARAMS, np.array([ahead]), works)
+    SEGMENTS.works(state[None], PARAMS, np.array([ahead]), works)
     tau = np.linspace(0.0, ahead / Omega, 2001)
     states, *_ = path(PARAMS, mode, *numbers, tau[-1], 2000)
     force = eps * G * (states[:, 4] + chi * eps * lam * Omega * states[:, 5])
@@ -52,7 +53,7 @@ def test_works_are_integrals_and_balance_the_energy(mode, ahead):
     ends = np.zeros((2, 8))
     for row, (q1, p1, q2, p2) in zip(ends, states[[0, -1], :4]):
         row[1], row[2], row[6], row[7] = q1 - q2, p1 - p2, q1 + eps * q2, p1 + eps * p2
-    segments.energies(ends, PARAMS, energies)
+    SEGMENTS.energies(ends, PARAMS, energies)
     height = states[0, 0] - states[0, 2]
     assert energies[0] == pytest.approx(
         0.5 * (states[0, 1] ** 2 + states[0, 0] ** 2 + eps * states[0, 3] ** 2)

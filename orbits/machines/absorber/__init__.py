@@ -1,1 +1,0 @@
-"""The reduced absorber: a cavity that is shaken harmonically."""

@@ -1,0 +1,276 @@
+"""Exact orbits of the absorber on its oscillator: symmetric impacting `LR`, symmetric sliding `tt`, stuck.
+
+A symmetric orbit with one flight per half period T = pi/Omega repeats itself with the opposite sign after T. In that flight
+q1 = h + o + z (harmonic X sin Psi + Y cos Psi, offset o = -eps mu g s, damped oscillation z) and q2 is a parabola, so
+
+    z(T) + z(0) = -2 o,      z'(T) + z'(0) = -eps (2 beta + s mu g T),      q2(0) = -(beta T + s mu g T^2/2)/2,
+
+beta = q2' just after the event: the jump of q1' at an impact balances that of eps q2'. Given beta these are linear, and so
+are the two conditions at the event (contact and restitution, or w' = 0), whose unknowns are h and h' at the event. Since
+h^2 + (h'/Omega)^2 = X^2 + Y^2, a quadratic equation in beta remains for `LR`: at most two orbits at each frequency, and
+a fold where its discriminant vanishes. For `tt` beta = -s mu g T/2, and nothing is left to solve.
+
+While stuck the oscillator has the mass 1 + eps, and slips where (1 + eps) Omega^2 |q1| reaches (1 + eps) mu g.
+
+Source: own derivation from the equations of motion; parameters as in `orbits.machines.reference.law`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.words import Word
+
+
+@dataclass(frozen=True)
+class _Half:
+    """The oscillator over half a forcing period of sliding: response X, Y and z(0) = z_0 + beta z_1 as a pair (z, z')."""
+
+    omega: float
+    T: float
+    X: float
+    Y: float
+    offset: float
+    start: np.ndarray
+    start_beta: np.ndarray
+    transition: np.ndarray
+
+
+def response(params: np.ndarray, stuck: bool = False) -> tuple[float, float]:
+    """X and Y of the linear response q1 = X sin Psi + Y cos Psi, absorber removed (eps enters by damping and forcing) or stuck."""
+    G, omega, lam, eps, chi = (float(params[i]) for i in (0, 1, 2, 3, 7))
+    drag = eps * lam * omega
+    stiffness = 1.0 - (1.0 + eps if stuck else 1.0) * omega**2
+    impedance = complex(stiffness, drag)
+    if G == 0.0:
+        return 0.0, 0.0
+    if impedance == 0.0:
+        return math.inf, math.inf
+    amplitude = eps * G * complex(1.0, chi * drag) / impedance
+    return amplitude.real, amplitude.imag
+
+
+def _half(params: np.ndarray, s: int) -> _Half:
+    omega, lam, eps, mu, g = (float(params[i]) for i in (1, 2, 3, 5, 6))
+    T = math.pi / omega
+    alpha = 0.5 * eps * lam
+    beta = math.sqrt(1.0 - alpha**2)
+    decay = math.exp(-alpha * T)
+    c, d = decay * math.cos(beta * T), decay * math.sin(beta * T) / beta
+    transition = np.array([[c + alpha * d, d], [-d, c - alpha * d]])
+    offset = -eps * mu * g * s
+    solve = np.linalg.inv(transition + np.eye(2))
+    start = solve @ np.array([-2.0 * offset, -eps * s * mu * g * T])
+    return _Half(omega, T, *response(params), offset, start, solve @ np.array([0.0, -2.0 * eps]), transition)
+
+
+def _quadratic(params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, _Half]:
+    """Coefficients (of 1, beta) of h and h' just after the impact on the left wall, and those of the quadratic equation."""
+    r, pull = float(params[4]), float(params[5]) * float(params[6])
+    half = _half(params, -1)
+    T = half.T
+    z = np.array([half.start, half.start_beta])  # rows: 1, beta; columns: z, z'
+    z_end = z @ half.transition.T
+    h = -z[:, 0] + np.array([1.0 - half.offset + 0.25 * pull * T**2, -0.5 * T])
+    # h' (1 + r) = r (z'(T) - beta + mu g T) - z'(0) + beta
+    h_rate = (r * (z_end[:, 1] + np.array([pull * T, -1.0])) - z[:, 1] + np.array([0.0, 1.0])) / (1.0 + r)
+    polynomial = (
+        np.polynomial.polynomial.polymul(h, h)
+        + np.polynomial.polynomial.polymul(h_rate, h_rate) / half.omega**2
+    )
+    polynomial[0] -= half.X**2 + half.Y**2
+    return h, h_rate, polynomial, half
+
+
+def symmetric_discriminant(params: np.ndarray) -> float:
+    """Discriminant of the quadratic equation for the symmetric orbits `LR`: positive two orbits, zero a fold, negative none."""
+    c, b, a = _quadratic(params)[2]
+    return float(b * b - 4.0 * a * c)
+
+
+def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
+    """Nodes (Psi, B+, v, v') at L and R of the symmetric orbits `LR`, each of shape (2, 4): the faster absorber first.
+
+    Empty when there is none, as on a slope. Admissibility is not looked at.
+    """
+    if params[8] != 0.0:
+        return []
+    omega, eps, pull = float(params[1]), float(params[3]), float(params[5]) * float(params[6])
+    h, h_rate, polynomial, half = _quadratic(params)
+    c, b, a = polynomial
+    discriminant = b * b - 4.0 * a * c
+    if not discriminant >= 0.0 or not np.isfinite(half.X):
+        return []
+    found = []
+    for beta in sorted({(-b + sign * math.sqrt(discriminant)) / (2.0 * a) for sign in (1.0, -1.0)}):
+        h0, h1 = h[0] + h[1] * beta, h_rate[0] + h_rate[1] * beta
+        z = half.start + beta * half.start_beta
+        psi = _phase(h0, h1 / omega, half)
+        q1, q1_rate = h0 + half.offset + z[0], h1 + z[1]
+        q2 = -0.5 * (beta * half.T - 0.5 * pull * half.T**2)
+        first = np.array([psi, (1.0 + eps) * beta, q1 + eps * q2, q1_rate + eps * beta])
+        found.append(_mirrored(first))
+    return found[::-1] if abs(found[0][0, 1]) < abs(found[-1][0, 1]) else found
+
+
+def nodes_from_equilibrium(params: np.ndarray, equilibrium: Any) -> np.ndarray:
+    """First approximation of the nodes of `LR` or `tt`, shape (2, 4), from a steady state of the slow flow.
+
+    With v = C sin(Psi + gamma) and B, h of the slow flow: at the left wall v = 1 - pi B/2, v' = Omega (R B + h) and
+    B+ = B + h; at a turn towards the left wall v = w = -delta, v' = -Omega h. Exact to order eps.
+
+    Parameters
+    ----------
+    params : float array (8,)
+    equilibrium : orbits.theory.multiple_scales.Equilibrium
+        With the same parameters and detuning (Omega - 1)/eps.
+    """
+    omega, eps, r = float(params[1]), float(params[3]), float(params[4])
+    h = 0.5 * math.pi * (1.0 + eps) * float(params[5]) * float(params[6])
+    if equilibrium.manifold == "impacting":
+        B = equilibrium.velocity
+        v, speed, second = 1.0 - 0.5 * math.pi * B, (1.0 - r) / (1.0 + r) * B + h, B + h
+    else:
+        v, speed, second = -equilibrium.turning_point, -h, -equilibrium.turning_point
+    psi = (math.atan2(v, speed) - equilibrium.phase) % (2.0 * math.pi)
+    return _mirrored(np.array([psi, second, v, omega * speed]))
+
+
+def _phase(h0: float, h1: float, half: _Half) -> float:
+    """Psi from X sin Psi + Y cos Psi = h0 and X cos Psi - Y sin Psi = h1."""
+    return math.atan2(half.X * h0 - half.Y * h1, half.X * h1 + half.Y * h0) % (2.0 * math.pi)
+
+
+def _mirrored(first: np.ndarray) -> np.ndarray:
+    second = -first
+    second[0] = first[0] + math.pi
+    return np.array([first, second])
+
+
+def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray | None:
+    """Nodes (Psi, w, v, v') at the turns of symmetric sliding `tt` about the middle, shape (2, 4); None if there is none.
+
+    Parameters
+    ----------
+    params : float array (8,)
+    mode : int
+        Direction of the slide after the first turn.
+    """
+    if params[8] != 0.0:
+        return None
+    pull = float(params[5]) * float(params[6])
+    eps = float(params[3])
+    half = _half(params, mode)
+    beta = -0.5 * mode * pull * half.T
+    z = half.start + beta * half.start_beta
+    h1 = (beta - z[1]) / half.omega
+    square = half.X**2 + half.Y**2 - h1**2
+    if not 0.0 <= square < math.inf:
+        return None
+    for h0 in (-mode * math.sqrt(square), mode * math.sqrt(square)):
+        w = h0 + half.offset + z[0]  # q2 = 0 at the turns
+        if mode * w < 0.0:
+            return _mirrored(np.array([_phase(h0, h1, half), w, w, (1.0 + eps) * beta]))
+    return None
+
+
+@dataclass(frozen=True)
+class StuckResponse:
+    """The linear response with the absorber stuck to the cavity's floor.
+
+    Attributes
+    ----------
+    amplitude : float
+        |q1| in units of b.
+    phase : float
+        q1 = amplitude sin(Psi + phase).
+    shaking : float
+        Largest |v''|.
+    reserve : float
+        a - |b| - |v''|, b = (1 + eps) g sin(slope): positive when friction holds the absorber.
+    """
+
+    amplitude: float
+    phase: float
+    shaking: float
+    reserve: float
+
+    @property
+    def real(self) -> bool:
+        """Whether friction holds the absorber all the time."""
+        return self.reserve >= 0.0
+
+
+def _held(params: np.ndarray) -> float:
+    """The acceleration that friction and slope hold in either direction."""
+    mu, g, slope = (float(params[i]) for i in (5, 6, 8))
+    return g * (mu * math.cos(slope) - abs(math.sin(slope)))
+
+
+def stuck_response(params: np.ndarray) -> StuckResponse:
+    """The stuck response, which is the only linear one."""
+    X, Y = response(params, stuck=True)
+    omega, eps = float(params[1]), float(params[3])
+    amplitude = math.hypot(X, Y)
+    shaking = (1.0 + eps) * omega**2 * amplitude
+    return StuckResponse(amplitude, math.atan2(Y, X), shaking, (1.0 + eps) * _held(params) - shaking)
+
+
+def stuck_state(params: np.ndarray, phase: float = 0.0, w: float = 0.0) -> dict[str, float]:
+    """A start for the simulator on the stuck response: phase, w, w_rate, v, v_rate."""
+    X, Y = response(params, stuck=True)
+    omega, eps = float(params[1]), float(params[3])
+    q1 = X * math.sin(phase) + Y * math.cos(phase)
+    rate = omega * (X * math.cos(phase) - Y * math.sin(phase))
+    return {
+        "phase": phase,
+        "w": w,
+        "w_rate": 0.0,
+        "v": (1.0 + eps) * q1 - eps * w,
+        "v_rate": (1.0 + eps) * rate,
+    }
+
+
+def stuck_frequencies(params: np.ndarray) -> np.ndarray:
+    """Frequencies at which the stuck response begins or ceases to slip, ascending.
+
+    With x = Omega^2, c = eps lambda and f = g (mu cos(slope) - |sin(slope)|): Omega^2 |q1| = f is the cubic
+    (eps G)^2 x^2 (1 + chi^2 c^2 x) = f^2 ((1 - (1 + eps) x)^2 + c^2 x).
+    """
+    G, lam, eps, chi = (float(params[i]) for i in (0, 2, 3, 7))
+    held = _held(params)
+    if held < 0.0:
+        return np.zeros(0)
+    square, hold, force = (eps * lam) ** 2, held**2, (eps * G) ** 2
+    roots = np.polynomial.polynomial.polyroots(
+        np.trim_zeros(
+            [
+                -hold,
+                hold * (2.0 * (1.0 + eps) - square),
+                force - hold * (1.0 + eps) ** 2,
+                force * chi**2 * square,
+            ],
+            "b",
+        )
+    )
+    real = roots[np.abs(roots.imag) < 1e-9 * np.abs(roots)].real
+    return np.sqrt(np.sort(real[real > 0.0]))
+
+
+def start_nodes(word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+    """Nodes of the words in closed form: `LR`, `RL`, `tt`."""
+    if periods != 1:
+        return
+    events = "".join(word.events)
+    if events in ("LR", "RL"):
+        for nodes in symmetric_nodes(params):
+            yield (nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]]))
+    elif events == "tt":
+        nodes = sliding_nodes(params, int(word.modes[0]))
+        if nodes is not None:
+            yield nodes

@@ -1,0 +1,225 @@
+"""The coupled machine: a mass with dry friction in a cavity that rides on a driven linear oscillator."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from orbits.machines.base import Model
+from orbits.machines.closed_forms import coupled as closed_forms
+from orbits.machines.parameters import (
+    FREQUENCY,
+    FRICTION,
+    GRAVITY,
+    NOT_NEGATIVE,
+    POSITIVE,
+    RESTITUTION,
+    SLOPE,
+    Limits,
+    Parameter,
+    ParameterError,
+)
+from orbits.words import Word
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coupled(Model):
+    """A vibro-impact absorber on a linear oscillator with a shaken base, without approximation.
+
+    ``q1'' + eps lambda q1' + q1 = e + eps lambda e' - eps q2'',    q2'' = mu g cos(slope) S + g sin(slope),    e = eps G sin(Omega tau)``,
+
+    with S the sign of w' = q1' - q2' while sliding, ``|S| <= 1`` while stuck, ``|w| <= 1``, and w'+ = -r w'- at the walls with
+    v = q1 + eps q2 and v' continuous. q1 and q2 are counted from where both rest with the absorber in the middle. Lengths in units of the
+    cavity's half-width b, time tau = omega_0 t.
+
+    Parameters
+    ----------
+    restitution : float
+        Newton's coefficient r of the walls, 0 < r <= 1.
+    friction : float
+        Coulomb coefficient mu >= 0.
+    gravity : float
+        g / (b omega_0^2) >= 0.
+    mass_ratio : float
+        eps = m/M > 0.
+    damping : float
+        lambda = c/(m omega_0) >= 0; the oscillator must not be overdamped, eps lambda < 2.
+    forcing : float, optional
+        G = E/(b eps) >= 0, amplitude of the base over eps b. May be left to each orbit.
+    frequency : float
+        Omega > 0, excitation frequency over omega_0.
+    excitation : {"exact", "truncated"} or float
+        Whether the base also acts through the damper (eps lambda e', exact) or that term is dropped, as in the literature; a
+        number from 0 to 1 leaves that part of it.
+    slope : float
+        Angle of the cavity, and of the oscillator's rail, in radians, from -pi/2 to pi/2; positive pulls the absorber towards the right wall, w = -1.
+
+    Raises
+    ------
+    ParameterError
+        For values that make no sense; the sentence names field, value and way out.
+
+    Notes
+    -----
+    Source: Youssef, Karoui, Leine, the model section; the terms that are dropped there are kept. For data in SI units
+    see `orbits.design.scales`.
+    """
+
+    restitution: float
+    friction: float
+    gravity: float
+    mass_ratio: float
+    damping: float = 0.9
+    forcing: float | None = None
+    frequency: float = 1.0
+    excitation: str | float = "exact"
+    slope: float = 0.0
+
+    name: ClassVar[str] = "coupled"
+    moving_cavity: ClassVar[bool] = True
+    default_measure: ClassVar[str] = "max_abs_q1"
+    default_parameter: ClassVar[str] = "frequency"
+    driven_by: ClassVar[str] = "forcing"
+    swept_measure: ClassVar[str] = "max_abs_q1"  # what a frequency response shows
+    patience: ClassVar[int] = 2  # a light absorber's oscillator settles over thousands of periods
+    closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt")
+    younger: ClassVar[tuple[str, ...]] = ("slope",)
+    table: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("forcing", "amplitude of the base over eps b", NOT_NEGATIVE, "G", "", 3.3),
+        FREQUENCY,
+        Parameter("damping", "c / (m omega_0)", NOT_NEGATIVE, r"\lambda", "", 0.9),
+        Parameter("mass_ratio", "absorber's mass over the oscillator's", POSITIVE, r"\varepsilon", "", 0.006),
+        Parameter("restitution", "Newton's coefficient of the walls", RESTITUTION, "r", "", 0.76),
+        FRICTION,
+        GRAVITY,
+        Parameter(
+            "excitation",
+            "the damper's share of the base's motion",
+            Limits(0.0, 1.0),
+            r"\chi",
+            words={"exact": 1.0, "truncated": 0.0},
+        ),
+        Parameter("slope", "angle of the cavity", SLOPE, r"\alpha", "rad", 0.0),
+    )
+    own_measures: ClassVar[tuple[str, ...]] = (
+        "max_abs_q1",
+        "amplitude",
+        "v_phase",
+        "input_work",
+        "damping_loss",
+        "force_work",
+        "grounded_damping_loss",
+    )
+
+    def _check_together(self) -> None:
+        _underdamped(self.damping, self.mass_ratio)
+
+    def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
+        """The parameter vector, shape (9,); see `Model.vector`.
+
+        Raises
+        ------
+        ParameterError
+            Also for an overdamped oscillator and for a resonance without damping.
+        """
+        params = super().vector(values)
+        forcing, omega, damping, eps = (float(value) for value in params[:4])
+        _underdamped(damping, eps)
+        if damping == 0.0 and forcing > 0.0:
+            for mass, state in ((1.0, "sliding"), (1.0 + eps, "stuck")):
+                if mass * omega * omega == 1.0:
+                    raise ParameterError(
+                        f"frequency = {omega:.17g} is the resonance of the oscillator (absorber {state}) and damping = 0: "
+                        "the response has no bound; give a damping above 0 or another frequency"
+                    )
+        return params
+
+    # ------------------------------------------------------------------ orbits
+    def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Any:
+        """The symmetric orbit `LR` with two impacts per period, in closed form.
+
+        Parameters
+        ----------
+        fast : bool
+            Of the two orbits at one frequency, the one with the faster absorber.
+        **parameters
+            Parameters that replace the machine's own.
+
+        Raises
+        ------
+        ParameterError
+            If there is none with these parameters.
+        """
+        params = self.vector(parameters)
+        found = closed_forms.symmetric_nodes(params)
+        if not found:
+            raise ParameterError(
+                f"frequency = {params[1]:g} and forcing = {params[0]:g} have no symmetric orbit with two impacts per "
+                "period; go nearer to resonance or increase forcing"
+            )
+        return self._closed("LR", found[0 if fast else -1], params)
+
+    def sliding_orbit(self, **parameters: float) -> Any:
+        """The symmetric sliding orbit `tt` about the middle of the cavity, in closed form.
+
+        Raises
+        ------
+        ParameterError
+            If the shaking is too weak to slide without sticking.
+        """
+        params = self.vector(parameters)
+        nodes = closed_forms.sliding_nodes(params)
+        if nodes is None:
+            raise ParameterError(
+                f"frequency = {params[1]:g} and forcing = {params[0]:g} shake too weakly for pure sliding; go nearer to "
+                "resonance or increase forcing"
+            )
+        return self._closed("tt", nodes, params)
+
+    def orbit_near(self, equilibrium: Any, **parameters: float) -> Any:
+        """The exact orbit, `LR` or `tt`, that belongs to a steady state of the slow flow.
+
+        Parameters
+        ----------
+        equilibrium : orbits.theory.multiple_scales.Equilibrium
+            Its detuning sets the frequency, 1 + mass_ratio * detuning.
+        **parameters
+            Parameters that replace the machine's own.
+        """
+        eps = float(parameters.get("mass_ratio", self.mass_ratio))
+        values = {"frequency": 1.0 + eps * equilibrium.detuning} | parameters
+        params = self.vector(values)
+        word = "LR" if equilibrium.manifold == "impacting" else "tt"
+        guess = self._closed(word, closed_forms.nodes_from_equilibrium(params, equilibrium), params)
+        return self.orbit(word, 1, guess.nodes, **values)
+
+    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Any:
+        from orbits.orbit import Orbit
+
+        reading = Word.parse(word, frictionless=self.frictionless(params))
+        if reading.modes[0] != (-1 if word == "LR" else 1):
+            nodes = np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
+        return Orbit(self, reading, 1, nodes, params)
+
+    def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+        return closed_forms.start_nodes(word, periods, params)
+
+    def stuck_response(self, **parameters: float) -> closed_forms.StuckResponse:
+        """The linear response with the absorber stuck, and whether friction holds it."""
+        return closed_forms.stuck_response(self.vector(parameters))
+
+    def stuck_frequencies(self, **parameters: float) -> np.ndarray:
+        """Frequencies at which the stuck response begins or ceases to slip, ascending."""
+        return closed_forms.stuck_frequencies(self.vector(parameters))
+
+
+def _underdamped(damping: float, mass_ratio: float) -> None:
+    if damping * mass_ratio >= 2.0 or not math.isfinite(damping * mass_ratio):
+        raise ParameterError(
+            f"damping = {damping:g} with mass_ratio = {mass_ratio:g} overdamps the oscillator: keep damping * mass_ratio "
+            "below 2"
+        )

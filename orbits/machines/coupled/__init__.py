@@ -1,1 +1,0 @@
-"""The absorber on its oscillator, without approximation."""

@@ -1,0 +1,239 @@
+"""The mechanics that all built-in machines share: an absorber between two walls of a cavity, from the names in a machine's table.
+
+A machine with `moving_cavity` has v and v' in its nodes, else its cavity moves as v = C sin(Omega tau). A name that ends in ``_left`` and ``_right``
+tells the sides apart; ``slope`` inclines the cavity, ``distance_left`` and ``distance_right`` move its walls.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from orbits.machines.varying import Varying
+from orbits.words import Word
+from orbits.words.alphabet import shaken
+
+ONE = np.float64(1.0)
+
+
+class Mechanics(Varying):
+    """Walls, friction, mirror, losses, words and random starts; see the top of this module."""
+
+    moving_cavity: ClassVar[bool] = False
+    """Whether the cavity has a motion of its own, v and v' in the state; else it moves as prescribed."""
+    phase_rate: ClassVar[str] = "frequency"
+    """The parameter that is the forcing's frequency."""
+    driven_by: ClassVar[str]
+    """The parameter that drives the machine: an orbit must have it, a machine need not."""
+
+    if TYPE_CHECKING:
+        parameter_names: ClassVar[tuple[str, ...]]
+
+        @classmethod
+        def parameter(cls, name: str) -> Any: ...
+
+    @classmethod
+    def column(cls, params: np.ndarray, name: str) -> Any:
+        """Entry `name` of a parameter vector, or that column of many of them."""
+        j = cls.parameter_names.index(name)
+        return params[j] if params.ndim == 1 else params[..., j]
+
+    @classmethod
+    def phase_speed(cls, params: np.ndarray) -> Any:
+        """How fast the phase grows, in radians per unit of the machine's own time; shapes follow `params` (..., P)."""
+        return cls.column(params, cls.phase_rate)
+
+    def shakes(self, name: str) -> bool:
+        """Whether a parameter says how strongly the machine is shaken."""
+        return name == self.driven_by
+
+    def unshaken(self, params: np.ndarray) -> tuple[str, str] | None:
+        """Where nothing shakes the machine: the parameter that says so with its value, and one that would do; else None."""
+        if self.column(params, self.driven_by) != 0.0:
+            return None
+        return f"{self.driven_by} = 0", f"{self.driven_by} = {self.parameter(self.driven_by).example:g}"
+
+    def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
+        """Whether mirror images are motions of this machine, at these parameters and however `varying` varies.
+
+        Level, and with one coefficient of restitution and of friction; unlike distances of the walls have the middle between them.
+        """
+        if varying == "slope" or ("slope" in self.parameter_names and self.column(params, "slope") != 0.0):
+            return False
+        pairs = [(f"{name}_left", f"{name}_right") for name in ("restitution", "friction")]
+        unlike = [pair for pair in pairs if pair[0] in self.parameter_names]
+        return all(
+            varying not in pair and self.column(params, pair[0]) == self.column(params, pair[1])
+            for pair in unlike
+        )
+
+    @classmethod
+    def sides(cls, params: np.ndarray, name: str) -> tuple[Any, Any]:
+        """A number of the left and of the right side; one that the table has once is that of both."""
+        if f"{name}_left" in cls.parameter_names:
+            return cls.column(params, f"{name}_left"), cls.column(params, f"{name}_right")
+        both = cls.column(params, name)
+        return both, both
+
+    @classmethod
+    def weight(cls, params: np.ndarray) -> Any:
+        """g cos(slope), with which gravity presses the absorber on its floor."""
+        gravity = cls.column(params, "gravity")
+        return gravity * np.cos(cls.column(params, "slope")) if "slope" in cls.parameter_names else gravity
+
+    @classmethod
+    def friction_acceleration(cls, params: np.ndarray) -> float:
+        """a = (1 + eps) mu g cos(slope), the friction's relative acceleration (dimensionless); the larger of both directions'."""
+        left, right = cls.sides(params, "friction")
+        return float((1.0 + cls.column(params, "mass_ratio")) * max(left, right) * cls.weight(params))
+
+    def frictionless(self, params: np.ndarray) -> bool:
+        """Whether turns are no events."""
+        return self.friction_acceleration(params) == 0.0
+
+    @classmethod
+    def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """v and v' at nodes (m, L, n) with parameter vectors (m, P), each of shape (m, L)."""
+        if cls.moving_cavity:
+            return nodes[:, :, 2], nodes[:, :, 3]
+        amplitude, omega = (cls.column(params, name)[:, None] for name in (cls.driven_by, cls.phase_rate))
+        return amplitude * np.sin(nodes[:, :, 0]), amplitude * omega * np.cos(nodes[:, :, 0])
+
+    @classmethod
+    def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
+        """v' at a node (n,), and its derivatives with respect to the node's entries, shape (n,)."""
+        if cls.moving_cavity:
+            return float(node[3]), np.array([0.0, 0.0, 0.0, 1.0])
+        speed, phase = (
+            float(cls.column(params, cls.driven_by) * cls.column(params, cls.phase_rate)),
+            float(node[0]),
+        )
+        return speed * math.cos(phase), np.array([-speed * math.sin(phase), 0.0])
+
+    @classmethod
+    def walls(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """w at the left and at the right wall; shapes follow `params` (..., P)."""
+        if "distance_left" in cls.parameter_names:
+            left, right = cls.sides(params, "distance")
+            return left, -right
+        one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else ONE
+        return one, -one
+
+    def natural_units(self, params: np.ndarray) -> tuple[float, float]:
+        if self.moving_cavity:
+            return super().natural_units(params)
+        left, right = self.walls(params)
+        length, rate = (
+            float(min(left, -right)),
+            float(self.column(params, self.phase_rate)),
+        )  # a far wall may be out of reach
+        return length if 0.0 < length < math.inf else 1.0, rate if 0.0 < rate < math.inf else 1.0
+
+    @classmethod
+    def middle(cls, params: np.ndarray) -> Any:
+        """w in the middle between the walls, about which mirror images are taken; shapes follow `params` (..., P)."""
+        left, right = cls.walls(params)
+        return 0.5 * (left + right)
+
+    @classmethod
+    def image(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Nodes (..., L, n) of events `codes` mirrored about the middle between the walls, at the same phases."""
+        image = -nodes
+        image[..., 0] = nodes[..., 0]
+        middle = np.asarray(cls.middle(params))
+        if middle.any():
+            image[..., 1] += np.where(codes < 2, 0.0, 2.0 * middle[..., np.newaxis])
+        return image
+
+    @classmethod
+    def restitutions(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's coefficients of the left and of the right wall."""
+        return cls.sides(params, "restitution")
+
+    @classmethod
+    def bodies(cls, w: Any, v: Any, params: np.ndarray) -> tuple[Any, Any]:
+        """Displacements q1 of the cavity and q2 of the absorber from w = q1 - q2 and v = q1 + eps q2; velocities likewise.
+
+        Shapes follow `w` and `v`, against which `params` (..., P) is broadcast.
+        """
+        eps = cls.column(params, "mass_ratio")
+        return (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps)
+
+    @classmethod
+    def relative(cls, cavity: Any, absorber: Any, params: np.ndarray) -> tuple[Any, Any]:
+        """w and v from the displacements of cavity and absorber, the inverse of `bodies`."""
+        return cavity - absorber, cavity + cls.column(params, "mass_ratio") * absorber
+
+    @classmethod
+    def at_home(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Nodes (l, n); of a motion without impacts with the absorber moved so that the mean of w is the middle between the walls (q1 stays)."""
+        if not len(codes) or np.any(codes < 2) or np.any(codes > 4):
+            return nodes
+        moved = nodes.copy()
+        mean = nodes[:, 1].mean() - 0.5 * float(np.sum(cls.walls(params)))
+        moved[:, 1] -= mean
+        if nodes.shape[1] > 2:
+            moved[:, 2] += cls.column(params, "mass_ratio") * mean
+        return moved
+
+    @classmethod
+    def impact_loss(cls, restitution: Any, speed: Any, params: np.ndarray) -> Any:
+        """Energy that impacts of these relative speeds (m, L) take, (1 - r^2) w'^2 / (2 (1 + eps)), per unit of the absorber's mass."""
+        eps = cls.column(params, "mass_ratio")[..., np.newaxis]
+        return (1.0 - restitution**2) * speed**2 / (2.0 * (1.0 + eps))
+
+    @classmethod
+    def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """mu g cos(slope) times the path slid, from the displacements w between events (m, L); shape (m,)."""
+        left, right = (side[:, None] for side in cls.sides(params, "friction"))
+        return (np.where(steps > 0.0, left, right) * np.abs(steps)).sum(axis=1) * cls.weight(params)
+
+    def word(self, text: str | Word, params: np.ndarray) -> Word:
+        """Read a word of this machine."""
+        return Word.parse(text, frictionless=self.frictionless(params))
+
+    def word_of(self, events: Sequence[str], modes: Sequence[int], params: np.ndarray) -> Word | None:
+        """The word with these events and modes; None if the machine has none such at these parameters."""
+        if self.frictionless(params) and not {"L", "R"}.issuperset(events):
+            return None
+        return Word(tuple(events), tuple(modes), shaken(self.frictionless(params)))
+
+    # ------------------------------------------------------------------ starts
+    def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+        """Nodes to start from in closed form, where there are any."""
+        return iter(())
+
+    def random_nodes(
+        self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
+    ) -> np.ndarray | None:
+        """Nodes at random from which Newton's method may find an orbit; None if that is hopeless."""
+        if self.moving_cavity:
+            return None
+        amplitude, omega = (float(self.column(params, name)) for name in (self.driven_by, self.phase_rate))
+        phases = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, len(word)))
+        second = generator.uniform(-0.9, 0.9, len(word))
+        for i, letter in enumerate(word.events):
+            if letter in "LR":
+                sign = 1.0 if letter == "L" else -1.0
+                second[i] = sign * generator.uniform(0.0, 1.5) * (1.0 + amplitude) * omega
+        return np.column_stack([phases, second])
+
+    def random_start(
+        self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
+    ) -> dict[str, float]:
+        """A state at random, as `orbits.simulation.simulate` takes it."""
+        start = {
+            "phase": generator.uniform(0.0, 2.0 * np.pi),
+            "w": generator.uniform(-0.95, 0.95),
+            "w_rate": generator.uniform(-2.0, 2.0),
+        }
+        left, right = (float(wall) for wall in self.walls(params))
+        reach = min(max(left, -right), 10.0 * min(left, -right))  # a wall out of reach is no measure
+        low, high = max(right, -reach), min(left, reach)
+        start["w"] = 0.5 * (low + high) + 0.5 * (high - low) * start["w"]
+        if self.moving_cavity:
+            start |= {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
+        return start

@@ -1,0 +1,310 @@
+"""Event-driven stepper of the absorber on its oscillator in plain Python: the reference of the native core (`native/coupled.hpp`).
+
+Between events the motion is the closed form of :mod:`orbits.machines.reference.oscillation`. In the direction s of the sliding let
+y = s w' > 0 and y' = s w''. With M >= |w'''| ahead, y stays positive for at least
+
+    h = 2 y / (sqrt(y'^2 + 2 M y) - y'),
+
+and w is monotone for as long as y is positive: inside such a step the wall ahead is met exactly when it has been passed at
+the end of it, and steps towards a turn approach it from one side like Newton's method. So no hit and no turn can be missed. The slip
+is found in the same way from a - |v'' - b| > 0, b being the acceleration down a slope.
+
+M comes from the energy of the third derivative u = q1''', which is itself an oscillator's response to a force of amplitude
+f = Omega^3 eps G sqrt(1 + (eps lambda Omega)^2): sqrt(u^2 + u'^2/kappa) grows by at most f/sqrt(kappa) per unit of time.
+
+Close to the start of a leg differences are taken from the Taylor series, and positions are kept with the digits below
+their roundoff, so that flights, turns and impacts keep their relative accuracy however small they are.
+The signatures are those of :mod:`orbits.machines.stepping`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from orbits.machines.digits import shift, wrap
+from orbits.machines.reference.law import Law
+from orbits.machines.reference.oscillation import Oscillation, Point, State, certain, oscillation, push
+from orbits.machines.stepping import (
+    EVENTS_FULL,
+    FAILED,
+    HOLD,
+    LOW,
+    MODE,
+    PSI,
+    RATE,
+    REST,
+    TIME_REACHED,
+    TURNS,
+    V_RATE,
+    V,
+    W,
+)
+
+_L, _R, _T, _S, _U = range(5)
+_TWO_PI = 2.0 * math.pi
+_HORIZON = 2.5  # M is renewed after this time
+_FOREVER = 1e7  # forcing periods
+_HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # how a leg ends
+
+
+def launch(law: Law, state: np.ndarray) -> None:
+    """Reduce the phase and set the mode of a start; contract, item 2."""
+    a = law.whole * law.friction_left
+    state[PSI], more = wrap(state[PSI])
+    state[TURNS] += more
+    w, rate, v_rate = state[W], state[RATE], state[V_RATE]
+    sine, cosine = math.sin(state[PSI]), math.cos(state[PSI])
+    against = push(law, State(w, rate, state[V], v_rate), sine, cosine) - law.whole * law.lean  # friction
+    if against == 0.0 and a == 0.0:  # the third derivative decides
+        force = law.force * law.omega * (cosine - law.base * sine)
+        against = force - v_rate / law.whole - law.drag * law.lean
+    if rate != 0.0:
+        state[MODE] = 1.0 if rate > 0.0 else -1.0
+    elif (abs(against) <= a and a > 0.0) or (abs(w) == 1.0 and against * w >= 0.0):
+        state[MODE] = 0.0
+    else:
+        state[MODE] = 1.0 if against >= 0.0 else -1.0
+
+
+def advance(
+    law: Law, state: np.ndarray, until: float, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
+) -> tuple[int, int]:
+    """Run from event to event; contract, item 3."""
+    return _Run(state, law).advance(until, codes, modes, rows)
+
+
+class _Sliding(NamedTuple):
+    """The end of a leg of sliding: how, after which time, y = s w' and y' there, the way s (w - w_0)."""
+
+    outcome: int
+    tau: float
+    at: Point
+    y: float
+    y_rate: float
+    gain: float
+
+
+class _Run:
+    """A motion on its way."""
+
+    def __init__(self, state: np.ndarray, law: Law) -> None:
+        self.state, self.law = state, law
+        self.a, self.b = law.whole * law.friction_left, law.whole * law.lean
+        self.force = law.strength
+
+    def advance(
+        self, until: float, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
+    ) -> tuple[int, int]:
+        state, law, a = self.state, self.law, self.a
+        known = [*law.slide, *law.stuck]
+        if not np.isfinite([*known, *state, a, self.b]).all():
+            return 0, FAILED
+        limit = min(until, state[TURNS] + _FOREVER)
+        fresh = False  # the leg starts with a slip: w' = w'' = 0
+        idle = 0  # legs in a row without progress
+        count = 0
+
+        def add(code: int, before: float, after: float) -> None:
+            nonlocal count
+            codes[count], modes[count] = code, int(state[MODE])
+            rows[count] = state[PSI], state[TURNS], state[W], before, after, state[V], state[V_RATE]
+            count += 1
+
+        status = EVENTS_FULL
+        while count < len(codes):
+            left = ((limit - state[TURNS]) * _TWO_PI - state[PSI]) / law.omega
+            if not left > 0.0:
+                status = TIME_REACHED
+                break
+            if state[MODE] == 0.0:
+                outcome, way = self._wait(left)
+                if outcome != _SLIPS:
+                    status = REST if outcome == _NEVER else TIME_REACHED
+                    break
+                state[MODE], fresh = way, True
+                if a > 0.0 or abs(state[W]) == 1.0:
+                    add(_U, 0.0, 0.0)
+                continue
+            q = oscillation(state, law)
+            begin = q.start()
+            s = float(state[MODE])
+            Y0 = s * state[RATE]
+            Y1 = 0.0 if fresh else s * (begin.h2 + begin.z2) - s * q.q2_pull
+            if Y0 < 1e-6 and s * state[W] == -1.0 and state[LOW] == 0.0 and Y1 + 2.0 * a < 0.0:
+                # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
+                shove = -Y1 - a  # |v'' - b|
+                factor = law.restitution_left * np.sqrt((shove - a) / (shove + a))
+                rest = Y0 * (1.0 / (shove + a) + 1.0 / np.sqrt((shove - a) * (shove + a)))
+                if factor < 1.0:
+                    rest /= 1.0 - factor
+                small = factor < 1.0 and rest < 1e-7 and rest * abs(begin.h3 + begin.z3) < 0.01 * (shove - a)
+                if small or Y0 < 1e-13:
+                    rest = min(rest, 1e-7)
+                    state[V] += rest * state[V_RATE]
+                    state[V_RATE] += rest * (self.b - s * shove)
+                    self._turn(rest)
+                    state[RATE] = state[MODE] = 0.0
+                    add(HOLD, 0.0, 0.0)
+                    continue
+            target = (1.0 - s * state[W]) - s * state[LOW]
+            end = self._slide(q, s, Y0, Y1, target, left)
+            fresh = False
+            tau = left if end.outcome == _NEVER else end.tau
+            idle = idle + 1 if tau < 1e-11 else 0
+            if idle > 10000:
+                status = FAILED
+                break
+            state[V] += end.at.way + law.eps * q.travel(tau)
+            state[V_RATE] += end.at.speed + law.eps * q.q2_pull * tau
+            self._turn(tau)
+            if end.outcome == _HIT:
+                y = end.y if end.y > 1e-30 else 1e-30
+                state[W], state[LOW] = s, 0.0
+                state[RATE], state[MODE] = -s * law.restitution_left * y, -s
+                add(_L if s > 0.0 else _R, s * y, state[RATE])
+                continue
+            w, low = shift(state[W], state[LOW], s * end.gain)
+            if abs(w) > 1.0 or (abs(w) == 1.0 and w * low > 0.0):
+                w, low = math.copysign(1.0, w), 0.0
+            state[W], state[LOW] = w, low
+            if end.outcome != _HALT:
+                state[RATE] = s * end.y if end.y > 0.0 else 0.0
+                status = REST if end.outcome == _NEVER else TIME_REACHED
+                break
+            state[RATE] = 0.0
+            if a == 0.0:  # nothing happens where w' passes zero
+                state[MODE] = -s
+                continue
+            turns_back = end.y_rate < -2.0 * a
+            state[MODE] = -s if turns_back else 0.0
+            add(_T if turns_back else _S, 0.0, 0.0)
+        return count, status if np.isfinite(state).all() else FAILED
+
+    def _turn(self, tau: float) -> None:
+        """Move the forcing phase on."""
+        self.state[PSI], more = wrap(self.state[PSI] + self.law.omega * tau)
+        self.state[TURNS] += more
+
+    def _wait(self, left: float) -> tuple[int, float]:
+        """Move on, sticking, until friction no longer holds, or for the time `left`; how this ends, and the direction of the slip."""
+        state, whole = self.state, self.law.whole
+        q = oscillation(state, self.law)
+        outcome, tau, at, way = self._until_slip(q, left)
+        if outcome == _NEVER:
+            tau, at = left, q.at(left)
+        if tau > 0.0:
+            state[V] += whole * at.way
+            state[V_RATE] += whole * at.speed
+            self._turn(tau)
+        state[RATE] = 0.0
+        return outcome, way
+
+    def _until_slip(self, q: Oscillation, left: float) -> tuple[int, float, Point, float]:
+        a, b, w, whole, omega = self.a, self.b, self.state[W], self.law.whole, q.omega
+        hold = min(
+            a + way * b for way in (1.0, -1.0) if way * w < 1.0
+        )  # what holds the absorber where it may slip
+        driven = whole * omega * omega * math.hypot(q.h0, q.h1 / omega)  # bounds of |v''|
+        free = whole * q.kappa * math.hypot(q.z0, (q.z1 + q.alpha * q.z0) / q.beta)
+        tiny = 4e-16 * (driven + free + abs(b))
+        at, tau, renew, bound = q.start(), 0.0, -1.0, 0.0
+        first = True  # a zero right at the start is judged by its slope, and left behind
+        while tau < left:
+            if tau >= renew:
+                most = driven + free * math.exp(-q.alpha * tau)
+                if most < hold or (most == 0.0 and hold >= 0.0):
+                    return _NEVER, tau, at, 0.0
+                own = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa)
+                bound = whole * (own + omega**4 * self.force * _HORIZON)
+                renew = tau + _HORIZON
+            value, slope = whole * (at.h2 + at.z2), whole * (at.h3 + at.z3)
+            step = renew - tau
+            for way in (1.0, -1.0):
+                if way * w >= 1.0:
+                    continue
+                y, y_rate = a - way * (value - b), -way * slope
+                if y <= tiny:
+                    if not first or y_rate < 0.0 or y < -tiny:
+                        return _SLIPS, tau, at, way
+                    step = min(step, max(y_rate / bound if bound > 0.0 else step, 1e-9))
+                else:
+                    ahead = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else step
+                    step = min(step, ahead)
+                    if ahead < 2.3e-16 * (1.0 + tau):
+                        return _SLIPS, tau, at, way
+            first = False
+            tau = min(tau + step if step < renew - tau else renew, left)
+            at = q.at(tau)
+        return _TIME_IS_OVER, tau, at, 0.0
+
+    def _slide(self, q: Oscillation, s: float, Y0: float, Y1: float, target: float, left: float) -> _Sliding:
+        """Slide until the wall ahead is hit or the absorber halts, or for the time `left`."""
+        brake = s * q.q2_pull
+        third = q.omega**3 * self.force * _HORIZON / np.sqrt(q.kappa)
+
+        def look(tau: float) -> tuple[Point, float, float, float]:
+            at = q.at(tau)
+            y, y_rate = Y0 + s * at.speed - brake * tau, s * (at.h2 + at.z2) - brake
+            return at, y, y_rate, s * (at.way - q.travel(tau))
+
+        at, tau, y, y_rate, gain = q.start(), 0.0, Y0, Y1, 0.0
+        if target <= 0.0:
+            return _Sliding(_HIT, tau, at, y, y_rate, gain)
+        renew, bound = -1.0, 0.0
+        while True:
+            if tau >= renew:
+                bound = np.sqrt((at.h3 + at.z3) ** 2 + q.fourth(at) ** 2 / q.kappa) + third
+                renew = tau + _HORIZON
+            if y <= 1e-300:
+                if tau > 0.0:
+                    return _Sliding(_HALT, tau, at, y, y_rate, gain)
+                # from rest: y' or, after a slip, y'' opens the flight
+                jerk = s * (at.h3 + at.z3)
+                further = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa) + q.omega * third
+                if (
+                    bound == 0.0 and further == 0.0 and not y_rate > 0.0
+                ):  # neither friction, slope nor forcing
+                    return _Sliding(_NEVER, left, at, y, y_rate, gain)
+                steps = (
+                    y_rate / bound if bound > 0.0 else 0.0,
+                    1.5 * jerk / further if further > 0.0 else 0.0,
+                )
+                step = max(*steps, 1e-13)  # at least where there is hardly any acceleration in this direction
+            else:
+                step = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else math.inf
+                if step < 2.3e-16 * tau:
+                    return _Sliding(_HALT, tau, at, y, y_rate, gain)
+                step = min(step, 2.0 * target / y + 0.5)  # no further beyond the wall
+            before = tau
+            tau = min(tau + step if step < renew - tau else renew, left)
+            at, y, y_rate, gain = look(tau)
+            if gain >= target:
+                break
+            if tau >= left:
+                return _Sliding(_TIME_IS_OVER, tau, at, y, y_rate, gain)
+        lo, hi = before, tau
+        for _ in range(60):  # Halley's method for the hit, kept inside the bracket
+            miss = gain - target
+            lo, hi = (lo, tau) if miss >= 0.0 else (tau, hi)
+            bottom = 2.0 * y * y - miss * y_rate
+            step = 2.0 * miss * y / bottom if bottom > 0.0 else math.inf
+            new = tau - step
+            if not lo < new < hi:
+                if abs(step) <= 4.5e-16 * tau:
+                    break
+                new = 0.5 * (lo + hi)
+            change, tau = abs(new - tau), new
+            at, y, y_rate, gain = look(tau)
+            settled = change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau
+            if settled or hi - lo <= 2.3e-16 * hi:
+                step = (gain - target) / y if y > 0.0 else 0.0  # one Newton step more, from values at hand
+                if abs(step) < change:
+                    tau -= step
+                    y -= step * y_rate
+                    way = at.way - step * (at.speed + q.h1 + q.z1)
+                    at = at._replace(way=way, speed=at.speed - step * (at.h2 + at.z2))
+                break
+        return _Sliding(_HIT, tau, at, y, y_rate, gain)

@@ -1,0 +1,163 @@
+"""Elementary maps between consecutive events, with exact derivatives.
+
+A node is (Psi, B+) at an impact and (Psi, w) at a turn, stick or slip, followed by (v, v') where the cavity has a motion of its own; B = v' - w'. The
+map of a segment starts at node i, follows the closed form (`orbits.machines.reference.oscillation`) for d = (Psi_{i+1} - Psi_i)/Omega and compares with
+node i + 1:
+
+===============  =================  =====================  ==========  ============
+arrival          row 0              row 1                  row 2       row 3
+===============  =================  =====================  ==========  ============
+impact           w - wall           v' + r w' - B+         v - v_i+1   v' - v'_i+1
+turn, stick      w'                 w - w_i+1              v - v_i+1   v' - v'_i+1
+slip             v'' - m a - b      w - w_i+1              v - v_i+1   v' - v'_i+1
+===============  =================  =====================  ==========  ============
+
+(m the mode after the slip; from rest to rest row 0 is the mean of w'' over the flight, w'/d, so that no flight of no duration solves it). Of a shaken
+cavity the two rows of an impact change places, and with v' + r w' - B+ that of a slip changes its sign. For impacts that alternate these are the
+literature's G+_LR and G+_RL.
+
+**Derivatives** are complex steps: f(x + i h) = f(x) + i h f'(x) for a function that is analytic, exact but for rounding where h is far below it
+(Squire and Trapp, SIAM Review 40, 1998). One row of numbers for each direction, all segments at once.
+
+**The pin.** Without impacts the absorber may be shifted as a whole, q2 -> q2 - delta with q1 untouched. A closed orbit of such a word is not isolated, and
+one equation is redundant (the absorber's total displacement): row 1 of the last flight is replaced by w_i + w_{i+1} = left + right, the mean position;
+`unpin` puts it back for the multipliers, one of which is then exactly +1. Half a word (twist = -1) needs no pin: its closure already centres the motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from orbits.machines.path import place
+from orbits.machines.reference.law import Law
+from orbits.machines.reference.oscillation import Point, State, after, chosen, leg
+from orbits.words.alphabet import CODES
+
+STEP = 1e-200  # its square is zero, so that real parts are those of real arithmetic
+STICK, SLIP = CODES["s"], CODES["u"]
+
+
+def linearise(law_of: Callable[[Any], Law], data: Any, u: np.ndarray, p: float, work: Any) -> float:
+    """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
+
+    Parameters
+    ----------
+    law_of : callable
+        The numbers of the equations from the machine's parameters.
+    data : CycleData
+    u : float array (n L,)
+        Nodes, node-major.
+    p : float
+        Value of the parameter that varies; what it moves: `orbits.machines.path`.
+    work : Workspace
+        F, A, D, Q, the parameters and the sines and cosines are filled.
+
+    Returns
+    -------
+    float
+        Largest residual, infinity where the maps cannot be evaluated (undamped resonance, overdamped oscillator).
+    """
+    F, A, D, Q, par = work.F, work.A, work.D, work.Q, work.numbers
+    events, modes, twist = data.events, data.modes, data.twist
+    length, n = F.shape
+    place(data.params, data.path, p, par)
+    x = u.reshape(length, n)
+    work.sines[:length], work.cosines[:length] = np.sin(x[:, 0]), np.cos(x[:, 0])
+    work.sines[length], work.cosines[length] = twist * work.sines[0], twist * work.cosines[0]
+    # one direction for each entry of the node before, one for the phase after, one for the parameter
+    size, count = n + 2, data.params.shape[0]
+    numbers = np.repeat(par[:count, None, None].astype(complex), size, axis=1)
+    numbers[:, -1, 0] += 1j * STEP * par[count:]
+    node = np.repeat(x.T[:, None, :].astype(complex), size, axis=1)
+    for k in range(n):
+        node[k, k] += 1j * STEP
+    following = np.roll(x, -1, axis=0)
+    following[-1] *= twist
+    following[-1, 0] = x[0, 0] + data.shift
+    phase = np.repeat(following[None, :, 0].astype(complex), size, axis=0)
+    phase[n] += 1j * STEP
+    law = law_of(numbers)
+    arrival, then = np.roll(events, -1), np.roll(modes, -1)
+    then[-1] *= twist
+    if twist < 0.0 and events[0] < 2:
+        arrival[-1] = 1 - events[0]
+    begin, end, point, pull, t = _flight(law, events, modes, node, phase)
+    hits, left = arrival < 2, arrival == 0
+    y = following[:, 1] + 0j
+    if twist < 0.0 and events[0] > 1:  # the image about the middle between the walls
+        y = y + np.where(np.arange(length) == length - 1, law.left + law.right, 0.0)
+    from_rest = (events >= 2) & (modes != 0)
+    stops = np.where(from_rest, point.mean - pull, end.rate)
+    slips = law.whole * (point.h2 + point.z2 - chosen(then, law.pull_left, law.pull_right, 0.0))
+    back = end.v_rate + np.where(left, law.restitution_left, law.restitution_right) * end.rate - y
+    place_ = end.w - np.where(left, law.left, law.right)
+    sign = -1.0 if law.prescribed else 1.0
+    rows = [
+        np.where(
+            hits, back * sign if law.prescribed else place_, np.where(arrival == SLIP, sign * slips, stops)
+        ),
+        np.where(hits, place_ if law.prescribed else back, end.w - y),
+    ]
+    if n > 2:
+        rows += [end.v - following[:, 2], end.v_rate - following[:, 3]]
+    D[:] = 0.0
+    for j, row in enumerate(rows):
+        F[:, j] = row[-1].real
+        A[:, j, :] = row[:n].imag.T / STEP
+        D[:, j, 0] = row[n].imag / STEP
+        Q[:, j] = row[-1].imag / STEP
+    D[:, 1, 1] = np.where(hits & law.prescribed, 0.0, -1.0)
+    D[:, 0, 1] = np.where(hits & law.prescribed, 1.0, 0.0)
+    D[:, range(2, n), range(2, n)] = -1.0
+    largest = float(np.abs(F).max())
+    if data.pinned == 1:
+        middle = (law.left + law.right) * np.ones((size, 1))
+        largest = max(largest, _pin(data, u, work, middle[-1, 0]))
+    return largest if np.isfinite(largest) else np.inf
+
+
+def _flight(
+    law: Law, events: np.ndarray, modes: np.ndarray, node: np.ndarray, phase: np.ndarray
+) -> tuple[State, State, Point, Any, Any]:
+    """Start and end of each segment, the motion at its end, q2'' in it, its duration."""
+    hit = events < 2
+    if law.prescribed:
+        v, v_rate = law.amplitude * np.sin(node[0]), law.amplitude * law.omega * np.cos(node[0])
+    else:
+        v, v_rate = node[2], node[3]
+    wall = np.where(events == 0, law.left, law.right)
+    begin = State(np.where(hit, wall, node[1]), np.where(hit, v_rate - node[1], 0.0), v, v_rate)
+    q = leg(law, node[0], begin, modes)
+    t = (phase - node[0]) / law.omega
+    point = q.at(t)
+    return begin, after(law, q, point, begin, modes, t), point, q.q2_pull, t
+
+
+def last_flight(modes: np.ndarray) -> int:
+    """The last event that is followed by a flight."""
+    last = len(modes) - 1
+    return last if modes[last] != 0 else last - 1
+
+
+def _pin(data: Any, u: np.ndarray, work: Any, middle: complex) -> float:
+    """Replace the displacement equation of the last flight by w_i + w_{i+1} = middle; returns what the mean position is off by."""
+    F, A, D, Q = work.F, work.A, work.D, work.Q
+    length, n = F.shape
+    last = last_flight(data.modes)
+    work.pin[:n], work.pin[n : 2 * n] = A[last, 1], D[last, 1]
+    A[last, 1], D[last, 1] = 0.0, 0.0
+    A[last, 1, 1] = D[last, 1, 1] = 1.0
+    y = u[n * last + n + 1] if last + 1 < length else data.twist * u[1]
+    F[last, 1] = u[n * last + 1] + y - middle.real
+    Q[last, 1] = -middle.imag / STEP
+    return abs(float(F[last, 1]))
+
+
+def unpin(data: Any, work: Any) -> None:
+    """Put the displacement equation back, for the multipliers."""
+    if data.pinned == 1:
+        n, last = work.F.shape[1], last_flight(data.modes)
+        work.A[last, 1], work.D[last, 1] = work.pin[:n], work.pin[n : 2 * n]
