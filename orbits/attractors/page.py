@@ -10,9 +10,10 @@ import numpy as np
 from orbits.attractors.settled import Settled
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
-from orbits.flows.page.solving import SOLVED, newton
+from orbits.flows.page.cycle_equations import SOLVED
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.protocol import Record
+from orbits.flows.solving import solved_at
 from orbits.machines.page.machine import Machine
 from orbits.orbit import Orbit
 from orbits.simulation.page import PageSimulator, PageTrajectory, collect
@@ -20,6 +21,7 @@ from orbits.words import Word
 
 RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motion may have returned
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
+EXACT = 1e-13  # last step of Newton's method
 LONGEST_WORD = 400
 SAMPLES = 2000  # of a motion without a period, for its extremes
 TRANSIENT, PATIENCE = 100.0, 4  # forcing periods (or events) left out first, and how often twice as many are
@@ -294,7 +296,7 @@ def polished(orbit: Orbit, far: float = 0.1) -> Orbit | None:
     word = orbit.word
     problem = orbit.system(symmetric=False)
     p = problem.value(orbit.params)
-    u, _, residual, _ = newton(problem, problem.reduce(orbit.nodes), p)
+    u, residual = solved_at(problem, problem.reduce(orbit.nodes), p, EXACT)
     nodes = problem.expand(u)
     near = far * (1.0 + np.abs(orbit.nodes[:, 1:]).max())
     moved = nodes - orbit.nodes

@@ -119,14 +119,13 @@ class Family:
 
     def machine_at(self, values: Mapping[str, float]) -> tuple[Any, dict[str, float]]:
         """The machine with these values, and the parameters left to its orbits."""
-        if self.machine.flow == "page":
+        # a physical machine counts in its units; the numbers of a page are all its orbits'
+        change = getattr(self.machine, "with_", None) or getattr(self.machine, "changed", None)
+        if change is None:
             return self.machine, {**(self.loose or {}), **values}
         own = {name: value for name, value in values.items() if name not in (self.loose or {})}
         loose = {**(self.loose or {}), **{name: value for name, value in values.items() if name not in own}}
-        with_ = getattr(self.machine, "with_", None)  # a physical machine counts in its units
-        return (
-            with_(**own) if with_ is not None else self.machine.changed(**own)
-        ) if own else self.machine, loose
+        return change(**own) if own else self.machine, loose
 
     def _elsewhere(self) -> list[float]:
         return (

@@ -1,4 +1,4 @@
-"""Newton's method on the equations of a cycle, at fixed parameters."""
+"""Newton's method on the equations of a cycle."""
 
 from __future__ import annotations
 
@@ -7,15 +7,40 @@ import numpy as np
 from orbits.flows.protocol import Equations
 
 
+def newton(
+    system: Equations,
+    guess: np.ndarray,
+    p: float,
+    border: np.ndarray | None = None,
+    tolerance: float = 1e-13,
+    limit: int = 40,
+) -> tuple[np.ndarray, float, float, np.ndarray]:
+    """Solve F(u, p) = 0 at fixed p, or in the hyperplane of `border` through the guess.
+
+    Returns
+    -------
+    u : float array (N,)
+    p : float
+    residual : float
+        Infinity where it does not converge.
+    tangent : float array (N + 1,)
+        Direction of the branch, not normalised.
+    """
+    row = np.zeros(system.dimension + 1)
+    row[-1] = 1.0
+    if border is not None:
+        row[:] = border
+    step, tangent = np.empty_like(row), np.empty_like(row)
+    u = np.array(guess, dtype=float)
+    residual, _, p = system.kernels.newton(
+        system.data, u, p, system.scratch, row, step, tangent, tolerance, limit
+    )
+    return u, float(p), float(residual), tangent
+
+
 def solved_at(
     system: Equations, guess: np.ndarray, p: float, tolerance: float = 1e-12, limit: int = 40
 ) -> tuple[np.ndarray, float]:
-    """Solution at a parameter value by Newton's method, and its residual (infinite if there is none)."""
-    border = np.zeros(system.dimension + 1)
-    border[-1] = 1.0
-    step, tangent = np.empty_like(border), np.empty_like(border)
-    u = guess.copy()
-    residual, _, _ = system.kernels.newton(
-        system.data, u, p, system.scratch, border, step, tangent, tolerance, limit
-    )
-    return u, float(residual)
+    """Solution at a parameter value, and its residual (infinite if there is none)."""
+    u, _, residual, _ = newton(system, guess, p, None, tolerance, limit)
+    return u, residual

@@ -109,7 +109,7 @@ def find(
             f"periods = {periods!r} closes no orbit: give a whole number of forcing periods, 1 or more"
         )
     periods = int(periods)
-    if len(reading) == 0 and model.flow == "native":
+    if not reading.modes:  # the absorber rides with its cavity
         return _stuck(Orbit.at_rest(model, params))
     tried = []
     if guess is not None:
