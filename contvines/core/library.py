@@ -52,11 +52,17 @@ def _load(choice: str) -> Any:
     if choice == "baseline" or "avx2" not in variants():
         return baseline
     baseline.core_avx2.restype = WHOLE
-    if baseline.core_avx2():
+    if not baseline.core_avx2():
+        if choice == "avx2":
+            raise Unusable("CONTVINES_CORE=avx2, but this processor has no AVX2")
+        return baseline
+    try:
         return _open("avx2")
-    if choice == "avx2":
-        raise Unusable("CONTVINES_CORE=avx2, but this processor has no AVX2")
-    return baseline
+    except Unusable as error:
+        if choice == "avx2":
+            raise
+        print(f"contvines computes with its slower variant: {error}", file=sys.stderr)
+        return baseline
 
 
 def _open(variant: str) -> Any:

@@ -41,6 +41,20 @@ def test_a_library_that_cannot_be_loaded_is_said_in_one_line(tmp_path, content):
     assert len(done.stderr.splitlines()) == 1 and str(path) in done.stderr
 
 
+@pytest.mark.skipif(
+    len(build.variants()) < 2 or run(ASK, CONTVINES_CORE="avx2").stderr != "", reason="one variant only"
+)
+def test_without_the_faster_variant_the_other_one_computes(tmp_path):
+    path = build.path_of("avx2", tmp_path)
+    code = (
+        "from contvines.core import library; import pathlib; there = library.path_of; "
+        f"library.path_of = lambda v: pathlib.Path({str(path)!r}) if v == 'avx2' else there(v); print(library.variant())"
+    )
+    done = run(code, CONTVINES_CORE="")
+    assert done.stdout.strip() == "baseline"
+    assert len(done.stderr.splitlines()) == 1 and str(path) in done.stderr
+
+
 INTERRUPTED = """
 import signal, sys
 from contvines.core.library import library, native
