@@ -27,8 +27,9 @@ def _of_cycle(problem: Any, point: PointOnBranch) -> Classified:
     if not len(upper):
         return Classified()
     multiplier = complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))])
-    value = problem.normal_form("neimark-sacker", point.u, point.value, multiplier)
+    form = problem.normal_form("neimark-sacker", point.u, point.value, multiplier)
     resonance = strong_resonance(multiplier)
     remarks = (f"near the strong resonance {resonance}",) if resonance else ()
-    side = None if value is None else "supercritical" if value < 0.0 else "subcritical"
-    return Classified(side, value, remarks)
+    if form is None:
+        return Classified(None, None, remarks)
+    return Classified("supercritical" if form[0] < 0.0 else "subcritical", form[0], remarks)

@@ -490,16 +490,19 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         problem = self.with_unknowns(doubled, p, 2 * self.intervals, 2 * self.copies, rounds)
         return [Embedding(problem, doubled, direction, kind)]
 
-    def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> float | None:
-        """The coefficient at a period doubling, a pitchfork or a Neimark-Sacker point; None where there is none. See :mod:`contvines.flows.forms`."""
+    def normal_form(
+        self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0
+    ) -> tuple[float, float] | None:
+        """The coefficient at a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms; None where
+        there is none. See :mod:`contvines.flows.forms`."""
         if self.states > LARGEST or self.sparse is not None:
             return None
         try:
             with np.errstate(all="ignore"):
                 if kind == "neimark-sacker":
-                    value = neimark_sacker(self, u, p, multiplier)
+                    found = neimark_sacker(self, u, p, multiplier)
                 else:
-                    value = cubic(self, u, p, -1.0 if kind == "period-doubling" else 1.0)
+                    found = cubic(self, u, p, -1.0 if kind == "period-doubling" else 1.0)
         except (
             NotEvaluable,
             np.linalg.LinAlgError,
@@ -507,7 +510,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
             RuntimeError,
         ):  # splu: singular to the last bit
             return None
-        return value if np.isfinite(value) else None
+        return found if np.isfinite(found).all() else None
 
     def population(self, over: str | None = None, **options: Any) -> Any:
         """Starts round this cycle, and what they settle on."""

@@ -152,8 +152,8 @@ def _apply(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return np.einsum("nab,nb->na", matrices, vectors)
 
 
-def cubic(problem: Any, u: np.ndarray, p: float, factor: float) -> float:
-    """c at a period doubling (m = -1) or a pitchfork (m = 1)."""
+def cubic(problem: Any, u: np.ndarray, p: float, factor: float) -> tuple[float, float]:
+    """c at a period doubling (m = -1) or a pitchfork (m = 1), and the sum of the magnitudes of its terms."""
     system = Return(problem, u, p)
     v, w, weight, bordered = system.critical(factor)
     here = system.parts(v, factor)
@@ -163,12 +163,16 @@ def cubic(problem: Any, u: np.ndarray, p: float, factor: float) -> float:
     third = -system.steps[:, None] * _apply(two, here[0]) - 3.0 * system.widths[:, None] * here[1] * _apply(
         one, here[0]
     )
-    value = w @ system.rows(third) + 3.0 * w @ system.second(one, here, system.parts(h, 1.0))
-    return -float(value) / (6.0 * float(np.real(weight)))
+    terms = np.array([w @ system.rows(third), 3.0 * w @ system.second(one, here, system.parts(h, 1.0))])
+    return _summed(-terms / (6.0 * np.real(weight)))
 
 
-def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -> float:
-    """d at a Neimark-Sacker point: Re(c / m)."""
+def _summed(terms: np.ndarray) -> tuple[float, float]:
+    return float(terms.sum()), float(np.abs(terms).sum())
+
+
+def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -> tuple[float, float]:
+    """d at a Neimark-Sacker point, Re(c / m), and the sum of the magnitudes of its terms."""
     m = multiplier / abs(multiplier)
     system = Return(problem, u, p)
     q, w, weight, _ = system.critical(m)
@@ -183,9 +187,9 @@ def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -
     third = -system.steps[:, None] * _apply(a2 + b2, here[0]) - system.widths[:, None] * (
         2.0 * t * _apply(along, other[0]) + s * _apply(along, here[0])
     )
-    terms = (
-        w @ system.rows(third)
-        + 2.0 * w @ system.second(along, here, system.parts(h11, 1.0))
-        + w @ system.second(against, other, system.parts(h20, m**2))
-    )
-    return float(np.real(-0.5 * terms / weight / m))
+    terms = [
+        w @ system.rows(third),
+        2.0 * w @ system.second(along, here, system.parts(h11, 1.0)),
+        w @ system.second(against, other, system.parts(h20, m**2)),
+    ]
+    return _summed(np.real(-0.5 * np.array(terms) / weight / m))

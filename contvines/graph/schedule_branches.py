@@ -135,8 +135,9 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     # the form of the return map: amplitudes of unknowns that differ much in size say less
                     exact = own.normal_form(point.kind, point.u, point.value)
                     if exact is not None:
-                        supercritical = exact > 0.0 if name == "minus" else exact < 0.0
-                        rough, point.criticality = exact, "supercritical" if supercritical else "subcritical"
+                        rough = exact[0]
+                        supercritical = rough > 0.0 if name == "minus" else rough < 0.0
+                        point.criticality = "supercritical" if supercritical else "subcritical"
                 exactly = partial(_cubic, own, point.u, point.value, name, rough)
                 point.coefficient = rough if point.criticality is None else exactly
             elif transcritical:

@@ -62,7 +62,7 @@ class AdaptiveLocus(LocusProblem):
         """Loci end at no infinite period."""
         return 0.0
 
-    def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> float | None:
+    def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> None:
         """Points of codimension two have forms of their own."""
         return None
 

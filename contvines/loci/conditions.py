@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from ..bifurcation.normal_forms.coefficients import Coefficient, Forms
 from ..bifurcation.normal_forms.returned import ReturnForms, forms_at
+from ..problems.abilities import Adaptive
 from .kinds import Look
 from .layout import BRANCH, FLIP, FOLD, PAIR
 from .linear import Null
@@ -103,6 +105,8 @@ def coefficient_of(look: Look, at: References, plane: Plane, rough: bool = False
     if look.test == "quadratic":
         return _bend(plane, at.plus, rough)
     if look.test == "cubic":
+        if isinstance(plane.problem, Adaptive):
+            return _of_cycle(plane, "period-doubling")
         return _forms(plane, rough).cubic(-1.0)
     return _lyapunov(plane, at.reference, rough)
 
@@ -138,4 +142,15 @@ def _lyapunov(plane: Plane, reference: float, rough: bool = False) -> Coefficien
         return UNKNOWN if critical is None else forms.lyapunov(critical)[0]
     if abs(place) >= 1.0:
         return UNKNOWN
-    return _forms(plane, rough).lyapunov(complex(place, np.sqrt(1.0 - place * place)))[0]
+    multiplier = complex(place, np.sqrt(1.0 - place * place))
+    if isinstance(plane.problem, Adaptive):
+        return _of_cycle(plane, "neimark-sacker", multiplier)
+    return _forms(plane, rough).lyapunov(multiplier)[0]
+
+
+def _of_cycle(plane: Plane, kind: str, multiplier: complex = -1.0) -> Coefficient:
+    """The form of a cycle from the equations on its mesh, which cost less than its return map."""
+    place = plane.place
+    own: Any = plane.locus.at(place.q)
+    found = own.normal_form(kind, place.u, place.p, multiplier)
+    return UNKNOWN if found is None else Coefficient(found[0], 0.0, found[1])

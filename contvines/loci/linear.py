@@ -13,6 +13,7 @@ from ..interrupts import HELD
 from ..problems.protocol import Problem
 
 SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
+STIRRED = 0.1  # part of a random vector in those of a neighbour
 
 
 class Null(NamedTuple):
@@ -112,13 +113,12 @@ class Linearisation:
 
         ``near`` are those of a neighbour.
         """
-        sweeps = 1
-        if near is None:
-            sweeps = SWEEPS
-            v, w = np.random.default_rng(5).standard_normal((2, self.size)) / np.sqrt(self.size)
-            b, c = self.rows * w, v / self.units
-        else:
-            b, c = near.column, near.row
+        v, w = np.random.default_rng(5).standard_normal((2, self.size)) / np.sqrt(self.size)
+        b, c, sweeps = self.rows * w, v / self.units, SWEEPS
+        if (
+            near is not None
+        ):  # of another singular value, where those have passed one another: a part of all others must be left
+            b, c, sweeps = near.column + STIRRED * b, near.row + STIRRED * c, 1
         with self.flipped() if flipped else nullcontext():
             for _ in range(sweeps):
                 c = self.border_of(self.null(b, c)[0])

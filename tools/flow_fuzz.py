@@ -1,0 +1,271 @@
+"""Drawn polynomial flows: is what their atlas says of stability true, and has it what simulation settles on?
+
+``python -m tools.flow_fuzz COUNT [--first SEED] [--salt SALT]`` prints findings as they come, then what was tried.
+
+    x' = A x + p (b + B x) + Q(x, x) - |x|^2 D x        with positive D, so that nothing escapes
+
+Equilibria and cycles of its branches are judged by eigenvalues and by the variational equations along a simulation, motions from random
+starts by the distance from what the branches have at the same value.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import contvines as cv
+from contvines.coexistence.solutions import solutions_at
+
+WITHIN = (-1.0, 1.0)
+BOX = 2.5
+EACH = 3  # solutions of each branch
+PLACES, STARTS = 3, 4  # values at which motions are simulated, and motions at each
+SPAN = 50.0  # times after which a motion has settled, if it settles soon; up to 64 times that otherwise
+EDGE = 1e-5  # multipliers (eigenvalues) so near to the boundary are not judged
+WILD = 1e6  # multipliers so large are not simulated
+CLOSED = 1e-6  # distance of a simulation from a cycle after a period, relative, times its largest multiplier
+NEAR = 2e-3  # relative distance of a motion from the one on which it has settled
+RETURNS = 12  # after which a motion that has settled must have returned, to be periodic
+RECURS = 1e-6
+
+
+@dataclass
+class Drawn:
+    """A drawn flow.
+
+    Attributes
+    ----------
+    linear, by_parameter, damping : ndarray, shape (d, d)
+    constant : ndarray, shape (d,)
+    square : ndarray, shape (d, d, d)
+    """
+
+    linear: np.ndarray
+    by_parameter: np.ndarray
+    damping: np.ndarray
+    constant: np.ndarray
+    square: np.ndarray
+
+    def rates(self, x: Any, p: Any) -> Any:
+        """f(x, p), for arrays as well."""
+        x = np.asarray(x)
+        if x.ndim == 1:
+            linear = (self.linear + p * self.by_parameter) @ x + p * self.constant
+            return linear + self.square @ x @ x - x @ x * (self.damping @ x)
+        linear = np.tensordot(self.linear + p * self.by_parameter, x, 1) + p * self.constant[:, None]
+        bent = np.einsum("ijk,jn,kn->in", self.square, x, x)
+        return linear + bent - (x * x).sum(axis=0) * (self.damping @ x)
+
+    def jacobian(self, x: np.ndarray, p: float) -> np.ndarray:
+        """df/dx at a state."""
+        bent = np.einsum("ijk,k->ij", self.square + self.square.transpose(0, 2, 1), x)
+        cubic = x @ x * self.damping + 2.0 * np.outer(self.damping @ x, x)
+        return self.linear + p * self.by_parameter + bent - cubic
+
+    def simulated(self, x: np.ndarray, p: float, span: float, **options: Any) -> Any:
+        """A motion, by scipy."""
+        return solve_ivp(
+            lambda t, y: self.rates(y, p), (0.0, span), x, method="DOP853", rtol=1e-9, atol=1e-10, **options
+        )
+
+    def monodromy(self, x: np.ndarray, p: float, period: float) -> tuple[np.ndarray, np.ndarray]:
+        """State and its derivative after a period."""
+        d = len(x)
+
+        def rate(t: float, y: np.ndarray) -> np.ndarray:
+            matrix = self.jacobian(y[:d], p) @ y[d:].reshape(d, d)
+            return np.concatenate([self.rates(y[:d], p), matrix.reshape(-1)])
+
+        start = np.concatenate([x, np.eye(d).reshape(-1)])
+        end = solve_ivp(rate, (0.0, period), start, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
+        return end[:d], end[d:].reshape(d, d)
+
+
+def drawn(salt: int, seed: int) -> Drawn:
+    """The flow of a seed: two to four states."""
+    rng = np.random.default_rng([salt, seed])
+    d = 2 + seed % 3
+    return Drawn(
+        linear=1.5 * rng.standard_normal((d, d)) + 0.3 * np.eye(d),
+        by_parameter=rng.standard_normal((d, d)),
+        damping=np.diag(rng.uniform(0.5, 1.5, d)),
+        constant=0.5 * rng.standard_normal(d),
+        square=0.7 * rng.standard_normal((d, d, d)),
+    )
+
+
+@dataclass
+class Judged:
+    """What was tried of one flow, and what was found to be false."""
+
+    name: str
+    tried: Counter[str] = field(default_factory=Counter)
+    findings: list[str] = field(default_factory=list)
+
+    def find(self, what: str) -> None:
+        """Keep a finding."""
+        self.findings.append(f"{self.name}: {what}")
+
+
+def atlas_of(flow: Drawn) -> cv.Graph:
+    """Its atlas."""
+    d = len(flow.constant)
+    problem = cv.FlowProblem(flow.rates, np.zeros(d), 0.0, name="drawn")
+    population = problem.population("p", box=[(-BOX, BOX)] * d)
+    return cv.atlas(population, over="p", within=WITHIN, values=6, starts=8, scan=0)
+
+
+def judge(salt: int, seed: int) -> Judged:
+    """Draw a flow and judge its atlas."""
+    flow, rng = drawn(salt, seed), np.random.default_rng([salt, seed, 1])
+    done = Judged(f"salt {salt}, seed {seed}")
+    graph = atlas_of(flow)
+    for branch in graph:
+        if not branch.real or len(branch) < 2 or branch.stable is None:
+            continue
+        for i in rng.permutation(len(branch) - 1)[:EACH]:
+            first, last = branch.values[i], branch.values[i + 1]
+            if first != last and branch.stable[i] == branch.stable[i + 1]:
+                _stability(flow, branch, int(i), float(first + rng.uniform(0.2, 0.8) * (last - first)), done)
+    low, high = WITHIN
+    for p in low + (high - low) * (np.arange(PLACES) + rng.uniform(0.0, 1.0, PLACES)) / PLACES:
+        known = [
+            (branch.label, _curve(solved.u, float(p), branch.problem))
+            for branch in graph
+            if branch.real and len(branch) > 1
+            for solved in solutions_at(branch, float(p))[1]
+        ]
+        for start in rng.uniform(-BOX, BOX, (STARTS, len(flow.constant))):
+            _settles(flow, start, float(p), known, graph, done)
+    return done
+
+
+def _curve(u: np.ndarray, p: float, problem: Any) -> np.ndarray:
+    """States along a solution: one, or many."""
+    if problem.spectrum == "flow":
+        return np.asarray(u, dtype=float)[None]
+    orbit = problem.orbit(u, p)
+    return orbit(np.linspace(0.0, orbit.period, 4001))
+
+
+def _stability(flow: Drawn, branch: Any, i: int, p: float, done: Judged) -> None:
+    """Whether a solution between two points of a branch is as stable as these."""
+    points, stable = branch.points[i : i + 2], bool(branch.stable[i])
+    guess = points[0] + (p - branch.values[i]) / (branch.values[i + 1] - branch.values[i]) * (
+        points[1] - points[0]
+    )
+    found = [
+        s for s in solutions_at(branch, p)[1] if np.abs(s.u - guess).max() < 0.1 * (1.0 + np.abs(guess).max())
+    ]
+    if not found:
+        done.tried["solutions not solved for"] += 1
+        return
+    u = min(found, key=lambda s: float(np.abs(s.u - guess).max())).u
+    said = f"{branch.label} at p = {p:.12g} is said to be {'stable' if stable else 'unstable'}"
+    if branch.problem.spectrum == "flow":
+        done.tried["equilibria"] += 1
+        size = float(np.abs(flow.rates(u, p)).max())
+        if size > 1e-8:
+            done.find(f"{branch.label} at p = {p:.12g} is no equilibrium: |f| = {size:.1e}")
+        growth = float(np.linalg.eigvals(flow.jacobian(u, p)).real.max())
+        if abs(growth) > EDGE and (growth < 0.0) != stable:
+            done.find(f"{said}, its eigenvalues go to {growth:.3g}")
+        return
+    orbit = branch.problem.orbit(u, p)
+    if np.abs(orbit.multipliers).max() > WILD:
+        done.tried["cycles too unstable to be simulated"] += 1
+        return
+    done.tried["cycles"] += 1
+    start = orbit(0.0)
+    end, matrix = flow.monodromy(start, p, orbit.period)
+    values = np.linalg.eigvals(matrix)
+    values = np.delete(values, int(np.argmin(np.abs(values - 1.0))))
+    largest, size = float(np.abs(values).max()), float(np.ptp(orbit.states, axis=0).max())
+    away = float(np.abs(end - start).max()) / size
+    if away > CLOSED * (1.0 + largest) * (1.0 + orbit.period):
+        done.find(f"{branch.label} at p = {p:.12g} is no cycle: after a period it is {away:.1e} away")
+    elif abs(largest - 1.0) > EDGE and (largest < 1.0) != stable:
+        done.find(f"{said}, its multipliers go to {largest:.8g}")
+
+
+def _settles(
+    flow: Drawn,
+    start: np.ndarray,
+    p: float,
+    known: list[tuple[str, np.ndarray]],
+    graph: cv.Graph,
+    done: Judged,
+) -> None:
+    """Whether a branch has what a motion settles on."""
+    done.tried["motions"] += 1
+    x = start
+    for span in (SPAN, 8.0 * SPAN, 64.0 * SPAN):
+        x = flow.simulated(x, p, span).y[:, -1]
+        if any(_on(x, curve) for _, curve in known):
+            return
+    run = flow.simulated(x, p, SPAN, dense_output=True)
+    size = np.maximum(np.ptp(run.y, axis=1), 1e-9)
+    if size.max() < 1e-6:
+        done.find(f"a motion comes to rest at {x} at p = {p:.12g}, where no branch is")
+        return
+    normal = flow.rates(x, p)
+    passes = flow.simulated(x, p, 10.0 * SPAN, events=_Section(x, normal / size**2)).y_events[0]
+    for k in range(1, min(RETURNS, len(passes) - 1) + 1):
+        if (np.abs(passes[-1] - passes[-1 - k]) <= RECURS * size).all():
+            message = f" ({graph.message})" if graph.message else ""
+            done.find(
+                f"a motion settles on a cycle through {np.array2string(x, precision=8)} at p = {p:.12g}, which no branch has{message}"
+            )
+            return
+    done.tried["motions that do not recur"] += 1
+
+
+class _Section:
+    """An event of scipy: a plane is passed, forwards."""
+
+    terminal, direction = False, 1.0
+
+    def __init__(self, place: np.ndarray, normal: np.ndarray) -> None:
+        self.place, self.normal = place, normal
+
+    def __call__(self, t: float, x: np.ndarray) -> float:
+        return float(self.normal @ (x - self.place))
+
+
+def _on(x: np.ndarray, curve: np.ndarray) -> bool:
+    """Whether a state lies on an equilibrium or a cycle."""
+    size = max(float(np.ptp(curve, axis=0).max()), 1e-3)
+    return bool(np.linalg.norm(curve - x, axis=1).min() < NEAR * size)
+
+
+def main() -> int:
+    """Search; 1 if something was found."""
+    parser = argparse.ArgumentParser(description="Search for false results of flows.")
+    parser.add_argument("count", type=int, help="flows")
+    parser.add_argument("--first", type=int, default=0, metavar="SEED")
+    parser.add_argument("--salt", type=int, default=33, help="another salt draws other flows")
+    asked = parser.parse_args()
+    tried: Counter[str] = Counter()
+    findings, began = 0, time.process_time()
+    for seed in range(asked.first, asked.first + asked.count):
+        done = judge(asked.salt, seed)
+        for finding in done.findings:
+            print(finding, flush=True)
+        tried += done.tried
+        findings += len(done.findings)
+    for what, count in sorted(tried.items()):
+        print(f"{count:6d} {what}")
+    print(
+        f"{findings} findings of {asked.count} flows, {time.process_time() - began:.0f} s of processor time"
+    )
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
