@@ -18,6 +18,7 @@ _PLACES = {
     "Switch": "orbits.contacts.switch",
     "Wall": "orbits.contacts.wall",
     "Word": "orbits.words",
+    "coupled_two": "orbits.machines.coupled_two",
     "WordError": "orbits.words",
 }
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")

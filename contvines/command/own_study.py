@@ -1,4 +1,4 @@
-"""A study of what a Python file beside it declares: `[model] name = "file.py:name"`, a machine (a page) or a contvines.FlowProblem.
+"""A study of a machine that comes as a page with the package (`coupled_two`), or of what a Python file beside it declares: `[model] name = "file.py:name"`, a machine (a page) or a contvines.FlowProblem.
 
 The file is run when the study is read: the user has named it. It lies in the study's folder or below, so that a study runs nothing that
 has not come with it.
@@ -14,6 +14,7 @@ from contvines.command.own_code import own_code
 from contvines.command.schema import FlowSections, PageSections, given, study_model, text
 from contvines.command.study_data import Sort, Study, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
+from orbits.machines.catalogue import PAGES, page_machine
 
 
 def read_own(data: dict[str, Any], path: Path) -> Study:
@@ -26,6 +27,8 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
     from contvines.flows.files import load_flow
 
     said = str(data["model"]["name"])
+    if said in PAGES:
+        return _page(data, path, page_machine(said))
     page, _, name = said.partition(":")
     if not name:
         raise StudyError(
@@ -33,7 +36,11 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
         )
     file = own_code(path, page, f"[model] name = {said!r}")
     flow = load_flow(file, name) if file.is_file() else None
-    return _page(data, path, file, name) if flow is None else _flow(data, path, flow)
+    if flow is not None:
+        return _flow(data, path, flow)
+    from orbits.machines.page.loading import load_page
+
+    return _page(data, path, load_page(file, name))
 
 
 def _values(
@@ -43,7 +50,7 @@ def _values(
     kinds: dict[str, Any] = {
         name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in known.items()
     }
-    settings: dict[str, Any] = {"name": (Annotated[str, Field(pattern=r"\.py")], ...)}
+    settings: dict[str, Any] = {"name": (Annotated[str, Field(pattern="|".join([r"\.py", *PAGES]))], ...)}
     settings = {**{name: (kind | None, None) for name, kind in kinds.items()}, **settings}
     file = validated(study_model(base, settings, kinds), data)
     return file, {**given(file.model, kinds), **given(file.start, kinds)}
@@ -66,10 +73,7 @@ def _flow(data: dict[str, Any], path: Path, flow: Any) -> Study:
     return Study.of(path, Sort.FLOW, str(data["model"]["name"]), parameters, file, flow=flow)
 
 
-def _page(data: dict[str, Any], path: Path, page: Path, name: str) -> Study:
-    from orbits.machines.page.loading import load_page
-
-    machine = load_page(page, name)
+def _page(data: dict[str, Any], path: Path, machine: Any) -> Study:
     file, values = _values(data, PageSections, machine.parameters, data)
 
     def refusal(parameter: str, value: float) -> str:

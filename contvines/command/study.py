@@ -10,6 +10,7 @@ from typing import Any
 from contvines.command.study_data import Study
 from contvines.command.study_errors import StudyError as StudyError
 from contvines.command.toml_text import TomlError, toml_data
+from orbits.machines.catalogue import PAGES
 
 
 def read_study(path: str | Path) -> Study:
@@ -46,7 +47,8 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     path, model = Path(path), data.get("model")
     about = model if isinstance(model, dict) else {}
     try:
-        if ".py" in str(about.get("name", "")):
+        said = str(about.get("name", ""))
+        if ".py" in said or said in PAGES:
             from contvines.command.own_study import read_own
 
             study = read_own(data, path)

@@ -1,4 +1,4 @@
-"""Nine machines on a page each: one diagram per machine, from the pages beside this file.
+"""Ten machines on a page each: one diagram per machine, from the pages beside this file.
 
 Each panel is an automatic diagram of a page of at most thirty lines; dots are attractors that simulation reaches from
 random starts. `python examples/machines/draw.py [FOLDER] [NAME ...]` draws them all, or only those named.
@@ -25,6 +25,7 @@ RUNS = {
     "den_hartog": ("frequency", (0.15, 0.95), "max_x", 1, {}, "Den Hartog's oscillator"),
     "belt_slider": ("belt", (0.1, 2.2), "period", 1, {"start": {"x": 1.0, "v": 0.5}}, "slider on a belt"),
     "elastic_stop": ("frequency", (0.6, 1.6), "max_x", 2, {"frequency": 1.5}, "elastic stop"),
+    "rubber_wall": ("frequency", (0.55, 1.6), "max_x", 1, {"frequency": 0.8}, "wall lined with rubber"),
     "impact_duffing": ("frequency", (0.5, 1.8), "approach_speed", 1, {}, "two masses that collide"),
     "two_absorbers": (
         "frequency", (1.0, 1.06), "max_q", 1,

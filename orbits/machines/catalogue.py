@@ -21,6 +21,8 @@ PLACES = {
 }
 """Module and class of each machine."""
 NAMES = tuple(PLACES)
+PAGES = {"coupled_two": "orbits.machines.coupled_two"}
+"""Machines that come with the package, whose flow is a page's; the module holds the machine by its name."""
 
 
 def model_class(name: str) -> type[Model]:
@@ -37,6 +39,11 @@ def model_class(name: str) -> type[Model]:
         )
     module, place = PLACES[name]
     return getattr(importlib.import_module(module), place)
+
+
+def page_machine(name: str) -> Any:
+    """The machine of `PAGES` called `name`."""
+    return getattr(importlib.import_module(PAGES[name]), name)
 
 
 def usual(name: str) -> tuple[Model, dict[str, float]]:

@@ -23,6 +23,7 @@ RANGES = {
     "den_hartog": {"frequency": (0.12, 2.5), "friction": (0.05, 0.95)},
     "belt_slider": {"belt": (0.1, 2.5), "damping": (0.0, 0.15), "least": (0.2, 0.9), "weakening": (1.0, 8.0)},
     "elastic_stop": {"frequency": (0.4, 2.0), "damping": (0.02, 0.15), "stiffness": (1.0, 40.0), "gap": (0.2, 1.5)},
+    "rubber_wall": {"frequency": (0.4, 2.0), "stiffness": (5.0, 60.0), "loss": (0.2, 4.0), "gap": (0.2, 0.9)},
     "impact_duffing": {"forcing": (0.1, 0.8), "frequency": (0.4, 2.0), "gap": (0.1, 0.8), "restitution": (0.4, 0.95)},
     "two_absorbers": {"forcing": (0.01, 0.05), "frequency": (0.97, 1.05), "restitution": (0.4, 0.9), "far": (0.3, 0.6)},
     "absorber": {"amplitude": (0.1, 1.5), "restitution": (0.4, 0.95), "friction": (0.0, 0.8)},

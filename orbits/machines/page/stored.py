@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from orbits.machines.catalogue import PAGES, page_machine
 from orbits.machines.page.loading import load_page
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.page import digest_of
@@ -52,6 +53,9 @@ def machine_again(settings: dict[str, Any], trust: bool) -> Machine | None:
         If the page is gone or has changed.
     """
     machine = loaded(settings)
+    if machine is None and settings["object"] in PAGES:  # it comes with the package
+        known = page_machine(settings["object"])
+        machine = known if known.page.digest == settings["digest"] else None
     if machine is not None or not trust:
         return machine
     problem = page_changed(settings)

@@ -97,6 +97,7 @@ def test_friction_takes_exactly_what_the_forcing_gives():
 CASES = {
     "impact_oscillator": {"frequency": 2.5},
     "elastic_stop": {"frequency": 0.8},
+    "rubber_wall": {},
     "den_hartog": {"frequency": 0.25},
     "impact_duffing": {"frequency": 0.7},
     "absorber": {"amplitude": 0.86},

@@ -1,0 +1,125 @@
+"""Two absorbers on one oscillator: against a plain integration of Newton's laws, a page written anew without units, and the machine with one absorber."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from contvines.command.study import check_study
+from orbits import Coupled, coupled_two
+from orbits.problem import rebuild
+from orbits.simulation import simulate
+
+START = {"q": 20.0, "x1": 20.0, "x2": 20.0}
+VALUES = dict(zip(coupled_two.parameter_names, coupled_two.vector(), strict=True))
+
+
+def newton(values, start, count):
+    """(letter, seconds, q, x1, x2) of the first events in metres and seconds: forces on three bodies, impulses between two, by scipy's DOP853."""
+    p = dict(values)
+    M, E, omega, rate = (
+        p["oscillator_mass"],
+        1e-3 * p["base_amplitude"],
+        *(2 * math.pi * p[n] for n in ("frequency", "natural_frequency")),
+    )
+    stiffness, damper = M * rate**2, 2 * p["damping_ratio"] * M * rate
+    masses = [p[f"absorber_mass_{i}"] for i in (1, 2)]
+    room = [1e-3 * p[f"clearance_{i}"] for i in (1, 2)]
+    holds = [p[f"friction_{i}"] * p["gravity"] for i in (1, 2)]
+    y = np.array([1e-3 * start.get(name, 0.0) for name in coupled_two.states])
+    modes, t, found = [0, 0], 0.0, []
+
+    def force(t, y):
+        return stiffness * (E * math.sin(omega * t) - y[0]) + damper * (
+            E * omega * math.cos(omega * t) - y[3]
+        )
+
+    def rates(t, y):
+        moving = [i for i in (0, 1) if modes[i]]
+        heavy = M + sum(masses[i] for i in (0, 1) if not modes[i])
+        a = (force(t, y) - sum(modes[i] * masses[i] * holds[i] for i in moving)) / heavy
+        return [*y[3:], a, *(modes[i] * holds[i] if modes[i] else a for i in (0, 1))]
+
+    def choose(i, t, y):
+        """The mode of an absorber that has come to rest in its cavity."""
+        modes[i] = 0
+        a = rates(t, y)[3]
+        modes[i] = 0 if abs(a) <= holds[i] else int(np.sign(a))
+
+    for i in (0, 1):
+        choose(i, t, y)
+    while len(found) < count:
+        watch = []
+        for i in (0, 1):
+            s = modes[i]
+            slips = (lambda t, y, i=i, s=s: abs(rates(t, y)[3]) - holds[i]) if not s else None
+            halts = (lambda t, y, i=i, s=s: s * (y[3] - y[4 + i])) if s else slips
+            hits = (lambda t, y, i=i, s=s: room[i] - s * (y[0] - y[1 + i])) if s else (lambda t, y: 1.0)
+            for event, direction in ((halts, -1 if s else 1), (hits, -1)):
+                event.terminal, event.direction = True, direction
+                watch.append(event)
+        run = solve_ivp(rates, (t, t + 10.0), y, events=watch, method="DOP853", rtol=1e-12, atol=1e-15)
+        t, y = float(run.t[-1]), run.y[:, -1]
+        k = next(k for k, times in enumerate(run.t_events) if times.size)
+        i, s = k // 2, modes[k // 2]
+        if k % 2:
+            r, m = p[f"restitution_{i + 1}"], masses[i]
+            impulse = (1 + r) * (y[3] - y[4 + i]) * m * M / (m + M)
+            y[3], y[4 + i] = y[3] - impulse / M, y[4 + i] + impulse / m
+            modes[i] = -s
+            letter = "L" if s > 0 else "R"
+        elif s == 0:
+            modes[i] = int(np.sign(rates(t, y)[3]))
+            letter = "u"
+        else:
+            y[4 + i] = y[3]
+            choose(i, t, y)
+            letter = "t" if modes[i] else "s"
+        found.append((f"{letter}{i + 1}", t, *y[:3]))
+    return found
+
+
+@pytest.mark.parametrize("frequency", [7.8, 8.0])
+def test_events_are_those_of_newton_s_laws(frequency):
+    expected = newton(VALUES | {"frequency": frequency}, START, 25)
+    run = simulate(coupled_two, START, events=25, frequency=frequency)
+    assert list(run.letters)[:25] == [row[0] for row in expected]
+    seconds = run.clocks[1:26] / (2 * math.pi * frequency)
+    np.testing.assert_allclose(seconds, [row[1] for row in expected], atol=1e-9)
+
+
+def test_a_light_second_absorber_leaves_the_machine_with_one():
+    light = {"absorber_mass_2": 1e-12, "frequency": 8.1}
+    two = coupled_two.attractor(START, **light).orbit
+    mass, clearance, rate = VALUES["absorber_mass_1"] / VALUES["oscillator_mass"], 0.015, 2 * math.pi * 8.0
+    one = Coupled(
+        restitution=0.6, friction=0.1, gravity=9.81 / (clearance * rate**2), mass_ratio=mass, damping=2 * 0.007 / mass,
+        forcing=0.3e-3 / (clearance * mass), frequency=8.1 / 8.0,
+    )  # fmt: skip
+    start = {"q1": 20.0 / 15.0, "q2": 20.0 / 15.0}
+    alone = one.attractor(start).orbit
+    assert [letter[0] for letter in two.word.events if letter.endswith("1")].count(
+        "L"
+    ) == alone.word.events.count("L")
+    q = two.sample(2000)["q"]
+    assert np.abs(q).max() / 15.0 == pytest.approx(alone.measure("max_abs_q1"), rel=1e-5)
+
+
+def test_orbits_have_words_of_both_absorbers_and_are_followed():
+    orbit = coupled_two.attractor(START, frequency=8.2).orbit
+    assert {letter[1] for letter in orbit.word.events} == {"1", "2"}
+    assert orbit.real and orbit.stable and orbit.replay() < 1e-9
+
+
+def test_a_study_names_it_and_its_file_needs_no_trust():
+    study = check_study({
+        "model": {"name": "coupled_two", "absorber_mass_2": 0.02},
+        "start": {"word": "L1 R2 R1 L2", "periods": 1, "frequency": 8.2},
+        "continue": {"parameter": "frequency", "within": [8.1, 8.4]},
+    })  # fmt: skip
+    assert study.model is coupled_two and study.loose["absorber_mass_2"] == 0.02
+    problem = coupled_two.attractor(START, frequency=8.2).orbit.problem("frequency")
+    again = rebuild(json.loads(json.dumps(problem.describe())))
+    assert again is not None and again.model is coupled_two
