@@ -53,7 +53,6 @@ class OrbitProblem(Simulated, Relatives, Answers):
     """
 
     spectrum = "map"
-    every = True
 
     def __init__(
         self,
@@ -180,7 +179,11 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
-        return cross(self, point, self.every)
+        return cross(self, point)
+
+    def onward(self, point: Any) -> Sequence[Any]:
+        """Of these what needs no switch alone; orbits of another period or symmetry only where nothing else is found."""
+        return cross(self, point, every=False)
 
     def dead_end(self, point: Any) -> str:
         """Why no motion was found on the other side of a border; empty where the reason is not known."""

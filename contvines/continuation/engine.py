@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..interrupts import HELD, OPEN
-from ..problems.abilities import Adaptive, Rough
+from ..problems.abilities import Adaptive, Nearing, Rough
 from ..problems.approach import approach
 from ..problems.protocol import Problem
 from . import bracketing, corrector
@@ -70,7 +70,7 @@ class Engine(Rows):
         # what the rows of multipliers tell: of problems with many unknowns eigenvalues only where they are asked for
         self.scaled = scales is not None
         self.exchanges = self.scaled and self.detection != "none"
-        self.many = bool(getattr(problem, "many", False))  # `Nearing`; to ask the protocol takes longer
+        self.many = isinstance(problem, Nearing) and problem.many
         self.signed = bool(getattr(problem, "signed", True))
         self.adaptive = isinstance(problem, Adaptive)
         self.weights = 1.0 / (n * self.scale**2)

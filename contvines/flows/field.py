@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from scipy.sparse import issparse
 
-from ..problems.colouring import Colouring
 from ..problems.derivatives import COMPLEX_STEP, Differentiated
 from ..problems.functions import NotEvaluable
+from ..problems.large.colouring import Colouring
 from ..problems.parameters import ParameterSet
 from .compiled import CompiledRates
 from .sparse import LARGE, found_sparsity

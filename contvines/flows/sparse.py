@@ -11,8 +11,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, splu
 
-from ..problems.colouring import Colouring
-from ..problems.factors import SuperLUFactors
+from ..problems.large.colouring import Colouring
+from ..problems.large.sparse_factors import SuperLUFactors
 
 LARGE = 30  # states from which on entries that are zero are looked for
 DENSE = 0.25  # part of the entries from which on a Jacobian counts as full

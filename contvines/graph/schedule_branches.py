@@ -18,7 +18,7 @@ from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..interrupts import OPEN
 from ..journal import NullJournal
-from ..problems.abilities import Adaptive, Onward, everything
+from ..problems.abilities import Adaptive, Onward
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from .graph import Graph
@@ -392,8 +392,8 @@ def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, 
             }
             for i in range(len(problems))
         ]
-    with everything(problem, not brief):
-        seeds = run.attempt(point.label, CROSSING, lambda: list(problem.beyond(point)), None)
+    ask = problem.onward if brief else problem.beyond
+    seeds = run.attempt(point.label, CROSSING, lambda: list(ask(point)), None)
     if seeds is None:
         return []
     if known is None and not isinstance(run.journal, NullJournal):

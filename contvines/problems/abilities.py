@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -78,22 +77,9 @@ class Attracting(Protocol):
 
 @runtime_checkable
 class Onward(Protocol):
-    """Where ``every`` is set to False, ``beyond`` tells what needs no switch alone: what leaves with another period or symmetry only where nothing else is found."""
+    """Tells of ``beyond`` what needs no switch alone; what leaves with another period or symmetry only where nothing else is found."""
 
-    every: bool
-
-
-@contextmanager
-def everything(problem: Any, every: bool) -> Iterator[None]:
-    """Whether ``beyond`` tells everything, for as long as this lasts; problems without `Onward` always do."""
-    if every or not isinstance(problem, Onward):
-        yield
-        return
-    problem.every = False
-    try:
-        yield
-    finally:
-        problem.every = True
+    def onward(self, point: Any) -> Sequence[Any]: ...
 
 
 @runtime_checkable

@@ -9,9 +9,7 @@ import numpy as np
 
 from contvines.shared.near_arguments import hinting
 
-from . import sparse
 from .callables import CallableProblem
-from .colouring import Colouring
 from .conditions import Conditions
 from .derivatives import Differentiated
 from .functions import readonly
@@ -121,7 +119,11 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             "mirror": mirror,
             "preconditioner": preconditioner,
         }
-        colours = None if sparsity is None else Colouring(sparsity, self.node)
+        colours = None
+        if sparsity is not None:
+            from .large.colouring import Colouring
+
+            colours = Colouring(sparsity, self.node)
         self.functions = Differentiated(*self._wrapped(self.pieces), start, self.values, sparsity=colours)
         self.outputs = Outputs(outputs, self.values)
         self.mirror = None if mirror is None else image_map(mirror, self.node)
@@ -227,6 +229,8 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
 
     def _eigenvalues(self, work: Any) -> np.ndarray:
         if self.functions.structure != "dense":
+            from .large import sparse
+
             return sparse.leading(self, work, self.n_multipliers, self.shift)
         if self.conditions is not None:
             return self.conditions.eigenvalues(work.jacobian)
@@ -245,6 +249,8 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         if self.functions.structure == "dense":
             every = values if len(values) else np.linalg.eigvals(matrix)
             return vectors_of(matrix, every)
+        from .large import sparse
+
         return sparse.eigenvectors(matrix, values)
 
     def rates(self, work: Any) -> list[float]:

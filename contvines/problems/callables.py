@@ -7,11 +7,10 @@ from copy import copy
 from typing import Any, Self
 
 import numpy as np
-from scipy.sparse import csc_array, diags_array, hstack
 
 from contvines.shared.near_names import did_you_mean
 
-from . import dense, sparse
+from . import dense
 from .breaks import find_break
 from .checks import disagreement, empty_row, refuse_derivatives
 from .derivatives import Differentiated
@@ -240,7 +239,11 @@ class CallableProblem(ProblemDefaults):
     @property
     def algebra(self) -> Any:
         """The module with the kernels that fit the Jacobian."""
-        return dense if self.functions.structure == "dense" else sparse
+        if self.functions.structure == "dense":
+            return dense
+        from .large import sparse
+
+        return sparse
 
     @property
     def kernels(self) -> Any:
@@ -283,6 +286,8 @@ class CallableProblem(ProblemDefaults):
         n, rows = self.dimension, self.sizes()[0]
         errors = np.resize(self.functions.errors, n)
         if self.functions.structure == "sparse":
+            from scipy.sparse import csc_array, diags_array, hstack
+
             inner = rounding * abs(work.jacobian)
             if errors.any():
                 ones = (inner != 0.0).astype(float)

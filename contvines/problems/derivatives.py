@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from copy import copy
 from time import thread_time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from .colouring import Colouring
 from .differences import Difference, along, bend, noise_of, roughness
 from .extents import measured, of_parameter
 from .functions import NotEvaluable, UserFunction, as_matrix
 from .parameters import ParameterSet
-from .written_out import worth_it, written_out
+
+if TYPE_CHECKING:
+    from .large.colouring import Colouring
 
 COMPLEX_STEP = 1e-40
 AGREE = 1e-6  # relative difference at which the complex step counts as wrong
@@ -152,8 +153,10 @@ class Differentiated:
             self.structure = (
                 "sparse" if hasattr(matrix, "tocsc") else "operator" if hasattr(matrix, "matvec") else "dense"
             )
-            if self.structure == "operator" and not preconditioned and worth_it(matrix, len(u)):
-                self.structure = "sparse"
+            if self.structure == "operator" and not preconditioned:
+                from .large.written_out import worth_it
+
+                self.structure = "sparse" if worth_it(matrix, len(u)) else "operator"
         elif self.sparsity is not None:
             self.structure = "sparse"
         return self.structure
@@ -194,7 +197,11 @@ class Differentiated:
             self.errors = self.exact
             given = as_matrix(self.given_matrix.raw(u, p), n)
             written = self.structure == "sparse" and hasattr(given, "matvec")
-            return written_out(given, n) if written else given
+            if written:
+                from .large.written_out import written_out
+
+                return written_out(given, n)
+            return given
         if self.sparsity is not None and not self.rows:
             return self._coloured(self.sparsity, u, p)
         result, worst = np.empty((self.rows or n, n)), np.zeros(n)

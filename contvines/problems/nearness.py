@@ -9,16 +9,12 @@ rows then hold the NEAREST eigenvalues to zero of F_u relative to its value at t
 from __future__ import annotations
 
 import math
-import warnings
 from typing import Any
 
 import numpy as np
-from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs
 
-from .spectra import without_roundoff
-
+LARGEST = 300  # unknowns up to which a dense matrix of a sparse Jacobian is made for normal forms
 NEAREST = 4  # as many null vectors as a branch point may have
-ACCURATE = 1e-8  # of eigenvalues by ARPACK
 
 
 def side(rows: np.ndarray) -> np.ndarray:
@@ -38,31 +34,7 @@ def nearest(values: np.ndarray) -> np.ndarray:
     return values[order][:NEAREST]
 
 
-def nearest_sparse(factors: Any, reference: Any) -> np.ndarray:
-    """The NEAREST eigenvalues to zero of reference^-1 F_u, from factors of F_u: the inverses of the largest of F_u^-1 reference.
-
-    Parameters
-    ----------
-    factors
-        Of F_u; None where that is singular.
-    reference : sparse matrix
-    """
-    n = reference.shape[0]
-    if factors is None:
-        return np.zeros(NEAREST, dtype=complex)
-    operator = LinearOperator((n, n), matvec=lambda x: factors.solve(reference @ x), dtype=float)  # type: ignore[call-arg]
-    start = np.random.default_rng(5).standard_normal(n)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        try:
-            options: dict[str, Any] = {"v0": start, "tol": ACCURATE, "return_eigenvectors": False}
-            found = eigs(operator, k=NEAREST, **options)
-        except ArpackNoConvergence as error:
-            found = np.asarray(error.eigenvalues)
-        except ArpackError:
-            found = np.zeros(0)
-        values = without_roundoff(1.0 / np.asarray(found, dtype=complex))
-    if not len(values):
-        return np.full(NEAREST, np.nan, dtype=complex)
-    values = values[np.argsort(np.abs(values), kind="stable")][:NEAREST]
-    return np.append(values, np.full(NEAREST - len(values), values[-1]))
+def is_large(problem: Any) -> bool:
+    """Whether F_u is sparse and no dense matrix of it is made."""
+    functions = getattr(problem, "functions", None)
+    return getattr(functions, "structure", "dense") == "sparse" and problem.dimension > LARGEST

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...problems.nearness import is_large
 from ...problems.protocol import Problem
-from ...problems.sparse_loci import large
 from .coefficients import Forms
 
 
@@ -54,7 +54,7 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
     if problem.kernels.matrix is None:
         return Pitch(None, None, "")
     try:
-        if large(problem):
+        if is_large(problem):
             from .sparse_pair import sparse_lyapunov
 
             critical = _critical(np.asarray(problem.to_multipliers(spectrum), dtype=complex), flow)

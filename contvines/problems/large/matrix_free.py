@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from .nearness import nearest_sparse
+from .nearest_eigenvalues import nearest_sparse
 
 ACCURATE = 1e-11  # relative residual
 ENOUGH = 1e-4  # ... that will do where rounding or the patience below allows no more
@@ -172,7 +172,7 @@ def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarr
 
 
 def distance_to_singular(data: Any, work: Any) -> float | None:
-    """How near the bordered matrix of the last solution is to a singular one: |M^-1 b| / |M^-1 M^-1 b|; see :mod:`.nearness`.
+    """How near the bordered matrix of the last solution is to a singular one: |M^-1 b| / |M^-1 M^-1 b|; see :mod:`contvines.problems.nearness`.
 
     Without a sign of the determinant this is all that tells a branch point, so that one application of the inverse, in which a null
     vector may have a small share by chance, is not enough. None where GMRES does not converge.

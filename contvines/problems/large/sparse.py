@@ -18,12 +18,13 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, splu
 
+from ..functions import NotEvaluable
+from ..interpreted import assign, inspect
+from ..kernels import Kernels
+from ..nearness import distance
 from . import matrix_free
-from .factors import Method, SuperLUFactors
-from .functions import NotEvaluable
-from .interpreted import assign, inspect
-from .kernels import Kernels
-from .nearness import distance, nearest_sparse
+from .nearest_eigenvalues import nearest_sparse
+from .sparse_factors import Method, SuperLUFactors
 from .sparse_loci import flip, matrix, transpose
 
 REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
@@ -226,7 +227,7 @@ def bordered(
 
 # ---------------------------------------------------------------------- eigenvalues
 def distance_to_singular(data: Any, work: SparseWork) -> float:
-    """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`.nearness`. Without refinement: it is a rough number."""
+    """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`contvines.problems.nearness`. Without refinement: it is a rough number."""
     if work.eliminated is None:
         return work.distance
     if not sp.issparse(work.jacobian):

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-LARGEST = 300  # unknowns up to which a dense matrix is made for normal forms
+from ..nearness import LARGEST
 
 
 def flip(data: Any, work: Any, sign: float) -> None:
@@ -23,12 +23,6 @@ def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
         )
     other.jacobian, other.factors, other.failed = work.jacobian.T.tocsc(), None, False
     other.derivative[:] = column
-
-
-def large(problem: Any) -> bool:
-    """Whether F_u is sparse and no dense matrix of it is made."""
-    functions = getattr(problem, "functions", None)
-    return getattr(functions, "structure", "dense") == "sparse" and problem.dimension > LARGEST
 
 
 def matrix(data: Any, work: Any) -> np.ndarray:

@@ -1,0 +1,1 @@
+"""Problems with many unknowns: sparse and matrix-free equations."""

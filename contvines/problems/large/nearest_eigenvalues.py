@@ -1,0 +1,44 @@
+"""The eigenvalues nearest to zero of a large matrix, by ARPACK."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs
+
+from ..nearness import NEAREST
+from ..spectra import without_roundoff
+
+ACCURATE = 1e-8  # of eigenvalues
+
+
+def nearest_sparse(factors: Any, reference: Any) -> np.ndarray:
+    """The NEAREST eigenvalues to zero of reference^-1 F_u, from factors of F_u: the inverses of the largest of F_u^-1 reference.
+
+    Parameters
+    ----------
+    factors
+        Of F_u; None where that is singular.
+    reference : sparse matrix
+    """
+    n = reference.shape[0]
+    if factors is None:
+        return np.zeros(NEAREST, dtype=complex)
+    operator = LinearOperator((n, n), matvec=lambda x: factors.solve(reference @ x), dtype=float)  # type: ignore[call-arg]
+    start = np.random.default_rng(5).standard_normal(n)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        try:
+            options: dict[str, Any] = {"v0": start, "tol": ACCURATE, "return_eigenvectors": False}
+            found = eigs(operator, k=NEAREST, **options)
+        except ArpackNoConvergence as error:
+            found = np.asarray(error.eigenvalues)
+        except ArpackError:
+            found = np.zeros(0)
+        values = without_roundoff(1.0 / np.asarray(found, dtype=complex))
+    if not len(values):
+        return np.full(NEAREST, np.nan, dtype=complex)
+    values = values[np.argsort(np.abs(values), kind="stable")][:NEAREST]
+    return np.append(values, np.full(NEAREST - len(values), values[-1]))
