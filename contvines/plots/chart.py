@@ -10,7 +10,7 @@ import numpy as np
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
 from .figures import freeze, new_axes, settle, styled, thin_ticks
-from .labels import Box, Label, grouped, place_labels
+from .labels import Box, Label, dense, grouped, place_labels
 from .legends import hold_legend, place_legend
 from .style import MARKS, PLAIN, axis_label
 
@@ -181,17 +181,9 @@ def _label(axes: Any, chart: Chart, taken: list[Any]) -> None:
         Label(point.label, point.value[1], point.value[0], rank=not point.real)
         for point in chart.points.values()
     ]
-    lines = [_dense(axes, locus.values[:, ::-1]) for locus in chart.loci.values()]
+    lines = [dense(axes, locus.values[:, ::-1]) for locus in chart.loci.values()]
     size = 0.8 * mpl.rcParams["font.size"]
     place_labels(axes, grouped(axes, wanted), np.vstack([np.empty((0, 2)), *lines]), size=size, taken=taken)
-
-
-def _dense(axes: Any, xy: np.ndarray) -> np.ndarray:
-    """Points close together on the page along a line."""
-    steps = np.hypot(*np.diff(axes.transData.transform(xy), axis=0).T)
-    total = np.concatenate([[0.0], np.cumsum(steps)])
-    at = np.linspace(0.0, total[-1], int(np.clip(total[-1] / 1.5, 2, 20000)))
-    return np.column_stack([np.interp(at, total, v) for v in xy.T])
 
 
 def _tint(axes: Any, chart: Chart) -> None:

@@ -153,6 +153,14 @@ def grouped(axes: Axes, labels: list[Label], near: float = 9.0, named: int = 3) 
     return found
 
 
+def dense(axes: Axes, xy: np.ndarray) -> np.ndarray:
+    """Points close together on the page along a line, so that a label cannot slip between two of them."""
+    steps = np.nan_to_num(np.hypot(*np.diff(axes.transData.transform(xy), axis=0).T))
+    total = np.concatenate([[0.0], np.cumsum(steps)])
+    at = np.linspace(0.0, total[-1], int(np.clip(total[-1] / 1.5, 2, 20000)))
+    return np.column_stack([np.interp(at, total, v) for v in xy.T])
+
+
 def text_widths(texts: set[str], size: float) -> dict[str, float]:
     """How wide texts are, in points, in the font in which they will be written."""
     from matplotlib.font_manager import FontProperties

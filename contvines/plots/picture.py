@@ -15,7 +15,7 @@ from ..graph.shortening import motion_name, short_word
 from .curves import Curve
 from .figures import scale
 from .insets import Region, add_inset, crowded_region, find_room, outlines
-from .labels import Label, grouped, place_labels
+from .labels import Label, dense, grouped, place_labels
 from .legends import Key, hold_legend
 from .style import LINES, PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, WIDTHS, mark_of
 
@@ -172,15 +172,7 @@ class Picture:
         ]
         if self.inset is not None:
             lines += outlines(self.axes, self.frame)
-        found = [np.empty((0, 2))]
-        for xy in lines:
-            if len(xy) > 1:
-                page = self.axes.transData.transform(xy)
-                steps = np.nan_to_num(np.hypot(*np.diff(page, axis=0).T))
-                total = np.concatenate([[0.0], np.cumsum(steps)])
-                at = np.linspace(0.0, total[-1], int(np.clip(total[-1] / 1.5, 2, 20000)))
-                found.append(np.column_stack([np.interp(at, total, v) for v in xy.T]))
-        return np.vstack(found)
+        return np.vstack([np.empty((0, 2)), *(dense(self.axes, xy) for xy in lines if len(xy) > 1)])
 
     def write_labels(self, labels: bool | Sequence[str], words: bool, taken: list[Any]) -> None:
         """Lay labels out for the limits that the axes have now."""
