@@ -29,17 +29,14 @@ from tests.golden.studies import studies
 print(json.dumps([variant(), studies()[sys.argv[1]]()]))
 """
 ALWAYS = ("friction", "cavity 9", "demo henon")
-WANDERS = "absorber 11"  # at WG2 Newton's method wanders for 36 steps: the last bit says whether it finds a far solution
+LONGER = (
+    "absorber 4", "sliding", "stick-slip", "coupled, sliding", "coupled 11", "cavity 10", "page bouncing_ball", "page absorber",
+    "chart henon", "demo pp3", "demo lorenz 84",
+)  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=() if name in ALWAYS else pytest.mark.slow)
-        for name in STUDIES
-        if name != WANDERS
-    ],
-)
+# all others: `CONTVINES_CORE=reference pytest tests/golden`; at WG2 of absorber 11 the last bit says whether a far solution is found
+@pytest.mark.parametrize("name", [*ALWAYS, *(pytest.param(name, marks=pytest.mark.slow) for name in LONGER)])
 def test_the_reference_core_gives_the_same(name):
     """In a process of its own, as the core is chosen once; every flight is computed in Python: some seconds."""
     found = subprocess.run(

@@ -49,7 +49,7 @@ def test_a_design_map_is_one_call():
 
 
 @pytest.mark.slow
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=3, deadline=None)
 @given(ratio=st.floats(0.7, 1.3), stuck=st.booleans(), lam=st.floats(2.0, 20.0))
 def test_linear_response_is_the_settled_motion(ratio, stuck, lam):
     """Integrate M q'' + c q' + k q = k e + c e' (with m added when stuck) until it settles."""
