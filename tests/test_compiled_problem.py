@@ -27,7 +27,7 @@ def test_a_table_of_c_functions_is_followed(tmp_path):
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
     graph = cv.diagram(example.Reaction(example.compiled(tmp_path)), within=(0.0, 0.15))
-    table = ROOT / "tests" / "contvines" / "problems" / "demos" / "table.json"
+    table = ROOT / "tools" / "demos" / "table.json"
     expected = sorted((row["kind"], row["value"]) for row in json.loads(table.read_text())["ab"])
     found = sorted((p.kind, p.value) for p in graph.special.values() if p.kind != "end")
     assert [kind for kind, _ in found] == [kind for kind, _ in expected]

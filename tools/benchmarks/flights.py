@@ -110,7 +110,7 @@ def _reduced(t, y, s, params, phase):
 
 
 def _coupled(t, y, s, params, phase):
-    forcing, omega, damping, eps, _, friction, gravity, excitation = params
+    forcing, omega, damping, eps, _, friction, gravity, excitation, _ = params  # on level ground
     psi = phase + omega * t
     rub = friction * gravity * s
     w, w_rate, v, v_rate = y
