@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
@@ -150,6 +150,7 @@ def departures(
     one_sided: bool,
     directions: list[np.ndarray] | None = None,
     most: int | None = None,
+    exchanged: Callable[[Solved], bool] | None = None,
 ) -> list[Departure]:
     """The branches that leave a branch point of the engine's problem.
 
@@ -170,12 +171,18 @@ def departures(
         Null vectors; computed if left out.
     most : int, optional
         How many null vectors there are at most: as many as multipliers are critical. Where equations are badly conditioned more seem to be.
+    exchanged : callable, optional
+        Whether a first point is as stable as the exchange of stability at a single null vector says; if not it lies on another branch, or
+        something lies between, and nearer ones are looked at.
     """
     if directions is None:
         directions = null_vectors(engine, u, p, tangent, most=most)
     if len(directions) > 1:
         return _multiple(engine, u, p, tangent, amplitude, one_sided, directions)
-    found = [_depart(engine, u, p, tangent, amplitude, one_sided, direction) for direction in directions]
+    found = [
+        _depart(engine, u, p, tangent, amplitude, one_sided, direction, exchanged=exchanged)
+        for direction in directions
+    ]
     return [departure for departure in found if departure is not None]
 
 
@@ -287,12 +294,15 @@ def _depart(
     one_sided: bool,
     direction: np.ndarray,
     bend: float = 0.0,
+    exchanged: Callable[[Solved], bool] | None = None,
 ) -> Departure | None:
     """The branch in a direction; see :func:`departures`."""
-    for least, reach in ((LEAST, SLANTED), (LEAST, GRAZING), (0.0, SLANTED)):
-        found = _lined(engine, u, p, tangent, amplitude, one_sided, direction, bend, least, reach)
-        if found is not None:
-            return found
+    ways = ((LEAST, SLANTED), (LEAST, GRAZING), (0.0, SLANTED))
+    for asked in (exchanged, None) if exchanged is not None else (None,):
+        for least, reach in ways:
+            found = _lined(engine, u, p, tangent, amplitude, one_sided, direction, bend, least, reach, asked)
+            if found is not None:
+                return found
     return None
 
 
@@ -307,6 +317,7 @@ def _lined(
     bend: float,
     least: float,
     reach: float,
+    exchanged: Callable[[Solved], bool] | None,
 ) -> Departure | None:
     """The branch in a direction whose first points are so much further away at twice the amplitude, and within reach."""
     z = engine.join(u, p)
@@ -323,7 +334,9 @@ def _lined(
         half = 0.5 * amplitude
         ahead, near = near, at(half)
         back, behind = behind, None if one_sided else at(-half)
-        if not _lined_up(engine, z, ahead, near, least):
+        if not _lined_up(engine, z, ahead, near, least) or (
+            ahead is not None and exchanged is not None and not exchanged(ahead)
+        ):
             ahead = None
         if not _lined_up(engine, z, back, behind, least):
             back = None

@@ -20,10 +20,6 @@ from .records import pack, unpack
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 SHOWN = 1e-10  # margins of a special point that are certainly positive
 ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
-NEARER = 4  # times that a first point is looked at nearer
-FLAT = 1e-13  # changes of the parameter (in its unit) that tell a bend, times the distance at which they are seen
-NOISY = 1e3  # ... and times the noise of the equations
-BENT = 0.3  # part by which bends of one branch may differ, so near to where it leaves
 UNRESOLVED = 1e-15  # changes of the parameter (in its unit), times the distance at which they are seen, that are rounding
 TURNING = ("fold", "branch-point")  # what rounding makes of solutions of nearly singular systems
 
@@ -90,31 +86,6 @@ def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
     return found if missed <= ASTRAY * SHORTER * abs(along) else None
 
 
-def on_this_branch(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
-    """The first point of a branch that leaves with p = p0 + a s^2, brought so near that all nearer points have this a, too.
-
-    Else the point is of another branch, which turns close to where this one leaves, as in a cascade.
-    """
-    unit = engine.parameter_unit(origin.p)
-    if point is None or abs(origin.tangent[-1]) > engine.settings.stationary * unit:
-        return point
-    trail, bends = [point], [_bend(engine, origin, point)]
-    for _ in range(NEARER):
-        closer = nearer(engine, origin, trail[-1])
-        if closer is None:
-            break
-        # solutions this near are those of nearly singular systems, the worse the nearer
-        rounding = max(FLAT, NOISY * engine.noise) * unit / engine.distance(origin, closer)
-        if abs(closer.p - origin.p) < rounding:
-            break
-        trail.append(closer)
-        bends.append(_bend(engine, origin, closer))
-    for i in range(len(trail) - 1, 0, -1):
-        if abs(bends[i - 1] - bends[i]) > BENT * max(abs(bends[i - 1]), abs(bends[i])):
-            return trail[i]
-    return point
-
-
 def without_rounding(engine: Engine, origin: Solved, half: HalfBranch) -> HalfBranch:
     """The half of a branch that leaves a special point (or meets one, reversed) without turns of the parameter that are rounding, and solutions up to these.
 
@@ -135,11 +106,6 @@ def _unresolved(engine: Engine, origin: Solved, half: HalfBranch, i: int) -> boo
     return distance < engine.settings.near and abs(
         p - origin.p
     ) * distance < UNRESOLVED * engine.parameter_unit(origin.p)
-
-
-def _bend(engine: Engine, origin: Solved, point: Solved) -> float:
-    gap = engine.join(point.u - origin.u, point.p - origin.p)
-    return float(gap[-1]) / engine.inner(origin.tangent, gap) ** 2
 
 
 def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:

@@ -14,7 +14,7 @@ from ..branches.assembly import filled, make_branch
 from ..branches.beginning import from_border
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
-from ..branches.opening import SHOWN, on_this_branch, on_this_side
+from ..branches.opening import SHOWN, on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
@@ -308,12 +308,11 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
 
 
 def _bring_near(engine: Engine, pending: Pending) -> None:
-    """Bring the first points of a departure so near that they are of its branch, and on this side of a border."""
+    """Bring the first points of a departure so near that they are on this side of a border."""
     origin, sides = pending.origin, (pending.ahead, pending.back)
     if origin is None:
         return
-    own = [on_this_branch(engine, origin, side) for side in sides]
-    pending.ahead, pending.back = (on_this_side(engine, origin, side) for side in own)
+    pending.ahead, pending.back = (on_this_side(engine, origin, side) for side in sides)
     for before, point in zip(sides, (pending.ahead, pending.back)):
         if point is not None and point is not before:
             step = engine.distance(origin, point)

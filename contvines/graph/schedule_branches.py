@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.located import Role
+from ..bifurcation.multiplier_counts import counts
 from ..bifurcation.normal_forms.along_branch import criticality, crossing_speed, fold_coefficient
 from ..bifurcation.normal_forms.criticality import cubic_form
 from ..bifurcation.switching import departures
@@ -113,6 +115,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             run.settings.amplitude,
             one_sided=not generic,
             most=_critical(engine, spectrum, critical),
+            exchanged=None if name == "plus" else _exchange(target, spectrum, point.value, speed),
         )
         if not found:
             run.remark(point.label, "no branch that leaves here was found")
@@ -201,6 +204,25 @@ def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                     first_step=min(run.settings.first_step, departure.amplitude),
                 )
             )
+
+
+def _exchange(
+    target: Engine, spectrum: Any, value: float, speed: float | None
+) -> Callable[[Solved], bool] | None:
+    """Whether a solution of the branch that leaves where a multiplier passes -1 at a speed is stable where the known one is not, and unstable where it is.
+
+    As the parity of the number of multipliers past +1 tells. None where it is not known at which speed.
+    """
+    if speed is None or not np.isfinite(speed) or target.problem.spectrum != "map":
+        return None
+    real = spectrum[spectrum.imag == 0.0].real
+    others = int((np.abs(np.delete(real, np.abs(real + 1.0).argmin())) > 1.0).sum()) if len(real) else 0
+
+    def exchanged(point: Solved) -> bool:
+        past = int(counts(target, point.row)[0])
+        return (past - others - int(speed * (point.p - value) < 0.0)) % 2 == 0
+
+    return exchanged
 
 
 def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
