@@ -16,7 +16,22 @@ COMMON = (
     "impact_loss",
     "friction_loss",
     "max_abs_w",
+    "impact_rate",
+    "impulse",
+    "impulse_left",
+    "impulse_right",
+    "impact_energy",
+    "mean_force",
+    "work_rate",
 )
+LOADS = (
+    "impact_rate",
+    "impulse",
+    "impulse_left",
+    "impulse_right",
+    "impact_energy",
+    "mean_force",
+)  # nothing without impacts
 
 ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
 ENERGIES = (  # per period of the orbit
@@ -42,6 +57,11 @@ KINDS = {
     "max_abs_q1": "length",
     "amplitude": "length",
     "v_phase": "angle",
+    "impact_rate": "rate",
+    **dict.fromkeys(("impulse", "impulse_left", "impulse_right"), "impulse"),
+    "impact_energy": "energy",
+    "mean_force": "force",
+    "work_rate": "power",
     **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
 }
 """What kind of quantity each measure is, where it is more than a number."""

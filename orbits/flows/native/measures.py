@@ -19,7 +19,7 @@ from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table
 from orbits.machines.measures import ANGLES as ANGLES
-from orbits.machines.measures import COMMON, KINDS, MEANS, names
+from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, names
 from orbits.words import Word
 
 
@@ -46,6 +46,12 @@ def dimensionless(
     forcing phase of the first event. ``impact_speed`` is the fastest approach. ``impact_loss`` is the kinetic energy of
     the relative motion lost at impacts, sum of (1 - r^2) w'-^2 / (2 (1 + eps)), ``friction_loss`` is mu g times the
     path slid; both over the orbit's period, ``impact_loss_mean`` and ``friction_loss_mean`` per forcing period.
+
+    Loads, in units of m, b and omega_0: ``impact_rate`` is the number of impacts per unit of time; ``impulse`` the largest
+    impulse of an impact, (1 + r) |w'-| / (1 + eps), ``impulse_left`` and ``impulse_right`` the largest at that wall (0 where
+    there is no impact); ``impact_energy`` the kinetic energy of the relative motion before the hardest impact,
+    w'-^2 / (2 (1 + eps)); ``mean_force`` the sum of all impulses over the period's time, the mean of the force's size;
+    ``work_rate`` what impacts and friction take per unit of time.
 
     Raises
     ------
@@ -92,6 +98,11 @@ def dimensionless(
             r = contacts(model, word, params)[2]
             loss = np.where(hits, model.impact_loss(r, table.rate_pre, params), 0.0)
             result[name] = loss.sum(axis=1)
+        elif name == "work_rate":
+            lost = dimensionless(model, word, periods, nodes, params, ["impact_loss", "friction_loss"])
+            result[name] = (lost["impact_loss"] + lost["friction_loss"]) / _duration(model, periods, params)
+        elif name in LOADS:
+            result[name] = _load(name, model, word, periods, params, table.rate_pre)
         elif not hits.any():
             result[name] = nothing if not name.startswith("impact_speed") else np.zeros(m)
         else:
@@ -108,10 +119,45 @@ def dimensionless(
     return result
 
 
+def _duration(model: Model, periods: int, params: np.ndarray) -> np.ndarray:
+    """Duration of the orbit in the machine's own time, shape (m,)."""
+    return 2.0 * np.pi * periods / model.phase_speed(params)
+
+
+def _load(
+    name: str, model: Model, word: Word, periods: int, params: np.ndarray, rates: np.ndarray
+) -> np.ndarray:
+    """A measure of the forces at the walls, from the relative speeds before the events, shape (m, L)."""
+    hits, _, restitution = contacts(model, word, params)
+    duration = _duration(model, periods, params)
+    if name == "impact_rate":
+        return hits.sum() / duration
+    # without restitution an impact takes all energy of the relative motion: half the reduced mass times the speed squared
+    energy = np.where(hits, model.impact_loss(np.zeros_like(rates), rates, params), 0.0)
+    if name == "impact_energy":
+        return energy.max(axis=1)
+    reduced = 2.0 * model.impact_loss(np.zeros_like(rates), np.ones_like(rates), params)
+    impulses = np.where(hits, reduced * (1.0 + restitution) * np.abs(rates), 0.0)
+    if name == "mean_force":
+        return impulses.sum(axis=1) / duration
+    if name != "impulse":
+        letter = "L" if name == "impulse_left" else "R"
+        impulses = np.where([event == letter for event in word.events], impulses, 0.0)
+    return impulses.max(axis=1)
+
+
 def _at_rest(model: Model, name: str, params: np.ndarray) -> np.ndarray:
     """A measure of the absorber at rest; velocities at impacts are not a number."""
     name = MEANS.get(name, name)  # its period is the forcing's
-    if name in ("impact_loss", "friction_loss", "impact_speed", "impact_speed_min", "max_abs_w"):
+    if name in (
+        *LOADS,
+        "work_rate",
+        "impact_loss",
+        "friction_loss",
+        "impact_speed",
+        "impact_speed_min",
+        "max_abs_w",
+    ):
         return np.zeros(len(params))
     rest = model.rest
     return np.array([rest.measure(name, row, np.linalg.solve(*rest.equations(row))) for row in params])

@@ -165,3 +165,35 @@ def near_quantity(given: str, known: Collection[str]) -> str:
     """ " (did you mean ...?)" where a quantity is called otherwise, or nearly so, else empty."""
     other = OTHERWISE.get(given.lower())
     return f" (did you mean {other!r}?)" if other in known else did_you_mean(given, known)
+
+
+def gauges(mass: Mapping[str, float]) -> dict[str, Quantity]:
+    """What one dimensionless unit of each kind of measure is, in b, omega_0 and the absorber's mass.
+
+    Parameters
+    ----------
+    mass : mapping
+        Exponents of the machine's numbers in the absorber's mass.
+    """
+    kinds = {  # unit, example, exponents of b and omega_0, whether the mass counts
+        "length": ("m", "1 mm", 1, 0, False),
+        "area": ("m^2", "1 mm^2", 2, 0, False),
+        "velocity": ("m/s", "1 mm/s", 1, 1, False),
+        "energy": ("J", "1 mJ", 2, 2, True),
+        "impulse": ("N s", "1 N s", 1, 1, True),
+        "force": ("N", "1 N", 1, 2, True),
+        "power": ("W", "1 mW", 2, 3, True),
+        "time": ("s", "1 s", 0, -1, False),
+        "rate": ("Hz", "1 Hz", 0, 1, False),
+    }
+    return {
+        kind: Quantity(
+            kind,
+            unit,
+            example,
+            {"half_width": length, "natural_rate": rate, **(mass if heavy else {})},
+            (0, 1),
+            "",
+        )
+        for kind, (unit, example, length, rate, heavy) in kinds.items()
+    }

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from orbits.machines.physical.quantities import Quantity
+from orbits.machines.physical.quantities import Quantity, gauges
 
 SCALES = ("half_width", "natural_rate", "oscillator_mass")
 """b [m], omega_0 [rad/s], M [kg]."""
@@ -41,13 +41,7 @@ QUANTITIES = {
     )
 }  # fmt: skip
 
-GAUGES = {
-    "length": Quantity("length", "m", "1 mm", {"half_width": 1}, (0, 1), ""),
-    "area": Quantity("area", "m^2", "1 mm^2", {"half_width": 2}, (0, 1), ""),
-    "velocity": Quantity("velocity", "m/s", "1 mm/s", {"half_width": 1, "natural_rate": 1}, (0, 1), ""),
-    "energy": Quantity("energy", "J", "1 mJ", {"mass_ratio": 1, "oscillator_mass": 1, "half_width": 2, "natural_rate": 2}, (0, 1), ""),
-    "time": Quantity("time", "s", "1 s", {"natural_rate": -1}, (0, 1), ""),
-}  # fmt: skip
+GAUGES = gauges({"mass_ratio": 1, "oscillator_mass": 1})
 """What one dimensionless unit of each kind of measure is."""
 
 
