@@ -5,6 +5,7 @@ code that it names is run only with ``trust``.
 """
 
 FACTORIES = {
+    "orbits.flows.page.smooth:rebuild": "orbits.flows.page.smooth:rebuild",
     "orbits.problem:rebuild": "orbits.problem:rebuild",
     "orbits.cycles.stuck_problem:rebuild": "orbits.problem:rebuild",
     "orbits.stuck_problem:rebuild": "orbits.problem:rebuild",

@@ -164,12 +164,18 @@ class Orbit(Cycle):
         from orbits.problem import OrbitProblem
 
         parameter = str(parameter or self.model.default_parameter)
+        if not self.forced and not len(self.word) and self.word.modes:
+            from orbits.flows.page.smooth import cycles_of
+
+            return cycles_of(self).problem(parameter)
         lasting = self.symmetric and self.model.has_mirror(self.params, parameter)
         half = lasting if symmetric is None else symmetric
         return OrbitProblem(self.model, self.word, self.periods, parameter, self.params, half)
 
     def seed(self, problem: Any) -> tuple[np.ndarray, float]:
         """Unknowns and parameter value of this orbit in `problem`."""
+        if not self.forced and not len(self.word) and self.word.modes:
+            return problem.u0, problem.p0
         return problem.reduce(self.nodes), problem.value(self.params)
 
     # ------------------------------------------------------------------ seeing and proving

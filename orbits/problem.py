@@ -179,11 +179,24 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def beyond(self, point: Any) -> Sequence[Any]:
         """The orbits on the other side of a border, with the words that physics writes."""
-        return cross(self, point)
+        return [self._smoothly(seed) for seed in cross(self, point)]
 
     def onward(self, point: Any) -> Sequence[Any]:
         """Of these what needs no switch alone; orbits of another period or symmetry only where nothing else is found."""
-        return cross(self, point, every=False)
+        return [self._smoothly(seed) for seed in cross(self, point, every=False)]
+
+    def _smoothly(self, seed: Any) -> Any:
+        """The seed; self-excited motions without events go on as cycles of a smooth flow."""
+        if self.forced or len(seed.problem.word) or not seed.problem.word.modes:
+            return seed
+        from orbits.flows.page.smooth import cycles_of
+
+        cycle = cycles_of(seed.problem.orbit(seed.u, seed.p))
+        problem = cycle.problem(self.parameter)
+        tangent = (
+            None if seed.tangent is None else problem.direction(cycle.u, seed.p, float(seed.tangent[-1]))
+        )
+        return seed._replace(problem=problem, u=cycle.u, tangent=tangent)
 
     def dead_end(self, point: Any) -> str:
         """Why no motion was found on the other side of a border; empty where the reason is not known."""

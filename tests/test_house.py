@@ -20,6 +20,8 @@ HELD = {
     "contvines.survey.results",
     "orbits.machines.absorber",
     "orbits.machines.coupled",
+    "orbits.flows.page.smooth",
+    "orbits.machines.page.machine",
     "orbits.machines.varying",
     "orbits.orbit",
     "orbits.problem",

@@ -66,8 +66,7 @@ def check_axes(study: Study, axes: dict[str, str | None], plot: Path | None) -> 
 
 def _names(study: Study) -> list[str]:
     if study.sort is Sort.FLOW:
-        d = len(study.flow.x0)
-        return ["norm", "period", *(f"{word} x{j}" for word in ("max", "min", "mean") for j in range(d))]
+        return ["norm", "period", *study.flow.of_states]
     from orbits.flows.native.measures import names
 
     return list(names(machine(study)))
@@ -99,7 +98,7 @@ def _default(path: Path) -> str:
 
     study = read_study(path)
     if study.sort is Sort.FLOW:
-        return "max x0"
+        return next(iter(study.flow.of_states))
     if study.sort is Sort.PAGE:
         from orbits.flows.page.measures import shown_first
 

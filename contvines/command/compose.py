@@ -74,8 +74,8 @@ def first_orbit(study: Study) -> Any:
             if study.state is not None or study.flow.field.forced:
                 return study.flow.attractor(study.state, **study.parameters)
             return study.flow.equilibria(study.parameter, study.parameters)
-        if study.word is None and study.sort is Sort.PAGE:
-            return study.model.attractor(study.state, **study.loose).found
+        if study.sort is Sort.PAGE and study.word in (None, "") and not study.guess:
+            return _page_start(study)
         if study.word is None:
             return _settled(study)
         from orbits.starts.find import StartWarning
@@ -89,6 +89,19 @@ def first_orbit(study: Study) -> Any:
         return orbit
     except ValueError as error:
         raise ValueError(f"{study.path}: [start] {error}") from error
+
+
+def _page_start(study: Study) -> Any:
+    """What the study's state leads to; of a self-excited machine that comes to rest, or with the word "", the equilibrium near it."""
+    model, state = study.model, study.state
+    if study.word == "" and model.forced:
+        return model.orbit("", study.periods, **study.loose)
+    if study.word is None:
+        found = model.attractor(state, **study.loose)
+        if found.kind != "rest" or found.trajectory.held or model.forced:
+            return found.found
+        state = dict(zip(model.states, map(float, found.state[1:]), strict=True))
+    return model.smooth(state, **study.loose).equilibria(study.parameter)
 
 
 def _settled(study: Study) -> Any:

@@ -31,6 +31,10 @@ class Escaped(ValueError):
     """A motion that cannot be simulated on."""
 
 
+class Stopped(ValueError):
+    """A motion that one of the flow's events stops."""
+
+
 class Irregular(ValueError):
     """A motion that does not recur."""
 
@@ -69,7 +73,15 @@ def _run(
         rtol=1e-6 if rough else 1e-10,
         atol=size,
         dense_output=dense,
+        events=field.events.crossings(field, p) or None,
     )
+    if found.status == 1:
+        name = next(
+            name for name, times in zip(field.events.names, found.t_events, strict=True) if len(times)
+        )
+        raise Stopped(
+            f"the event {name} stops the motion at {np.array2string(found.y[:, -1], precision=6)}; begin elsewhere, or with other parameters"
+        )
     if not found.success or not np.isfinite(found.y[:, -1]).all() or np.abs(found.y[:, -1]).max() > 1e12:
         raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {found.t[-1]:.6g}")
     return found

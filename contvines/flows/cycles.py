@@ -16,6 +16,7 @@ from ..problems.scales import Scales
 from . import mesh
 from .collocation import Rule, rule
 from .core import distance_to_rest
+from .events import FINER
 from .field import Field
 from .forms import LARGEST, cubic, neimark_sacker
 from .kernels import KERNELS, SPARSE, CycleWork, linearise, spectrum
@@ -34,6 +35,7 @@ LONGEST = 1e3  # times the first period: a branch whose period has grown so much
 MOST = 1280  # intervals
 SENSIBLE = 1e-3  # errors of the trivial multiplier
 ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
+TOUCH = 1e-4  # of differences at an event, in units of the size of the cycle
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
@@ -93,7 +95,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         self.n_multipliers = self.node - self.free_period
         if self.sparse is not None:  # the largest ones alone
             self.kernels, self.n_multipliers = SPARSE, min(LEADING, self.n_multipliers)
-        self.n_margins = 2 * self.free_period
+        self.n_margins = 2 * self.free_period + len(flow.events)
         self.u0 = np.array(u, dtype=float)
         if len(self.u0) != self.dimension:
             raise ValueError(f"{len(self.u0)} unknowns; {self.dimension} are needed")
@@ -185,6 +187,14 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         """Root mean square of a direction over the nodes."""
         x = direction[: self.states].reshape(-1, self.node)
         return float(np.sqrt((x**2).sum(axis=1).mean()))
+
+    def direction(self, u: np.ndarray, p: float, side: float) -> np.ndarray:
+        """The direction in which the branch of a cycle leads, the parameter growing or, where `side` is negative, falling."""
+        border, step, tangent = np.zeros((3, self.dimension + 1))
+        border[-1], work = 1.0, self.workspace()
+        self.kernels.linearise(self, u, p, work)
+        self.kernels.bordered(self, work, border, 0.0, step, tangent)
+        return math.copysign(1.0, side) * tangent
 
     # ------------------------------------------------------------------ unknowns
     def parts(self, u: np.ndarray, p: float) -> tuple[np.ndarray, float, np.ndarray]:
@@ -301,7 +311,62 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
 
     # ------------------------------------------------------------------ margins
     def margins(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
-        """How far the cycle stays away from equilibria, relative to its size, and its period from infinity: log10 of the part that is left."""
+        """How far the cycle stays away from equilibria, relative to its size, and its period from infinity: log10 of the part that is left; then the events."""
+        p = work.along[1]
+        if not len(self.flow.events):
+            return self._from_homoclinic(u, work)
+        touching = self._closest(u, p)[0]
+        return np.append(self._from_homoclinic(u, work), touching) if self.free_period else touching
+
+    def _closest(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """The smallest value of each event along the cycle, and where."""
+        x, period, widths = self.parts(u, p)
+        inside = np.arange(FINER * self.rule.degree) / (FINER * self.rule.degree)
+        begins = np.append(0.0, np.cumsum(widths)[:-1])
+        edges = (begins[:, None] + widths[:, None] * inside).reshape(-1)
+        try:
+            return self.flow.events.closest(
+                lambda places: mesh.evaluate(self.rule, widths, x, places), edges, period, self.values.at(p)
+            )
+        except NotEvaluable:
+            nothing = np.full(len(self.flow.events), np.nan)
+            return nothing, nothing
+
+    def crossed(self, u: np.ndarray, p: float) -> str | None:
+        """The name of an event that the cycle crosses, by more than the curve may be off; None if there is none."""
+        for k, name in enumerate(self.flow.events.names):
+            if self._closest(u, p)[0][k] < -self._missed(u, p, k):
+                return name
+        return None
+
+    def _missed(self, u: np.ndarray, p: float, k: int) -> float:
+        """By how much the smallest value of an event may be off: the curve is known less well between the mesh points than there."""
+        (x, when), sizes = self.touching(u, p, k), self._sizes(self._curve(u)[0])
+        moved = x + TOUCH * np.concatenate([np.diag(sizes), -np.diag(sizes)])
+        values = self.flow.events(moved, self.values.at(p), np.full(len(moved), when))[:, k].reshape(2, -1)
+        return float(self.estimated_error(u) * np.abs(values[0] - values[1]).sum() / (2.0 * TOUCH))
+
+    def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, float]:
+        """The state in which the cycle comes closest to event k, and when."""
+        x, period, widths = self.parts(u, p)
+        place = self._closest(u, p)[1][k : k + 1]
+        return mesh.evaluate(self.rule, widths, x, place)[0], float(place[0] * period)
+
+    def touch_error(self, point: Any) -> float:
+        """By how much the parameter at which a cycle touches an event may be off."""
+        k = int(point.margin_index) - 2 * self.free_period
+        missed = self._missed(point.u, float(point.value), k)
+        step = TOUCH / max(float(np.abs(point.tangent[:-1] / self.column_scale).max()), 1e-300)
+        ends = [
+            self._closest(
+                point.u + s * step * point.tangent[:-1], point.value + s * step * point.tangent[-1]
+            )[0][k]
+            for s in (1.0, -1.0)
+        ]
+        slope = abs(ends[0] - ends[1]) / (2.0 * step)
+        return float(missed * abs(point.tangent[-1]) / slope) if slope > 0.0 else float("inf")
+
+    def _from_homoclinic(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
         x = u[: self.states].reshape(-1, self.node) / self.node_scale
         size = float(np.ptp(x, axis=0).max())
         short = float(np.log10(LONGEST * self.clock / max(float(u[self.states]), 1e-300)))
@@ -317,15 +382,20 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         return np.array([float(np.log10(max(closeness / size, 1e-300) / CLOSE)), short])
 
     def margin_kind(self, j: int) -> str:
-        """A cycle that comes near to an equilibrium ends as a homoclinic orbit."""
-        return "homoclinic"
+        """A cycle that comes near to an equilibrium ends as a homoclinic orbit; else it touches an event."""
+        own = 2 * self.free_period
+        return "homoclinic" if j < own else self.flow.border_kind(j - own)
 
     def beyond(self, point: Any) -> list[Seed]:
-        """Nothing goes on from a homoclinic orbit."""
-        return []
+        """Nothing goes on from a homoclinic orbit; at an event the flow says what does."""
+        k = int(point.margin_index) - 2 * self.free_period
+        return [] if k < 0 else self.flow.beyond(self, point, k)
 
     def dead_end(self, point: Any) -> str:
-        """The equilibrium to which an orbit is homoclinic, and its eigenvalues."""
+        """The equilibrium to which an orbit is homoclinic, and its eigenvalues; or the event that stops the motion."""
+        k = int(point.margin_index) - 2 * self.free_period
+        if k >= 0:
+            return self.flow.dead_end(self, point, k)
         x, period, _ = self.parts(point.u, point.value)
         return self.flow.told_homoclinic(x.reshape(-1, self.node), period, point.value, self.values)
 
@@ -561,7 +631,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         about = self.flow.describe()
         return {
             **about,
-            "word": "cycle",
+            **self.flow.of_cycles,
             **({"periods": self.rounds} if self.field.forced else {}),
             "parameter": self.parameter,
             "p0": self.values.given(),
@@ -574,7 +644,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
                 "clock": self.clock,
                 "unit": self.parameter_scale,
             },
-            "factory": "contvines.flows.files:from_description" if about.get("factory") else None,
+            "factory": about.get("factory"),
         }
 
     def uncertainty(self) -> float:

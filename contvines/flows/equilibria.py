@@ -9,7 +9,8 @@ import numpy as np
 from scipy.sparse import issparse
 
 from ..problems.algebraic import AlgebraicProblem
-from ..problems.protocol import Embedding
+from ..problems.functions import NotEvaluable
+from ..problems.protocol import Embedding, Seed
 from . import mesh
 from .witness import Witnessed
 
@@ -33,14 +34,23 @@ class Equilibria(Witnessed, AlgebraicProblem):
     def __init__(self, flow: Any, *arguments: Any, **options: Any) -> None:
         self.flow = flow
         super().__init__(*arguments, spectrum="flow", **options)
+        self.n_margins = len(flow.events)
 
-    default_measure = "max x0"
+    @property
+    def default_measure(self) -> str:
+        """The first state, as it is called on cycles."""
+        return next(iter(self.flow.of_states))
 
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Norm and coordinates; what is measured on cycles has the values of a cycle that stands still."""
-        names = [f"{word}x{j}" for word in ("", "max ", "min ", "mean ") for j in range(self.node)]
-        return (*super().measure_names, *names, "period")
+        return (
+            *super().measure_names,
+            *self.flow.states,
+            *self.flow.of_states,
+            "period",
+            *self.flow.own_measures,
+        )
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures for an array of solutions."""
@@ -52,11 +62,40 @@ class Equilibria(Witnessed, AlgebraicProblem):
                 continue
             if name not in self.measure_names:
                 raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
-            if name == "period":
+            if name in self.flow.own_measures:
+                pairs = zip(states, np.broadcast_to(p, len(states)).tolist(), strict=True)
+                found[name] = np.array([self.flow.measure_own(name, self, *pair) for pair in pairs])
+            elif name == "period":
                 found[name] = np.full(len(states), np.nan)
             else:
-                found[name] = states[:, int(name.rpartition("x")[2])].copy()
+                own = name in self.flow.states
+                place = self.flow.states.index(name) if own else self.flow.of_states[name][1]
+                found[name] = states[:, place].copy()
         return found
+
+    # ------------------------------------------------------------------ events that stop
+    def margins(self, u: np.ndarray, p: float) -> np.ndarray:
+        """The events, positive where motions are."""
+        try:
+            return self.flow.events(u[None, : self.node], self.values.at(p))[0]
+        except NotEvaluable:
+            return np.full(self.n_margins, np.nan)
+
+    def margin_kind(self, j: int) -> str:
+        """See :meth:`FlowProblem.border_kind`."""
+        return self.flow.border_kind(j)
+
+    def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, None]:
+        """The equilibrium itself."""
+        return u[: self.node], None
+
+    def beyond(self, point: Any) -> list[Seed]:
+        """See :meth:`FlowProblem.beyond`."""
+        return self.flow.beyond(self, point, int(point.margin_index))
+
+    def dead_end(self, point: Any) -> str:
+        """See :meth:`FlowProblem.dead_end`."""
+        return self.flow.dead_end(self, point, int(point.margin_index))
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
@@ -83,8 +122,7 @@ class Equilibria(Witnessed, AlgebraicProblem):
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again."""
         about = super().describe()
-        if about.get("factory") or self.flow.origin:
-            about["factory"] = "contvines.flows.files:from_description"
+        about["factory"] = self.flow.rebuilt_by(bool(about.get("factory")))
         return {**about, "word": "equilibrium", "flow": self.flow.described()}
 
 

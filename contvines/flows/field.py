@@ -14,6 +14,7 @@ from ..problems.functions import NotEvaluable
 from ..problems.large.colouring import Colouring
 from ..problems.parameters import ParameterSet
 from .compiled import CompiledRates
+from .events import Events
 from .sparse import LARGE, found_sparsity
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so 1e-14 of it
@@ -53,6 +54,7 @@ class Field:
         period: Callable | None = None,
     ) -> None:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
+        self.events = Events(None, period is not None, start, values)
         self.values, self.period, self.node = values, period, len(start)
         slope: Any = (
             {name: _at_zero(g, period) for name, g in derivative.items()}

@@ -25,6 +25,11 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Any
     flow = _flow(description, trust)
     if flow is None:
         return None
+    return problem_of(flow, description)
+
+
+def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Any:
+    """Equilibria or cycles of a flow from what ``describe()`` returned."""
     values = description["p0"]
     named = dict(values) if isinstance(values, Mapping) else {description["parameter"]: values}
     cycle = description.get("cycle")
@@ -64,8 +69,9 @@ def read_ode(path: str | Path, x0: Any = None, **options: Any) -> FlowProblem:
     ValueError
         For what cannot be read; the sentence has the line.
     """
-    f, _, starts, parameters = read_text(path)
+    f, states, starts, parameters = read_text(path)
     options.setdefault("name", Path(path).stem)
+    options.setdefault("states", states)
     return FlowProblem(f, starts if x0 is None else x0, parameters, **options)
 
 
@@ -110,6 +116,7 @@ def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
         error=about["error"],
         period=period,
         scale=about["scale"],
+        states=about.get("states"),
         **functions,
     )
     return flow

@@ -34,6 +34,8 @@ class March:
         speed = np.abs(self.slope / size).max(axis=1)
         self.h = 1e-3 / np.where(np.isfinite(speed) & (speed > 0.0), speed, 1.0)
         self.steps = 0
+        self.stopped = np.zeros(len(x), dtype=bool)  # by an event of the flow
+        self._stop(np.arange(len(x)))
 
     def _rates(self, x: np.ndarray, t: np.ndarray) -> np.ndarray:
         field = self.field
@@ -48,6 +50,16 @@ class March:
             return self.field(x[None], self.p, np.array([t]) if self.field.forced else None)[0]
         except NotEvaluable:
             return np.full(len(x), np.nan)
+
+    def _stop(self, rows: np.ndarray) -> None:
+        """Those that are beyond an event become NaN."""
+        events = self.field.events
+        if not len(events) or not rows.size:
+            return
+        with np.errstate(all="ignore"):
+            beyond = (events(self.x[rows], self.field.values.at(self.p), self.t[rows]) < 0.0).any(axis=1)
+        self.stopped[rows[beyond]] = True
+        self.x[rows[beyond]] = np.nan
 
     def go(self, rows: np.ndarray, steps: int, until: float = np.inf, far: float = np.inf) -> None:
         """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN."""
@@ -71,6 +83,7 @@ class March:
             good = error <= 1.0
             took = rows[good]
             self.x[took], self.t[took], self.slope[took] = new[good], (t + h)[good], k[6][good]
+            self._stop(took)
             whole = h == self.h[rows]
             with np.errstate(all="ignore"):
                 scaled = np.where(whole | ~good, h * factor, self.h[rows])

@@ -19,13 +19,17 @@ class CycleMeasures:
     node: int
     rule: Any
     parts: Any
-    default_measure = "max x0"
+    flow: Any
+
+    @property
+    def default_measure(self) -> str:
+        """The largest value of the first state."""
+        return next(iter(self.flow.of_states))
 
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Largest, smallest and mean value of each coordinate, the root mean square of the state, the period."""
-        names = [f"{word} x{j}" for word in ("max", "min", "mean") for j in range(self.node)]
-        return ("norm", "period", *names)
+        return ("norm", "period", *self.flow.of_states, *self.flow.own_measures)
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures for an array of solutions."""
@@ -44,16 +48,19 @@ class CycleMeasures:
         share = widths[:, None] * r.weights
         result = []
         for name in names:
-            word, _, coordinate = name.partition(" ")
+            if name in self.flow.own_measures:
+                result.append(self.flow.measure_own(name, self, u, p))
+                continue
+            word, j = self.flow.of_states.get(name, (name, 0))
             if word == "norm":
                 result.append(float(np.sqrt((share * (points**2).sum(axis=2)).sum())))
             elif word == "period":
                 result.append(float(period))
             elif word == "mean":
-                result.append(float((share * points[:, :, int(coordinate[1:])]).sum()))
+                result.append(float((share * points[:, :, j]).sum()))
             else:
                 sign = 1.0 if word == "max" else -1.0
-                result.append(sign * self._largest(sign * ends[:, :, int(coordinate[1:])]))
+                result.append(sign * self._largest(sign * ends[:, :, j]))
         return result
 
     def _largest(self, ends: np.ndarray) -> float:

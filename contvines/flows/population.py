@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..problems.registry import rebuild
-from .attractors import AtRest, Escaped, Irregular
+from .attractors import AtRest, Escaped, Irregular, Stopped
 from .march import March
 
 BLOCK, STEPS = (
@@ -97,8 +97,8 @@ class FlowPopulation:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """x0, x1, ..."""
-        return tuple(f"x{j}" for j in range(self.node))
+        """Of the states."""
+        return self.flow.states
 
     def box(self, p: float) -> np.ndarray:
         """Ranges of the starts, shape (d, 2)."""
@@ -130,8 +130,12 @@ class FlowPopulation:
                     rounds += BLOCK_PERIODS
                     march.go(left, MOST_STEPS, until=rounds * period, far=FAR)
                 gone = left[~np.isfinite(march.x[left]).all(axis=1)]
-                if gone.size:
-                    self._add(motions, index, gone, Settled("escaped"))
+                for kind, which in (
+                    ("escaped", gone[~march.stopped[gone]]),
+                    ("stopped", gone[march.stopped[gone]]),
+                ):
+                    if which.size:
+                        self._add(motions, index, which, Settled(kind))
                 for k, motion in enumerate(motions):
                     self._assign(march.x, index, mirrored, k, motion)
                 if (index >= 0).all():
@@ -241,6 +245,8 @@ class FlowPopulation:
             return None if rest is None or not self._attracts(rest, p) else self._equilibrium(rest, p)
         except Escaped:
             return Settled("escaped")
+        except Stopped:
+            return Settled("stopped")
         except (Irregular, ValueError):
             return None
         if not orbit.stable:

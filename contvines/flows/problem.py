@@ -11,16 +11,19 @@ from contvines.shared.near_arguments import hinting
 
 from ..problems.images import image_map
 from ..problems.parameters import ParameterSet
+from ..problems.protocol import Seed
 from ..problems.registry import addresses
 from ..problems.scales import flat_start, given_scale
 from . import mesh
-from .attractors import recurrence
+from .attractors import Stopped, recurrence
 from .collocation import rule
 from .compiled import CompiledRates
 from .cycles import CycleProblem
 from .equilibria import Equilibria
+from .events import Events
 from .expressions import compiled_expressions
 from .field import Field
+from .names import OF_STATES, checked_names
 from .newton import settled
 from .orbit import CycleOrbit
 from .population import FlowPopulation
@@ -60,6 +63,11 @@ class FlowProblem:
         parameters and multipliers have the square of that, nearly.
     scale : float or array_like of shape (d,), optional
         What counts as large in each coordinate.
+    states : sequence of str, optional
+        Names of the states, as measures have them (``max x``); x0, x1, ... if left out.
+    events : mapping of str to callable, optional
+        By name, functions (x, p) -> number, of forced flows (x, p, t), that stop a motion where one of them becomes zero. Motions are
+        on the side of ``x0``. Branches end, labelled EV, where an equilibrium or a cycle comes to touch an event.
     parameter : str
         Name of the parameter that varies if nobody says so; the first one if it is left out.
     name : str
@@ -84,6 +92,8 @@ class FlowProblem:
         degree: int = 4,
         error: float = 1e-6,
         scale: Any = None,
+        states: Sequence[str] | None = None,
+        events: Mapping[str, Callable] | None = None,
         parameter: str = "p",
         name: str = "flow",
     ) -> None:
@@ -99,6 +109,11 @@ class FlowProblem:
             jacobian = jacobian or (f.jacobian if f.dfdx is not None else None)
             derivative = derivative or (f.derivatives(names) if f.dfdp is not None else None)
         self.given = {"F": f, "jacobian": jacobian, "derivative": derivative, "mirror": mirror}
+        if events:
+            self.given["events"] = events
+        self.given_states, self.states = states, checked_names(states, len(self.x0))
+        names = [(what, j) for what in OF_STATES for j in range(len(self.x0))]
+        self.of_states = {self.measure_of(what, self.states[j]): (what, j) for what, j in names}
         self.given_period, self.given_scale = period, scale
         self.values = ParameterSet(params, parameter)
         self.mirror = None if mirror is None else image_map(mirror, len(self.x0))
@@ -106,6 +121,7 @@ class FlowProblem:
         self.origin: tuple[str, str, str] | None = None  # file, name and digest, of a flow that a study names
         self.sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles
         self.field = Field(f, jacobian, derivative, self.x0, self.values, _period(period, self.values))
+        self.events = self.field.events = Events(events, self.field.forced, self.x0, self.values)
         if self.field.forced:
             self.field.length_of_period(self.values.start)
             self._find_mirror()
@@ -156,6 +172,7 @@ class FlowProblem:
             If a symbol has no value.
         """
         f, jacobian = compiled_expressions(expressions, states, list(params), time)
+        options.setdefault("states", [str(state) for state in states])
         return cls(f, x0, params, jacobian=jacobian, **options)
 
     def _find_mirror(self) -> None:
@@ -261,6 +278,15 @@ class FlowProblem:
         if len(start) != len(self.x0):
             raise ValueError(f"x0 has {len(start)} numbers; the flow has {len(self.x0)} states")
         field = self.field.against(parameters)
+        for name, value in zip(
+            self.events.names,
+            self.events(start[None], parameters.at(parameters.start), np.zeros(1))[0],
+            strict=True,
+        ):
+            if value < 0.0:
+                raise Stopped(
+                    f"x0 = {start.tolist()} lies beyond the event {name}, which stops motions; begin on the other side"
+                )
         times, states, rounds = recurrence(field, parameters.start, start, transient, longest, doublings)
         return self._cycle(times, states, parameters, rounds)
 
@@ -315,6 +341,9 @@ class FlowProblem:
         cycles, u = found
         if np.ptp(u[: cycles.states].reshape(-1, d) / scale, axis=0).max() < 1e-6:
             raise ValueError("Newton's method leads from these states to an equilibrium, not to a cycle")
+        name = cycles.crossed(u, parameters.start)
+        if name is not None:
+            raise Stopped(f"the cycle crosses the event {name}, which stops the motion")
         shorter = cycles.root(u, parameters.start)
         if shorter is not None:
             cycles, u = shorter
@@ -352,6 +381,63 @@ class FlowProblem:
         scale, clock = self.sizes
         return CycleProblem(self, field, u, intervals, rounds, copies, scale, clock, unit)
 
+    # ------------------------------------------------------------------ measures, and what else attracts
+    @property
+    def of_cycles(self) -> dict[str, str]:
+        """What tables call a cycle."""
+        return {"word": "cycle"}
+
+    own_measures: tuple[str, ...] = ()
+
+    def measure_of(self, what: str, state: str) -> str:
+        """What the largest, smallest or mean value of a state is called."""
+        return f"{what} {state}"
+
+    def measure_own(self, name: str, problem: Any, u: np.ndarray, p: float) -> float:
+        """One of ``own_measures``."""
+        raise KeyError(name)
+
+    def witness(self, problem: Any, p: float, starts: int) -> list[dict[str, Any]]:
+        """What starts settle on: "word" and "kind" of each motion, "periods" of the forcing, and "u", the extremes of its states."""
+        population = problem.population(problem.parameter)
+        motions, _, _ = population.settle(population.starts(starts, 7, p), p)
+        found = []
+        for motion in motions:
+            entry = {"word": motion.word or None, "periods": motion.periods, "kind": motion.kind}
+            found.append(entry if motion.curve is None else {**entry, "u": extremes(motion.curve)})
+        return sorted(found, key=lambda one: (str(one["word"]), one["kind"], one.get("u", [])))
+
+    def known(self, problem: Any, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable solution as `witness` tells of it."""
+        if problem.spectrum == "flow":
+            word, periods, curve = "equilibrium", 0, np.asarray(u, dtype=float)[None, : problem.node]
+        else:
+            orbit = problem.orbit(u, p)
+            times = np.linspace(0.0, orbit.period, 1001)[:-1]
+            word, periods = "cycle", problem.rounds if self.field.forced else 0
+            curve = orbit(times[:: len(times) // periods] if periods else times)
+        return {"word": word, "periods": periods, "kind": "periodic", "u": extremes(curve)}
+
+    def rebuilt_by(self, importable: bool) -> str | None:
+        """The factory that builds the flow's problems again; None where its functions cannot be found again."""
+        return "contvines.flows.files:from_description" if importable or self.origin else None
+
+    # ------------------------------------------------------------------ events that stop
+    def border_kind(self, k: int) -> str:
+        """The kind of border at which a motion touches event k."""
+        return "event"
+
+    def beyond(self, problem: Any, point: Any, k: int) -> list[Seed]:
+        """The motions that go on where one touches event k: none."""
+        return []
+
+    def dead_end(self, problem: Any, point: Any, k: int) -> str:
+        """What stops motions at event k, in words."""
+        x, when = problem.touching(point.u, point.value, k)
+        place = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.states, x, strict=True))
+        ahead = "" if when is None else f" at t = {when:.6g} of its period"
+        return f"the event {self.events.names[k]} stops the motion: it is zero{ahead}, where {place}"
+
     # ------------------------------------------------------------------ words
     def told_homoclinic(self, x: np.ndarray, period: float, p: float, values: ParameterSet) -> str:
         """A sentence on the equilibrium near which a cycle of a long period stays longest."""
@@ -386,6 +472,7 @@ class FlowProblem:
             "period": period if not callable(period) else where["period"],
             "x0": self.x0.tolist(),
             "scale": None if scale is None else scale.tolist(),
+            "states": None if self.given_states is None else list(self.states),
             "file": None if self.origin is None else list(self.origin),
         }
 
@@ -404,8 +491,13 @@ class FlowProblem:
             "scale": None if scale is None else scale.tolist(),
             "callables": where,
             "flow": self.described(),
-            "factory": "contvines.flows.files:from_description" if importable or self.origin else None,
+            "factory": self.rebuilt_by(importable),
         }
+
+
+def extremes(curve: np.ndarray) -> list[float]:
+    """Least and largest state along a motion: of two motions that are one they agree to a few digits."""
+    return [float(x) for x in (*curve.min(axis=0), *curve.max(axis=0))]
 
 
 def _shortly(value: complex) -> str:

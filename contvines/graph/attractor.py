@@ -16,7 +16,7 @@ class Attractor:
     word : str
     periods : int
     kind : str
-        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow``, ``escaped`` or
+        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow``, ``escaped``, ``stopped`` or
         ``impossible`` (the start lies inside a wall).
     branch : str or None
         Label of the branch on which it lies.

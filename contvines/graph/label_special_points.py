@@ -259,6 +259,8 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
             special.location_error = max(
                 special.location_error, problem.remaining(special.u, special.tangent)
             )
+        elif special.margin_index is not None:
+            special.location_error = max(special.location_error, problem.touch_error(special))
     if special.kind == "branch-point":
         where = engine, special.u, special.value, special.tangent
         within = max(singular_within(*where), 2.0 * missed(*where))

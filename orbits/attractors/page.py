@@ -23,6 +23,7 @@ RETURNED = 1e-3  # difference of nodes, relative to 1 + states, at which a motio
 SETTLED = 1e-5  # difference at which it has, if its equations confirm it
 EXACT = 1e-13  # last step of Newton's method
 LONGEST_WORD = 400
+LATE = 50  # of the last part of a motion, by which it is told whether it has come to rest
 SAMPLES = 2000  # of a motion without a period, for its extremes
 TRANSIENT, PATIENCE = 100.0, 4  # forcing periods (or events) left out first, and how often twice as many are
 IN_SWEEPS = 0  # the same at each value of a sweep
@@ -43,7 +44,7 @@ class PageAttractor(Settled):
     params : float array (P,)
     kind : str
         "periodic", "chatter" (periodic or not, with infinitely many impacts in finite time), "rest" (a wall holds the body for good, or a
-        self-excited machine has no events any more), or "aperiodic" (no period up to the longest that was looked for).
+        self-excited machine comes to rest), or "aperiodic" (no period up to the longest that was looked for).
     orbit : Orbit or None
         Of a periodic one.
     trajectory : PageTrajectory
@@ -113,7 +114,7 @@ class PageAttractor(Settled):
                 "chatter": "impacts pile up on it, so no finite word describes it",
                 "rest": "a wall holds the body for good"
                 if self.trajectory.held
-                else "it has no events from which its period could be counted",
+                else "it has come to rest; contvines.diagram(machine.smooth(state), ...) follows equilibria",
                 "aperiodic": "no period was found",
             }[self.kind]
             raise ValueError(
@@ -199,23 +200,30 @@ def attracted(
         if orbit is not None:
             return PageAttractor(machine, params, "periodic", orbit, run, simulator.state)
         if run.held or not (run.events or machine.forced):
-            return PageAttractor(machine, params, "rest", None, run, simulator.state)
+            kind = "rest" if run.held or still(run) else "aperiodic"
+            return PageAttractor(machine, params, kind, None, run, simulator.state)
         if run.chatters and attempt:
             break
     kind = "chatter" if run.chatters else "aperiodic"
     return PageAttractor(machine, params, kind, None, run, simulator.state)
 
 
-def skip(stepper: Stepper, count: int) -> None:
-    """Move on by so many forcing periods; of a self-excited machine, by so many events."""
+def still(run: PageTrajectory) -> bool:
+    """Whether a self-excited motion has come to rest, without a wall that holds it."""
+    if run.machine.forced or run.events or run.held:
+        return False
+    states = run.sample(np.linspace(max(run.clocks[0], run.end - TWO_PI), run.end, LATE))
+    return bool((np.ptp(states, axis=0) <= SETTLED * (1.0 + np.abs(states).max(axis=0))).all())
+
+
+def skip(stepper: Stepper, count: int) -> bool:
+    """Move on by so many forcing periods; of a self-excited machine, by so many events, and say whether there were as many."""
     if stepper.machine.forced:
         until = stepper.base + stepper.clock + TWO_PI * count
         while stepper.advance(until) is not None:
             pass
-        return
-    for _ in range(count):
-        if stepper.advance(stepper.base + stepper.clock + 1e4) is None:
-            return
+        return True
+    return all(stepper.advance(stepper.base + stepper.clock + 1e4) is not None for _ in range(count))
 
 
 def look(stepper: Stepper, max_period: int) -> PageTrajectory:
@@ -325,9 +333,11 @@ def _eventless(run: PageTrajectory, max_period: int, near: float) -> Orbit | Non
     machine = run.machine
     mode = run.modes[-1]
     held = any(isinstance(c, Wall) and m == HELD for c, m in zip(machine.contacts, mode))
-    if not machine.forced or held:
+    if held:
         return None
     word = Word((), (mode,), machine.alphabet)
+    if not machine.forced:
+        return _free(run, word)
     first, last = (
         int(turn(clock / TWO_PI)) for turn, clock in ((np.ceil, run.clocks[0]), (np.floor, run.end))
     )
@@ -341,6 +351,14 @@ def _eventless(run: PageTrajectory, max_period: int, near: float) -> Orbit | Non
         if orbit is not None and (gap <= CLOSED * size or not np.any(np.abs(orbit.multipliers) > REPELS)):
             return orbit
     return None
+
+
+def _free(run: PageTrajectory, word: Word) -> Orbit | None:
+    """The cycle on which a self-excited motion without events settles; None where it comes to rest or is none."""
+    from orbits.flows.page.smooth import cycle_near
+
+    found = cycle_near(run.machine, word, run.params, run.states[-1])
+    return None if found is None else polished(Orbit(run.machine, word, 1, found[None], run.params))
 
 
 def measure_names(machine: Machine) -> tuple[str, ...]:

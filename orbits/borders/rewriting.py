@@ -58,6 +58,9 @@ def durations_after(durations: np.ndarray, nodes: np.ndarray, edit: Edit) -> np.
     nodes = nodes.copy()
     change, m = edit.change, len(edit.change.events)
     if change.start == change.stop and m:  # inserted into the flight before `start`
+        if len(nodes) == m:  # the first events of a motion that had none
+            nodes[:, 0] = np.diff(np.append(edit.nodes[:, 0], edit.nodes[0, 0] + durations.sum()))
+            return nodes
         inside = np.append(edit.nodes[:, 0], durations[change.start - 1])
         nodes[change.start - 1, 0] = inside[0]
         nodes[change.start : change.start + m, 0] = np.diff(inside)

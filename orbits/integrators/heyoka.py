@@ -251,7 +251,8 @@ class Run:
         ta.time = begin
         self._state[:] = state
         self._pars[:] = numbers[: self._numbers]
-        ta.reset_cooldowns()
+        if self._places:
+            ta.reset_cooldowns()
         while True:
             before = ta.time
             outcome = ta.propagate_until(end, max_steps=MOST_STEPS)[0]

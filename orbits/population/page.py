@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from orbits.attractors.motion import RARE, Motion, wandering
-from orbits.attractors.page import RETURNED, look, of_record, returning, skip
+from orbits.attractors.page import RETURNED, look, of_record, returning, skip, still
 from orbits.attractors.sweep import sweep
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
@@ -175,18 +175,20 @@ class PageFleet:
     def _followed(self, i: int, stepper: Stepper, sorting: Sorting) -> None:
         before: tuple[_Marks | None, float] = (None, np.inf)
         for looks, block in enumerate(BLOCKS):
-            skip(stepper, block)
+            goes_on = skip(stepper, block)
             marks, gap = self._nearest(stepper)
             if marks is not None and (gap < SURE or (marks is before[0] and gap < 0.5 * before[1])):
                 return sorting.assign(i, marks.place, marks.mirrored)
             before = marks, gap
-            if looks < 2 or (marks is not None and looks < 5):
+            if goes_on and (looks < 2 or (marks is not None and looks < 5)):
                 continue
             run = look(stepper, LONGEST)
+            if still(run):
+                return self._rests(i, run, sorting)
             orbit = returning(run, LONGEST, RETURNED)
             if orbit is not None:
                 return self._add(orbit, i, stepper, sorting)
-            if run.held or not (run.events or self.machine.forced):
+            if run.held:
                 return sorting.plain(i, "stuck", state=_start(stepper))
             if _chatters(run):
                 return sorting.plain(i, "chatter", periods=0, state=_start(stepper))
@@ -203,6 +205,18 @@ class PageFleet:
             if orbit is not None:
                 return self._add(orbit, i, stepper, sorting)
         return sorting.plain(i, kind, exponent=exponent, error=error, state=state)
+
+    def _rests(self, i: int, run: PageTrajectory, sorting: Sorting) -> None:
+        """A self-excited motion that comes to rest: at an equilibrium, where one is found."""
+        from orbits.flows.page.smooth import rest_near
+
+        rest = rest_near(self.machine, run.modes[-1], run.params, run.sample(np.array([run.end]))[0])
+        if rest is None:
+            return sorting.plain(i, "stuck", state=_start(self.stepper))
+        place, problem, u = sorting.known(rest, "stuck", 0)
+        if place < 0:
+            place = sorting.add(rest, Motion("stuck", "", 0, problem, u, state=_start(self.stepper)))
+        return sorting.assign(i, place)
 
     def _row(self, stepper: Stepper) -> np.ndarray:
         if not self.machine.forced:

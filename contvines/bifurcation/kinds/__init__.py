@@ -9,6 +9,7 @@ from . import (
     branch_point,
     corner,
     end,
+    event,
     fold,
     homoclinic,
     hopf,
@@ -43,6 +44,7 @@ KINDS: tuple[Kind, ...] = tuple(
         corner,
         switch,
         homoclinic,
+        event,
         user,
         end,
     )

@@ -116,11 +116,6 @@ class PageEquations:
             raise ValueError(
                 f"the machine {machine.name!r} has no mirror image along {parameter}, so no symmetric orbits"
             )
-        if not len(word) and not machine.forced:
-            raise ValueError(
-                f"the machine {machine.name!r} has no forcing, so a motion without events is no cycle whose period can be "
-                "counted; give a word"
-            )
         self.machine, self.word, self.periods = machine, word, int(periods)
         self.parameter, self.params = parameter, np.array(params, dtype=float)
         self.symmetric, self.forced = bool(symmetric), machine.forced
@@ -201,6 +196,10 @@ class PageEquations:
         events: dict[int, tuple[Any, list[int], bool]] = {}
         for i in range(self.length):
             letter = self.letters[i + 1]
+            if letter.kind == STROBE and not self.forced:
+                values = compiled.extreme(keys[i], active)
+                events[id(values)] = (values, [i], False)
+                continue
             if letter.kind == STROBE:
                 events[-1] = (None, [i], False)
                 continue

@@ -12,6 +12,7 @@ from orbits.contacts.wall import Wall
 from orbits.flows.page import measures, sampling, vanishing
 from orbits.flows.page.cycle_equations import PageEquations, loose_states
 from orbits.flows.protocol import Motion, Vanishing
+from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
 from orbits.words import Word
 
@@ -126,8 +127,13 @@ class PageFlow:
         return float(rebound(node[None, 1:], clock, numbers[None])[0, 1])
 
     def without_events(self, motion: Motion) -> np.ndarray:
-        """The node at phase zero."""
+        """The node at phase zero; of a self-excited motion at the extreme of the first state that moves."""
         table = sampling.sample(motion, 4000)
+        if not motion.model.forced:
+            states = np.column_stack([table[name] for name in motion.model.states])
+            e = motion.model.equations
+            first = moving(e, e.pattern(e.pattern_key(motion.word.modes[-1])).rates)
+            return np.array([[motion.durations.sum(), *states[int(np.argmax(states[:, first]))]]])
         phase = table["phase"] / (2.0 * np.pi)
         k = int(np.argmin(np.abs(phase - np.round(phase))))
         return np.array([[0.0, *(table[name][k] for name in motion.model.states)]])

@@ -9,8 +9,9 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
 from orbits.integrators.engine import engine
-from orbits.integrators.expressions import Values, derivatives, replaced, variable
+from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.machines.page.patterns import Equations, PatternKey
+from orbits.symbols import Symbol
 
 
 class Compiled:
@@ -97,12 +98,27 @@ class Compiled:
             values = [self._zero(letter, sign, key)]
             if letter.kind == HIT:
                 values += e.impact(letter.contact)
-            by = [*e.x, e.clock, *(variable(self.layout.numbers[i]) for i in active)]
-            table = [[value, *row] for value, row in zip(values, derivatives(values, by))]
-            return self.engine.Values(self.layout, [entry for row in table for entry in row])
+            return self._varied(values, active)
 
         wanted = sign if letter.kind == SLIP else 0
         return self._once(("event", letter.contact, letter.kind, wanted, key, active), make)
+
+    def _varied(self, values: Sequence[Symbol], active: tuple[int, ...]) -> Values:
+        """Values, each with its derivatives by states, clock and active numbers."""
+        e = self.equations
+        by = [*e.x, e.clock, *(variable(self.layout.numbers[i]) for i in active)]
+        table = [[value, *row] for value, row in zip(values, derivatives(values, by))]
+        return self.engine.Values(self.layout, [entry for row in table for entry in row])
+
+    def extreme(self, key: PatternKey, active: tuple[int, ...]) -> Values:
+        """The rate of the first state that moves, and its derivatives: zero where a self-excited motion without events is counted from."""
+
+        def make() -> Values:
+            e = self.equations
+            rates = e.pattern(key).rates
+            return self._varied([rates[moving(e, rates)]], active)
+
+        return self._once(("extreme", key, active), make)
 
     def _zero(self, letter: Letter, sign: int, key: PatternKey) -> Any:
         e, j = self.equations, letter.contact
@@ -186,3 +202,9 @@ class Compiled:
     def numbers(self, params: np.ndarray, modes: Sequence[int]) -> np.ndarray:
         """The runtime numbers of a mode: parameters, then signs."""
         return np.concatenate([params, self.equations.signs(modes)])
+
+
+def moving(equations: Equations, rates: Sequence[Symbol]) -> int:
+    """The first state whose rate depends on the states."""
+    names = set(equations.layout.states)
+    return next((j for j, rate in enumerate(rates) if variables_of(rate) & names), 0)

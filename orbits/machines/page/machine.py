@@ -283,5 +283,24 @@ class Machine(Varying):
         start = {name: float(generator.uniform(-size, size)) for name in self.states}
         return start | ({"phase": float(generator.uniform(0.0, 2.0 * np.pi))} if self.forced else {})
 
+    @hinting
+    def smooth(self, state: Mapping[str, float] | None = None, **parameters: float) -> Any:
+        """The motions of a self-excited machine without events, in the mode of a state: its equilibria and cycles as a flow.
+
+        ``contvines.diagram(machine.smooth({"x": 0.1}), over=...)`` begins at the equilibrium near the state; see `orbits.flows.page.smooth`.
+
+        Raises
+        ------
+        ValueError
+            If the machine is forced, or something is held or sticks in that state.
+        """
+        from orbits.flows.page.smooth import beside
+
+        if self.forced:
+            raise PageError(
+                f"{self.name!r} is forced: its motions without events are orbits with the word ''; machine.orbit('') would do"
+            )
+        return beside(self, state, **parameters)
+
 
 __all__ = ["Machine", "PageError"]

@@ -1,0 +1,335 @@
+"""Motions without events of a self-excited machine: equilibria and cycles of a smooth flow, on which the contacts' events are borders.
+
+A machine in one mode is a differential equation. `contvines.flows` solves for its equilibria and, by collocation, for its cycles; the guards of
+the mode are events of that flow, so that a branch ends where a velocity, a gap or a surface becomes zero. What happens there is left to the
+rules of the contacts: the cycle is read as an orbit with the word "", counted from an extreme of the first state that moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from contvines.flows import FlowProblem
+from contvines.flows.files import problem_of
+from orbits.contacts.dry_friction import STUCK, DryFriction
+from orbits.contacts.wall import HELD, Wall
+from orbits.flows.page import measures
+from orbits.flows.page.cycle_equations import PageEquations
+from orbits.flows.page.solving import newton
+from orbits.flows.protocol import told
+from orbits.integrators.expressions import derivatives, variable, written
+from orbits.machines.page.compiled import moving
+from orbits.machines.page.stored import machine_again
+from orbits.words.margins import border_kind
+from orbits.words.word import Word
+
+if TYPE_CHECKING:
+    from orbits.machines.page.machine import Machine
+
+SAMPLES = (
+    800  # of a motion that is handed over to collocation, and of a cycle that is searched for its extreme
+)
+DEGREE, ERROR = (
+    7,
+    1e-9,
+)  # of cycles, whose distances from contacts are to be known well between the mesh points, too
+ROUNDED = 1e-12  # states that are smaller than this part of the largest are zero but for rounding
+AT_BORDER = 1e-13  # of a guard, relative to the states
+SECANTS = 20
+SWEEPS, NEAR = (
+    6,
+    1e-3,
+)  # of Newton's method to an equilibrium, and how far from a state, relative to 1 + its size, that may be
+
+
+class WithoutEvents(FlowProblem):
+    """The flow of a machine in one mode.
+
+    Parameters
+    ----------
+    machine : Machine
+        Self-excited.
+    mode : tuple of int
+        In which nothing sticks and no wall holds.
+    params : float array (P,)
+    state : float array (n,)
+        At which all guards are positive.
+    """
+
+    def __init__(
+        self, machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: np.ndarray
+    ) -> None:
+        self.machine, self.word = machine, Word((), (mode,), machine.alphabet)
+        e = machine.equations
+        pattern, layout = e.pattern(e.pattern_key(mode)), e.layout
+        signs, names = e.signs(mode), machine.parameter_names
+
+        def function(values: Any) -> Any:
+            code = written(layout, values, np)
+            return lambda x, p: code(x, 0.0, [*(p[name] for name in names), *signs])
+
+        def rows(values: Any) -> Any:
+            flat, count = function([entry for row in values for entry in row]), len(values[0])
+
+            def table(x: Any, p: Any) -> list[Any]:
+                found = flat(x, p)
+                return [found[i : i + count] for i in range(0, len(found), count)]
+
+            return table
+
+        by_parameters = {name: derivatives(pattern.rates, [variable(f"p_{name}")]) for name in names}
+        image = machine._image is not None and self.word.mirror() == self.word
+        self.contacts = [guard.contact for guard in pattern.guards]
+        super().__init__(
+            function(pattern.rates),
+            np.where(np.abs(state) > ROUNDED * np.abs(state).max(), state, 0.0),
+            dict(zip(names, map(float, params), strict=True)),
+            jacobian=rows(derivatives(pattern.rates, e.x)),
+            derivative={name: function([row[0] for row in slopes]) for name, slopes in by_parameters.items()},
+            states=machine.states,
+            events={
+                f"{e.contacts[guard.contact].described}": function_of_one(function([guard.value]))
+                for guard in pattern.guards
+            },
+            mirror=(lambda x: -x) if image else None,
+            name=machine.name,
+            degree=DEGREE,
+            error=ERROR,
+        )
+
+    # ------------------------------------------------------------------ names, measures, files
+    @property
+    def of_cycles(self) -> dict[str, str]:
+        """The word, as orbits of machines have it."""
+        return {"word": self.word.text, "name": "no events"}
+
+    def measure_of(self, what: str, state: str) -> str:
+        """As the machine calls it."""
+        return f"{what}_{state}"
+
+    @property
+    def own_measures(self) -> tuple[str, ...]:
+        """Measures of the machine beside those of any flow."""
+        return tuple(name for name in measures.names(self.machine) if name not in (*self.of_states, "period"))
+
+    def measure_own(self, name: str, problem: Any, u: np.ndarray, p: float) -> float:
+        """One of these; an equilibrium has the values of a motion that lasts no time."""
+        nodes = self.node(problem, u, p)[None] if problem.spectrum == "map" else np.append(np.nan, u)[None]
+        params = np.array(
+            [{**problem.parameters, problem.parameter: p}[key] for key in self.machine.parameter_names]
+        )
+        return float(measures.measure(self.machine, self.word, 1, nodes[None], params[None], [name])[name][0])
+
+    def described(self) -> dict[str, Any]:
+        """The machine and the mode."""
+        return {"machine": self.machine.settings(), "modes": list(self.word.modes[0]), "x0": self.x0.tolist()}
+
+    def rebuilt_by(self, importable: bool) -> str:
+        """Files keep the machine's page."""
+        return "orbits.flows.page.smooth:rebuild"
+
+    # ------------------------------------------------------------------ what else there is
+    def population(
+        self, over: str | None = None, *, box: Any = None, around: Any = None, **values: float
+    ) -> Any:
+        """Starts of the machine."""
+        over = over or self.values.varying
+        return self.machine.population(
+            over, **{name: value for name, value in values.items() if name != over}
+        )
+
+    def witness(self, problem: Any, p: float, starts: int) -> list[dict[str, Any]]:
+        """What the machine settles on."""
+        return self._orbits(problem, p).witness(p)
+
+    def known(self, problem: Any, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable motion as `witness` tells of it."""
+        rest = {"word": None, "periods": 0, "kind": "rest"}
+        return (
+            rest if problem.spectrum == "flow" else {"word": self.word.text, "periods": 1, "kind": "periodic"}
+        )
+
+    # ------------------------------------------------------------------ borders
+    def border_kind(self, k: int) -> str:
+        """That of the contact whose guard becomes zero."""
+        return border_kind(self.word, self.contacts[k])
+
+    def beyond(self, problem: Any, point: Any, k: int) -> list[Any]:
+        """What goes on from a cycle that touches a contact, as the contacts' rules have it."""
+        if problem.spectrum == "flow":
+            return []
+        orbits, p = self._orbits(problem, float(point.value)), float(point.value)
+        u, p = on_border(orbits.equations, self.node(problem, point.u, p), p, self.contacts[k])
+        if u is None:
+            return []
+        row = np.zeros(orbits.dimension + 1)
+        row[-1] = 1.0
+        tangent = newton(orbits.equations, u, p, row)[3]
+        return list(
+            orbits.beyond(SimpleNamespace(u=u, value=p, tangent=tangent, margin_index=self.contacts[k]))
+        )
+
+    def dead_end(self, problem: Any, point: Any, k: int) -> str:
+        """Where the contact is touched."""
+        return (
+            super()
+            .dead_end(problem, point, k)
+            .replace("the event ", "")
+            .replace(" stops the motion: it", " is touched: its guard")
+        )
+
+    def _orbits(self, problem: Any, p: float) -> Any:
+        """The same motions as orbits with the word ""."""
+        from orbits.problem import OrbitProblem
+
+        values = {**problem.parameters, problem.parameter: p}
+        params = np.array([values[name] for name in self.machine.parameter_names])
+        return OrbitProblem(self.machine, self.word, 1, problem.parameter, params)
+
+    def node(self, problem: Any, u: np.ndarray, p: float) -> np.ndarray:
+        """Period and state at the extreme of the first state that moves, shape (n + 1,)."""
+        orbit = problem.orbit(u, p)
+        return extreme_of(
+            self.machine, self.word, orbit(np.linspace(0.0, orbit.period, SAMPLES)), orbit.period
+        )
+
+
+def function_of_one(f: Any) -> Any:
+    """The first of the values that a function returns."""
+    return lambda x, p: f(x, p)[0] + 0.0 * x[0]
+
+
+def extreme_of(machine: Machine, word: Word, states: np.ndarray, period: float) -> np.ndarray:
+    """The node of a motion without events, next to which Newton's method finds it: where the first state that moves is largest."""
+    e = machine.equations
+    first = moving(e, e.pattern(e.pattern_key(word.modes[0])).rates)
+    return np.append(period, states[int(np.argmax(states[:, first]))])
+
+
+def on_border(
+    equations: PageEquations, u: np.ndarray, p: float, margin: int
+) -> tuple[np.ndarray | None, float]:
+    """The orbit beside a guess on which a margin is zero, by the secant method in the parameter."""
+    row = np.empty(2 * equations.n_multipliers + equations.n_margins)
+
+    def at(p: float) -> tuple[np.ndarray, float]:
+        found, _, residual, _ = newton(equations, u, p)
+        if not np.isfinite(residual):
+            return found, np.nan
+        equations.kernels.examine(equations, found, p, equations.scratch, row)
+        return found, float(row[2 * equations.n_multipliers + margin])
+
+    before, q = at(p)[1], p + 1e-6 * max(abs(p), 1e-3)
+    for _ in range(SECANTS):
+        u, here = at(q)
+        if not np.isfinite(here) or here == before:
+            break
+        if abs(here) <= AT_BORDER * (1.0 + np.abs(u).max()):
+            return u, q
+        p, q, before = q, q - here * (q - p) / (here - before), here
+    return (u, q) if np.isfinite(here) and abs(here) < 1e-9 else (None, q)
+
+
+def smooth(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: np.ndarray) -> WithoutEvents:
+    """The flow of a machine in a mode: one, whoever asks, so that its motions can be compared.
+
+    Raises
+    ------
+    ValueError
+        If something sticks or is held in the mode, or the state is not in it.
+    """
+    for contact, entry in zip(machine.contacts, mode, strict=True):
+        if (isinstance(contact, DryFriction) and entry == STUCK) or (
+            isinstance(contact, Wall) and entry == HELD
+        ):
+            raise ValueError(f"{contact.described} holds: such a motion is not smooth")
+    known: dict[tuple[int, ...], WithoutEvents] = vars(machine).setdefault("_smooth", {})
+    if mode not in known:
+        known[mode] = WithoutEvents(machine, mode, params, state)
+    return known[mode]
+
+
+def beside(machine: Machine, state: Mapping[str, float] | None = None, **parameters: float) -> WithoutEvents:
+    """The flow in the mode of a state given by names, which begins there.
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown, or something is held or sticks in that state.
+    """
+    params, given = machine.vector(parameters), told(dict(state or {}), machine.states)
+    x = np.array([given.get(name, 0.0) for name in machine.states])
+    mode = machine.rest_mode(params, x, 0.0)
+    vars(machine).setdefault("_smooth", {}).pop(mode, None)
+    return smooth(machine, mode, params, x)
+
+
+def cycles_of(orbit: Any) -> Any:
+    """The cycle, by collocation, of a self-excited orbit without events.
+
+    Raises
+    ------
+    ValueError
+        If Newton's method does not lead to it.
+    """
+    table = orbit.flow.sample(orbit, SAMPLES)
+    states = np.column_stack([table[name] for name in orbit.model.states])
+    flow = smooth(orbit.model, orbit.word.modes[0], orbit.params, states[0])
+    return flow.cycle(table["time"], states, **orbit.parameters)
+
+
+def cycle_near(machine: Machine, word: Word, params: np.ndarray, state: np.ndarray) -> np.ndarray | None:
+    """The node of the cycle without events on which a motion settles, shape (n + 1,); None where it does not."""
+    try:
+        flow = smooth(machine, word.modes[0], params, state)
+        values: dict[str, Any] = dict(zip(machine.parameter_names, map(float, params), strict=True))
+        orbit = flow.attractor(state, **values)
+    except ValueError:  # it comes to rest, goes on to an event, or does not recur
+        return None
+    return extreme_of(machine, word, orbit(np.linspace(0.0, orbit.period, SAMPLES)), orbit.period)
+
+
+class Rest(NamedTuple):
+    """An equilibrium, which begins branches as an orbit does."""
+
+    flow: WithoutEvents
+    state: np.ndarray
+    parameters: dict[str, float]
+
+    def problem(self, parameter: str) -> Any:
+        """Equilibria against a parameter."""
+        return self.flow.equilibria(parameter, self.parameters)
+
+    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+        """The state, and the value of the parameter that varies."""
+        return self.state, self.parameters[problem.parameter]
+
+
+def rest_near(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: np.ndarray) -> Rest | None:
+    """The equilibrium at a state at which a motion has come to rest, by Newton's method; None where there is none."""
+    try:
+        flow = smooth(machine, mode, params, state)
+    except ValueError:
+        return None
+    values = dict(zip(machine.parameter_names, map(float, params), strict=True))
+    field = flow.field.against(flow.values.against(flow.values.varying, values))
+    x, p = np.array(state, dtype=float), values[flow.values.varying]
+    for _ in range(SWEEPS):
+        x = x - np.linalg.lstsq(field.jacobian(x[None], p)[0], field(x[None], p)[0], rcond=1e-13)[0]
+    near = NEAR * (1.0 + np.abs(state).max())
+    return Rest(flow, x, values) if np.abs(x - state).max() <= near else None
+
+
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> Any:
+    """Equilibria or cycles of a machine without events, from what ``describe()`` returned; None where its page is not to be run."""
+    about = description["flow"]
+    machine = machine_again(about["machine"], trust)
+    if machine is None:
+        return None
+    params = machine.vector(description["p0"])
+    flow = smooth(machine, tuple(about["modes"]), params, np.array(about["x0"], dtype=float))
+    return problem_of(flow, description)

@@ -1,0 +1,79 @@
+"""Events that stop motions, and names of states.
+
+Stuart-Landau's oscillator has the cycle x^2 + y^2 = mu, which touches x = 3/2 at mu = 9/4.
+"""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.flows.attractors import Stopped
+
+
+def stuart_landau(x, p):
+    square = x[0] ** 2 + x[1] ** 2
+    return [p.mu * x[0] - x[1] - x[0] * square, x[0] + p.mu * x[1] - x[1] * square]
+
+
+def walled(**options):
+    events = {"wall": lambda x, p: 1.5 - x[0]}
+    return cv.FlowProblem(
+        stuart_landau, [0.1, 0.0], {"mu": -0.5}, states=("x", "y"), events=events, **options
+    )
+
+
+def test_a_branch_of_cycles_ends_where_it_touches_an_event():
+    graph = cv.diagram(walled(), over="mu", within=(-1.0, 4.0))
+    (point,) = graph.of_kind("event")
+    assert point.label == "EV1"
+    assert abs(point.value - 2.25) < max(point.location_error, 1e-12) < 1e-5
+    assert "wall" in " ".join(point.remarks)
+    assert graph.branches[point.branch].measure("max x")[-1] == pytest.approx(1.5, abs=1e-7)
+
+
+def test_a_branch_of_equilibria_ends_where_it_meets_an_event():
+    flow = cv.FlowProblem(lambda x, p: [p.a - x[0]], [0.0], {"a": 0.0}, events={"lid": lambda x, p: 1 - x[0]})
+    (point,) = cv.diagram(flow, over="a", within=(-1.0, 4.0)).of_kind("event")
+    assert point.value == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_forced_cycle_ends_where_it_touches_an_event_that_moves():
+    """x' = -x + g cos t has the amplitude g / sqrt 2; the wall stands at 1 + t-periodic 0: touched at g = sqrt 2."""
+    flow = cv.FlowProblem(
+        lambda x, p, t: [-x[0] + p.g * np.cos(t)],
+        [0.0],
+        {"g": 0.5},
+        period=2 * np.pi,
+        events={"wall": lambda x, p, t: 1.0 - x[0]},
+    )
+    (point,) = cv.diagram(flow, over="g", within=(0.1, 3.0)).of_kind("event")
+    assert abs(point.value - np.sqrt(2.0)) < max(point.location_error, 1e-12) < 1e-5
+
+
+def test_motions_stop_at_an_event():
+    flow = walled()
+    with pytest.raises(Stopped, match="the event wall stops the motion"):
+        flow.attractor([0.5, 0.0], mu=3.0)
+    with pytest.raises(Stopped, match="beyond the event wall"):
+        flow.attractor([2.5, 0.0], mu=3.0)
+    population = flow.population("mu", box=[(-1.0, 3.0), (-1.0, 1.0)])
+    motions, index, _ = population.settle(np.array([[0.2, 0.1], [2.5, 0.0]]), 1.0)
+    assert [motions[k].kind for k in index] == ["periodic", "stopped"]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"events": [1]}, "must be functions by name"),
+        ({"events": {"wall": 1}}, "must be a name with a function"),
+        ({"events": {"wall": lambda x, p: x[0]}}, "wall is 0 at x0"),
+        ({"events": {"wall": lambda x, p: x[5]}}, "the event wall fails"),
+        ({"states": ("x",)}, "has 1 names; the flow has 2 states"),
+        ({"states": ("x", "x")}, "'x' is there twice"),
+        ({"states": ("x", "period")}, "that of a measure"),
+        ({"states": "xy"}, "must be names"),
+    ],
+)
+def test_bad_events_and_names_are_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        cv.FlowProblem(stuart_landau, [0.0, 0.0], {"mu": 1.0}, **options)
