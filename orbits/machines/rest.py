@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from orbits.machines.reference.law import LAWS, Law
+from orbits.machines.reference.law import DRIVEN, LAWS, Law
 
 
 class Rest:
@@ -112,4 +112,4 @@ def share_of_the_base(law: Law, periods: int, overlap: float) -> float:
 
 def rest_of(name: str) -> Rest:
     """The rest of the machine called `name`."""
-    return (RestOnOscillator if name == "coupled" else Rest)(name)
+    return (RestOnOscillator if name in DRIVEN else Rest)(name)

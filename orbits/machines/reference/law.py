@@ -138,4 +138,6 @@ def _response(mass: Any, force: Any, chi: Any, damping: Any, omega: Any) -> Resp
     )
 
 
+DRIVEN = frozenset({"coupled"})
+"""Machines whose cavity rides on an oscillator."""
 LAWS: dict[str, Callable[[Any], Law]] = {"absorber": absorber, "cavity": cavity, "coupled": coupled}

@@ -17,7 +17,7 @@ from orbits.machines.reference import (
     shaken_motion,
     shaken_stepper,
 )
-from orbits.machines.reference.law import LAWS, Law
+from orbits.machines.reference.law import DRIVEN, LAWS, Law
 from orbits.machines.stepping import FAILED
 
 
@@ -26,7 +26,7 @@ class Reference:
 
     def __init__(self, name: str) -> None:
         self.name, self.law_of = name, LAWS[name]
-        shaken = name != "coupled"
+        shaken = name not in DRIVEN
         self._margins = shaken_margins.margins if shaken else driven_margins.margins
         self._motion: Any = shaken_motion if shaken else driven_motion
         self._launch = legs.launch if shaken else driven_stepper.launch
