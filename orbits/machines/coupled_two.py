@@ -34,7 +34,8 @@ PARAMETERS = {  # name: (usual value, unit, meaning)
     "friction_2": (0.1, "", "Coulomb coefficient"),
     "gravity": (9.81, "m/s^2", ""),
 }
-STATES = {"q": "mm", "x1": "mm", "x2": "mm", "q_rate": "mm/s", "x1_rate": "mm/s", "x2_rate": "mm/s"}
+# millimetres and metres a second: unknowns of like size, as continuation wants them
+STATES = {"q": "mm", "x1": "mm", "x2": "mm", "q_rate": "m/s", "x1_rate": "m/s", "x2_rate": "m/s"}
 
 
 def _motion(state: Any, phase: Any, p: Any, contact: Any) -> tuple[Any, ...]:
@@ -80,6 +81,6 @@ coupled_two = Machine(
     motion=_motion,
     contacts=[*(_wall(absorber, side) for absorber in (1, 2) for side in (1, -1)), _floor(1), _floor(2)],
     mirror={"L1": "R1", "L2": "R2"},
-    starts={name: (-5.0, 5.0) if unit == "mm" else (-500.0, 500.0) for name, unit in STATES.items()},
+    starts={name: (-5.0, 5.0) if unit == "mm" else (-0.5, 0.5) for name, unit in STATES.items()},
     units=STATES | {name: unit for name, (_, unit, _) in PARAMETERS.items() if unit},
 )
