@@ -17,6 +17,7 @@ class Format(StrEnum):
     json = "json"
     graphml = "graphml"
     mat = "mat"
+    latex = "latex"
 
 
 def export(
@@ -30,11 +31,12 @@ def export(
     ] = None,
     trust: TrustOption = False,
 ) -> None:
-    """Write a result for other programs: csv, json, graphml or mat.
+    """Write a result for other programs: csv, json, graphml, mat or latex.
 
     csv has a row per point of every branch: the unknowns u0, u1 ..., then
     multipliers, word, periods and all measures (empty where not defined).
-    mat has the same, a struct per branch; json and graphml are summaries.
+    mat has the same, a struct per branch; json and graphml are summaries,
+    latex tables of branches and special points for booktabs.
 
     The unknowns follow the events in the word's order: at an impact the
     forcing's phase (radians) and the absorber's velocity after it (times
@@ -44,19 +46,21 @@ def export(
     is their mirror image. The stuck absorber has no events: its u are the
     oscillator's sine and cosine (0 in the reduced machine).
     """
-    from contvines.export import check_target
+    from contvines.export import ENDINGS, check_target
     from contvines.export import export as write
 
     if to is None:
         ending = output.suffix.removeprefix(".") if output is not None else ""
+        ending = next((form for form, own in ENDINGS.items() if own == ending), ending)
         if ending not in Format.__members__:
             raise typer.BadParameter(
                 "the format is missing: --to csv, or a name that tells it, -o results.csv; formats are "
                 + ", ".join(Format)
             )
         to = Format(ending)
-    target = output or beside(file, f".{to.value}")
-    check_target(target, to.value)
+    ending = ENDINGS.get(to.value, to.value)
+    target = output or beside(file, f".{ending}")
+    check_target(target, ending)
     measures = to in (Format.csv, Format.mat)
     graph = load_file(file, trust, measures, charts=True)
     if hasattr(graph, "loci"):

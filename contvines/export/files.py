@@ -2,6 +2,8 @@
 
 import csv
 import math
+import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -9,13 +11,17 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..file_names import refuse_ending
+from ..provenance import provenance
 from .columns import graph_columns, measures_of
+from .latex import write_latex
 from .standard_json import json_text
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
 
-FORMATS = ("csv", "json", "graphml", "mat")
+FORMATS = ("csv", "json", "graphml", "mat", "latex")
+ENDINGS = {"latex": "tex"}
+"""Of files, where they are not called like their format."""
 
 
 def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
@@ -24,7 +30,7 @@ def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
     csv: one row per point of every branch (branch, index, parameter, stable, real, margin, special point,
     unknowns, multipliers, word, periods, and every measure that a branch of the graph has; what is not defined
     is left empty). json: what `contvines show --json` prints. graphml: branches as nodes, switches as edges. mat:
-    one struct of arrays per branch (its measures a struct in it) and per special point. Measures need the
+    one struct of arrays per branch (its measures a struct in it) and per special point. latex: tables of branches and special points (file.tex). Measures need the
     branches' problems: load the graph with them.
 
     Raises
@@ -32,17 +38,18 @@ def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
     ValueError
         If the format is not known, the place cannot be written, or it holds a file of another kind.
     """
-    writers = {"csv": _csv, "json": _json, "graphml": _graphml, "mat": _mat}
+    writers = {"csv": _csv, "json": _json, "graphml": _graphml, "mat": _mat, "latex": write_latex}
     if to is None:
         to = Path(path).suffix.lstrip(".").lower()
+        to = next((form for form, ending in ENDINGS.items() if ending == to), to)
         if to not in writers:
             raise ValueError(
-                f"{path}: a file for other programs ends in .{', .'.join(FORMATS)}; or name the format, to='csv'."
+                f"{path}: a file for other programs ends in .{', .'.join(ENDINGS.get(form, form) for form in FORMATS)}; or name the format, to='csv'."
             )
     if to not in writers:
         raise ValueError(f"--to {to}: there is no such format; choose one of {', '.join(FORMATS)}.")
     path = Path(path)
-    check_target(path, to)
+    check_target(path, ENDINGS.get(to, to))
     try:
         writers[to](graph, path)
     except OSError as error:
@@ -105,7 +112,7 @@ def _written(value: Any) -> Any:
 
 
 def _json(graph: "Graph", path: Path) -> None:
-    path.write_text(json_text(graph.to_dict()) + "\n", encoding="utf-8")
+    path.write_text(json_text({**graph.to_dict(), "made": provenance()}) + "\n", encoding="utf-8")
 
 
 def _graphml(graph: "Graph", path: Path) -> None:
@@ -147,10 +154,12 @@ def _flat(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _mat(graph: "Graph", path: Path) -> None:
+    """Structs of arrays; what JSON holds of a branch, a point or the graph are fields, too."""
     from scipy.io import savemat
 
     branches = {
         b.label: {
+            **_fields(b.to_dict()),
             "points": b.points,
             "values": b.values,
             "tangents": b.tangents,
@@ -162,29 +171,50 @@ def _mat(graph: "Graph", path: Path) -> None:
             "word": str(b.description.get("word", "")),
             "periods": float(b.description.get("periods", np.nan)),
             "measures": measures_of(b),
-            "about": json_text(b.to_dict(), indent=None),
         }
         for b in graph.branches.values()
     }
     special = {
         p.label: {
-            "kind": p.kind,
-            "branch": p.branch,
+            **_fields(p.to_dict()),
             "value": float(p.value),
             "u": p.u,
             "tangent": p.tangent,
             "multipliers": p.multipliers,
-            "real": p.real,
-            "about": json_text(p.to_dict(), indent=None),
         }
         for p in graph.special.values()
     }
-    about = json_text(
-        {"model": graph.model, "parameter": graph.parameter, "finished": graph.finished}, indent=None
-    )
-    switches = json_text([s.to_dict() for s in graph.switches], indent=None)
-    savemat(
-        path,
-        {"branches": branches, "special": special, "switches": switches, "about": about},
-        long_field_names=True,
-    )
+    everything = {
+        "branches": branches,
+        "special": special,
+        "switches": np.array([_fields(s.to_dict()) for s in graph.switches], dtype=object),
+        "model": _fields(graph.model),
+        "settings": _fields(graph.settings),
+        "parameter": graph.parameter,
+        "within": np.array(graph.within),
+        "finished": graph.finished,
+        "made": provenance(),
+    }
+    savemat(path, everything, long_field_names=True)
+
+
+def _fields(data: Mapping[str, Any]) -> dict[str, Any]:
+    """A struct: names that MATLAB takes, no entries of nothing, lists of dicts as cells."""
+    return {
+        re.sub(r"\W", "_", str(name)): _mat_value(value)
+        for name, value in data.items()
+        if value is not None and not str(name).startswith("_")
+    }
+
+
+def _mat_value(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return _fields(value)
+    if isinstance(value, list | tuple):
+        plain = all(isinstance(item, bool | int | float) for item in value)
+        return (
+            np.array(value, dtype=float)
+            if plain
+            else np.array([*map(_mat_value, value), None], dtype=object)[:-1]
+        )
+    return np.nan if value is None else value

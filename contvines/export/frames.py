@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .columns import branch_columns, graph_columns, measures_of
+from .columns import branch_columns, graph_columns, measures_of, parameter_head
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -26,6 +26,31 @@ def graph_frame(graph: Graph) -> Any:
         If pandas is not installed.
     """
     return _pandas().DataFrame(graph_columns(graph)).set_index(["branch", "index"])
+
+
+def points_frame(graph: Graph) -> Any:
+    """The special points, indexed by label: kind, branch, value of the parameter, whether real, criticality, and the branches they lead to.
+
+    Raises
+    ------
+    ValueError
+        If pandas is not installed.
+    """
+    head = parameter_head(graph)
+    rows = [
+        {
+            "label": point.label,
+            "kind": point.kind,
+            "branch": point.branch,
+            head: float(point.value),
+            "real": bool(point.real),
+            "criticality": point.criticality or "",
+            "leads_to": ", ".join(s.target for s in graph.switches if s.point == point.label),
+        }
+        for point in graph.special.values()
+    ]
+    names = ["label", "kind", "branch", head, "real", "criticality", "leads_to"]
+    return _pandas().DataFrame(rows, columns=names).set_index("label")
 
 
 def graph_dataset(graph: Graph) -> Any:

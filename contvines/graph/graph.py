@@ -275,6 +275,12 @@ class Graph(Resumable):
 
         return graph_frame(self)
 
+    def points_to_pandas(self) -> Any:
+        """The special points as a data frame; see :func:`contvines.export.frames.points_frame`."""
+        from ..export.frames import points_frame
+
+        return points_frame(self)
+
     def to_xarray(self) -> Any:
         """All points of all branches as a data set; see :func:`contvines.export.frames.graph_dataset`."""
         from ..export.frames import graph_dataset
@@ -282,7 +288,7 @@ class Graph(Resumable):
         return graph_dataset(self)
 
     def export(self, path: str | Path, to: str | None = None) -> Path:
-        """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat") is read off the name by default.
+        """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat", "latex") is read off the name by default.
 
         Raises
         ------

@@ -10,6 +10,7 @@ import pytest
 from scipy.io import loadmat
 
 from contvines.export import export, json_text
+from contvines.export.latex import cell
 from tests.contvines import fakes
 
 
@@ -100,7 +101,23 @@ def test_mat_is_read_back_by_scipy(graph, tmp_path):
         assert np.array_equal(data["branches"][label]["values"], branch.values)
         assert np.array_equal(np.ravel(data["branches"][label]["multipliers"]), np.ravel(branch.multipliers))
     assert data["special"]["VG1"]["kind"] == "velocity-graze"
-    assert json.loads(data["about"])["model"] == {"name": "pitchfork"}
+    assert data["model"]["name"] == "pitchfork" and data["made"]["contvines"]
+    assert [link["point"] for link in np.atleast_1d(data["switches"])] == [s.point for s in graph.switches]
+
+
+def test_latex_has_a_row_per_branch_and_point(graph, tmp_path):
+    place = export(graph, "latex", tmp_path / "g.tex")
+    text = place.read_text()
+    rows = [line.split(" & ")[0] for line in text.splitlines() if line.endswith(r"\\")]
+    assert rows == ["branch", *graph.branches, "point", *graph.special]
+    assert text.count(r"\begin{tabular}") == text.count(r"\end{tabular}") == 2
+    assert "->" not in text and export(graph, None, tmp_path / "h.tex").exists()
+
+
+def test_numbers_and_signs_in_latex():
+    assert cell("-1.5e-07") == r"$-1.5 \times 10^{-7}$"
+    assert cell("2e+03") == r"$2 \times 10^{3}$"
+    assert cell("max_w 50%") == r"max\_w 50\%"
 
 
 def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):

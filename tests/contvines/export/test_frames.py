@@ -80,3 +80,9 @@ def test_a_chart_as_a_frame_has_every_point_of_every_locus():
         and data["a"].attrs["units"] == "mm"
         and "units" not in data["b"].attrs
     )
+
+
+def test_special_points_as_a_frame(graph):
+    frame = graph.points_to_pandas()
+    assert list(frame.index) == list(graph.special)
+    assert list(frame["branch"]) == [point.branch for point in graph.special.values()]

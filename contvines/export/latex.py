@@ -1,0 +1,63 @@
+"""A graph as LaTeX tables: its branches and its special points, ruled as the package booktabs does."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..graph.table import branches_table, special_table, title
+from ..provenance import as_text, provenance
+from ..text_table import Table
+
+if TYPE_CHECKING:
+    from ..graph.graph import Graph
+
+_SPECIAL = {
+    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
+    "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "->": r"$\to$", "<": r"$<$", ">": r"$>$",
+    "μ": r"$\mu$", "Ω": r"$\Omega$", "ε": r"$\varepsilon$", "λ": r"$\lambda$", "π": r"$\pi$", "²": r"$^2$", "…": r"\dots{}",
+}  # fmt: skip
+_FOUND = re.compile("|".join(re.escape(text) for text in sorted(_SPECIAL, key=len, reverse=True)))
+_NUMBER = re.compile(r"^[-+]?\d+(\.\d+)?(e[-+]?\d+)?$")
+_POWER = re.compile(r"e([-+]?)0*(\d+)$")
+
+
+def write_latex(graph: Graph, path: Path) -> None:
+    """Both tables, to be read with ``\\input``; the preamble needs ``\\usepackage{booktabs}``."""
+    tables = [branches_table(graph)] + ([special_table(graph)] if graph.special else [])
+    lines = [f"% {title(graph)}", f"% {as_text(provenance())}", r"% \usepackage{booktabs}"]
+    for table in tables:
+        lines += ["", *tabular(table)]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def tabular(table: Table) -> list[str]:
+    """A table as a ``tabular``: columns without content are left out, columns of numbers stand at the right."""
+    columns = [c for c, name in enumerate(table.head) if name or any(row[c] for row in table.rows)]
+    sides = ["r" if all(_NUMBER.match(row[c]) for row in table.rows) and table.rows else "l" for c in columns]
+    return [
+        rf"\begin{{tabular}}{{{''.join(sides)}}}",
+        r"\toprule",
+        " & ".join(escaped(table.head[c]) for c in columns) + r" \\",
+        r"\midrule",
+        *(" & ".join(cell(row[c]) for c in columns) + r" \\" for row in table.rows),
+        r"\bottomrule",
+        r"\end{tabular}",
+    ]
+
+
+def cell(text: str) -> str:
+    """A cell; numbers are set as mathematics."""
+    if not _NUMBER.match(text):
+        return escaped(text)
+    return "$" + _POWER.sub(_as_power, text) + "$"
+
+
+def _as_power(found: re.Match[str]) -> str:
+    return rf" \times 10^{{{found[1].lstrip('+')}{found[2]}}}"
+
+
+def escaped(text: str) -> str:
+    """Text as LaTeX prints it."""
+    return _FOUND.sub(lambda found: _SPECIAL[found[0]], text).replace("..", "\\,--\\,")
