@@ -19,6 +19,8 @@ class PageChanged(OSError):
 def page_changed(settings: dict[str, Any]) -> str:
     """A sentence if the page of a stored machine is gone or has changed since; empty if it is as it was."""
     path = Path(settings["page"])
+    if _comes_along(settings):
+        return ""
     if not settings["page"]:
         return "the machine was declared at a prompt, so its page cannot be found again: declare it in a file"
     try:
@@ -31,6 +33,16 @@ def page_changed(settings: dict[str, Any]) -> str:
             "or make the result anew"
         )
     return ""
+
+
+def _comes_along(settings: dict[str, Any]) -> bool:
+    """Whether the machine is one of the package's own: its name says what it is, whatever else its page says now."""
+    path = Path(settings["page"])
+    return settings["object"] in PAGES and path.parts[-3:] == (
+        "orbits",
+        "machines",
+        f"{settings['object']}.py",
+    )
 
 
 def loaded(settings: dict[str, Any]) -> Machine | None:
@@ -53,9 +65,8 @@ def machine_again(settings: dict[str, Any], trust: bool) -> Machine | None:
         If the page is gone or has changed.
     """
     machine = loaded(settings)
-    if machine is None and settings["object"] in PAGES:  # it comes with the package
-        known = page_machine(settings["object"])
-        machine = known if known.page.digest == settings["digest"] else None
+    if machine is None and _comes_along(settings):
+        machine = page_machine(settings["object"])
     if machine is not None or not trust:
         return machine
     problem = page_changed(settings)
