@@ -97,13 +97,29 @@ def suspicious(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
     values = seen.distances
     found = np.zeros((len(lengths), values.shape[1]), dtype=bool)
     if len(lengths) > 1:
+        columns = np.append(np.arange(seen.first_margin), seen.first_margin + _low(seen, lengths))
+        values = values[:, columns]
         three = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
         pair = three[:, :, PAIR]
         three[:, :, PAIR] = np.where(pair > 0.0, np.maximum(pair - UNLIKE * pair.max(axis=0), TINY), pair)
         dip = parabola_dips(three[0], three[1], three[2], lengths[:-1, None], lengths[1:, None])
-        found[:-1] |= dip
-        found[1:] |= dip
+        found[:-1, columns] |= dip
+        found[1:, columns] |= dip
     return found
+
+
+def _low(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
+    """Margins that come near enough to zero for a parabola to pass it: below the lowest of three points it falls by a part of the changes between them.
+
+    That part is at most a quarter of the square of the longer length over the shorter one.
+    """
+    margins = seen.distances[:, seen.first_margin :]
+    with np.errstate(all="ignore"):
+        least = np.fmin.reduce(np.abs(margins), axis=0)
+        change = np.fmax.reduce(np.abs(np.diff(margins, axis=0)), axis=0)
+        uneven = lengths[1:] / lengths[:-1]
+        part = 0.25 * float(np.fmax.reduce(np.fmax(uneven, 1.0 / uneven), initial=1.0)) ** 2
+        return np.flatnonzero(least < 2.0 * part * change)
 
 
 def parabola_dips(
