@@ -98,7 +98,7 @@ PRINTED = {
         "neimark-sacker": ["-0.591650"],
         "period-doubling": ["-0.614955"],
     },
-    "pen": {"period-doubling": ["0.179163"]},
+    "pen": {"period-doubling": ["0.179163"], "symmetry-breaking": ["0.331445", "0.175511"]},
     "brc": {
         "hopf": ["0.513070", "1.02515", "1.59033", "1.97999"],
         "symmetry-breaking": ["1.27121"],
@@ -110,6 +110,11 @@ PRINTED = {
     "san": {"homoclinic": ["0"]},
     "mtn": {"homoclinic": ["0.0672976"]},
     "ops": {"hopf": ["0.937557"], "fold": ["0.921972", "0.928528"]},
+    "torBPC": {
+        "fold": ["-0.584492842"],
+        "neimark-sacker": ["-0.595750404"],
+        "period-doubling": ["-0.614681654"],
+    },
     "adaptx": {"hopf": ["1.000002"], "period-doubling": ["0.630302"]},
     "neural mass": {"hopf": ["-1.85012460", "-1.15105934"]},
     "lorenz 84": {"hopf": ["1.61966", "2.46722", "2.85987"]},

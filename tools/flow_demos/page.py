@@ -17,11 +17,12 @@ Demos whose flows have cycles, begun at an equilibrium or at the cycle on which 
 interval are listed that `cv.diagram` finds to the stated depth, Hopf points and those of cycles. *Own solve*: shooting with scipy's DOP853 at 1e-12 and Newton's method on an extended system
 (`tools/flow_demos/witness.py`, nothing of the package's); homoclinic orbits by bisection along the unstable manifold, saddle-nodes on cycles by the fold of the equilibrium. A dash: not solved anew.
 Printed values of AUTO-07p are those of its own run of the demo; they are on coarse meshes (its Hopf point of `chu` is 1e-4 off).
-Values of MatCont's `torBPC` are not printed here, as the constants to which they belong are not known to us; the demo is run with a3 = 0.32858, b3 = 0.93358 and epsilon = 0.001.
+MatCont's `torBPC` is run with a3 = 0.32858, b3 = 0.93358, beta = 0.5, gamma = -0.6, r = 0.6 and epsilon = 0.001 in z' = y + epsilon, which its own points (0.00125003, -0.001, 0.000525025) solve.
 
 LP fold, BP branch point, SB symmetry breaking, PD period doubling, NS Neimark-Sacker, all of cycles; HB Hopf; HC homoclinic orbit.
 
-Not in the table: AUTO-07p's `brc`, `tor` and `pen`, COCO's `canard`, the forced predator and prey. They take long, or end before the points that are printed.
+Not in the table: AUTO-07p's `brc` and `tor`, COCO's `canard`, the forced predator and prey, which take long, or end before the points that are printed. Of AUTO-07p's `pen` all printed points are found
+(PD 0.179163776268, SB 0.331445240639 and 0.175511713212; printed 0.179163, 0.331445, 0.175511), with two folds within 6e-12 of the period doubling, which the accuracy of these values (1e-11) does not tell from rounding.
 
 | demo | comes with | parameter | point | found | own solve | differ by | printed |
 |---|---|---|---|---|---|---|---|"""
