@@ -67,8 +67,8 @@ def evidence(
     """
     with np.errstate(all="ignore"):
         sizes = sizes_by_sort(engine, rows)
-        past = np.array([(size > PAST).sum(axis=1) for size in sizes])
-        near = np.array([np.fmin.reduce(np.abs(size), axis=1, initial=np.inf) for size in sizes])
+        past = (sizes > PAST).sum(axis=2)
+        near = np.fmin.reduce(np.abs(sizes), axis=2, initial=np.inf)
         told = (near > PAST) & (near < np.inf)  # on the circle it is rounding
         near = np.where(told, np.where(past % 2, -near, near), np.nan)
         slopes = np.where(np.abs(slopes) > flat, slopes, np.nan)

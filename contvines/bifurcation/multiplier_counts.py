@@ -13,8 +13,8 @@ from ..continuation.engine import Engine
 PAST = 1e-10  # multipliers of a conservative system lie on the circle up to roundoff: that is no crossing
 
 
-def sizes_by_sort(engine: Engine, rows: np.ndarray) -> list[np.ndarray]:
-    """How far past the circle multipliers are, shape (..., m): real ones near 1, near -1, and complex pairs; NaN where they are of another sort.
+def sizes_by_sort(engine: Engine, rows: np.ndarray) -> np.ndarray:
+    """How far past the circle multipliers are, shape (3, ..., m): real ones near 1, near -1, and complex pairs; NaN where they are of another sort.
 
     As logarithms; for flows real parts (there is nothing near -1). Where only branch points are looked for ("real") all count as real, so
     that a double one, which rounding makes a pair or two, counts twice either way.
@@ -30,12 +30,12 @@ def sizes_by_sort(engine: Engine, rows: np.ndarray) -> list[np.ndarray]:
             sorts = (
                 (real, none, im > 0.0) if kind == "flow" else (np.full_like(real, kind == "real"), none, none)
             )
-        return [np.where(sort, size, np.nan) for sort in sorts]
+        return np.where(np.array(sorts), size, np.nan)
 
 
 def counts(engine: Engine, rows: np.ndarray) -> np.ndarray:
     """How many multipliers are past the circle: real ones past 1, past -1, and complex pairs; shape (..., 3)."""
-    return np.stack([(size > PAST).sum(axis=-1) for size in sizes_by_sort(engine, rows)], axis=-1)
+    return np.moveaxis((sizes_by_sort(engine, rows) > PAST).sum(axis=-1), 0, -1)
 
 
 def balance(engine: Engine, rows: np.ndarray) -> np.ndarray:
