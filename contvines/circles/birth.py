@@ -11,8 +11,9 @@ from ..bifurcation.normal_forms.criticality import strong_resonance
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..problems.abilities import Adaptive
 from .invariance import Curve, Frame
-from .section import section_of, slopes
+from .section import Imaged, Section, section_of, slopes
 
 
 class Birth(NamedTuple):
@@ -47,15 +48,24 @@ class Birth(NamedTuple):
         return Curve(points, self.rotation, self.value(amplitude))
 
 
-def born(point: SpecialPoint) -> Birth:
-    """The normal form of the circles beside a point.
+def anchored(point: SpecialPoint) -> Any:
+    """The problem of a point; of cycles on a mesh the one that begins with the point, across whose cycle sections are taken."""
+    problem: Any = point.problem
+    if not isinstance(problem, Adaptive):
+        return problem
+    own: Any = problem
+    return own.with_unknowns(point.u, float(point.value), own.intervals, own.copies)
+
+
+def born(point: SpecialPoint, problem: Any) -> Birth:
+    """The normal form of the circles beside a point, whose problem is that of `anchored`.
 
     Raises
     ------
     ValueError
         If it does not decide where they are.
     """
-    problem, u, p = point.problem, point.u, float(point.value)
+    u, p = point.u, float(point.value)
     multiplier, growth = _crossing(point)
     full = complex(np.asarray(problem.to_multipliers(np.array([multiplier])))[0])
     resonance = strong_resonance(full)
@@ -63,32 +73,44 @@ def born(point: SpecialPoint) -> Birth:
         raise ValueError(
             f"{point.label} is at the strong resonance {resonance}: no single circle is born there; move a second parameter"
         )
-    forms = Forms(problem, u, p)
-    found, _ = forms.lyapunov(multiplier)
-    if not abs(found.value) > 2.0 * found.error:
-        raise ValueError(
-            f"{point.label}: its first Lyapunov coefficient is zero within its error, so no side is known"
-        )
-    if growth == 0.0:
-        raise ValueError(f"{point.label}: the multipliers only touch the unit circle there")
     section = section_of(problem, p)
     centre = section.through(u)
     size = float(np.linalg.norm(centre)) or 1.0
-    matrix = slopes(section, centre, 1e-6 * size)
+    known = isinstance(section, Imaged)
+    matrix = section.images(centre[None])[1][0] if known else slopes(section, centre, 1e-6 * size)
     values, right = np.linalg.eig(matrix)
     place = int(np.argmin(np.abs(values - full)))
     vector = right[:, place] / np.linalg.norm(right[:, place])
     left = np.linalg.inv(right)[place].conj()
     left = left / np.vdot(left, vector).conj()
-    q = forms.null(multiplier / abs(multiplier))[0] * forms.units
-    h = 1e-6 * (float(np.linalg.norm(u)) or 1.0)
-    image = sum(
-        unit * (section.through(u + h * part) - section.through(u - h * part)) / (2.0 * h)
-        for unit, part in ((1.0, np.real(q)), (1j, np.imag(q)))
-    )
+    if isinstance(section, Imaged):
+        value, _ = problem.normal_form("neimark-sacker", u, p, multiplier) or (0.0, 0.0)
+        decided, amplitude = bool(value), 1.0 / section.length(vector)
+    else:
+        forms = Forms(problem, u, p)
+        found, _ = forms.lyapunov(multiplier)
+        value, decided = found.value, abs(found.value) > 2.0 * found.error
+        amplitude = float(np.abs(np.vdot(left, _image(section, forms, multiplier, u))))
+    if not decided:
+        raise ValueError(
+            f"{point.label}: its first Lyapunov coefficient is zero within its error, so no side is known"
+        )
+    if growth == 0.0:
+        raise ValueError(f"{point.label}: the multipliers only touch the unit circle there")
     frame = Frame(left, size, max(abs(p), 1e-3), p)
     turns = float(np.angle(full)) / (2.0 * np.pi)
-    return Birth(p, found.value, growth, turns, vector, frame, centre, float(np.abs(np.vdot(left, image))))
+    return Birth(p, value, growth, turns, vector, frame, centre, amplitude)
+
+
+def _image(section: Section, forms: Forms, multiplier: complex, u: np.ndarray) -> np.ndarray:
+    """The critical vector of the unknowns as a direction of points of the section."""
+    q = forms.null(multiplier / abs(multiplier))[0] * forms.units
+    h = 1e-6 * (float(np.linalg.norm(u)) or 1.0)
+    along = [
+        (section.through(u + h * part) - section.through(u - h * part)) / (2.0 * h)
+        for part in (np.real(q), np.imag(q))
+    ]
+    return along[0] + 1j * along[1]
 
 
 def _crossing(point: SpecialPoint) -> tuple[complex, float]:

@@ -15,7 +15,7 @@ from ..problems.abilities import notation_of
 from ..problems.registry import without_problem
 from .along import Reach, followed
 from .averages import rotation_number
-from .birth import Birth, born
+from .birth import Birth, anchored, born
 from .circle import Circle, Circles
 from .invariance import Curve, between
 from .section import Section, section_of
@@ -70,7 +70,8 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         raise ValueError(without_problem(point.label))
     if count < 1:
         raise ValueError(f"count = {count} must be a whole number of at least 1")
-    birth = born(point)
+    problem = anchored(point)
+    birth = born(point, problem)
     side = 1.0 if birth.value(1.0) > point.value else -1.0
     if to is not None and not (to - point.value) * side > 0.0:
         raise ValueError(
@@ -79,7 +80,7 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         )
 
     def section(p: float) -> Section:
-        return section_of(point.problem, p)
+        return section_of(problem, p)
 
     largest = REACH * birth.frame.size if to is None else birth.amplitude(to)
     found, ended = followed(section, birth, Reach(largest, to, side, count, point.parameter))
@@ -145,7 +146,7 @@ def _displacements(
 def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:
     """Whether a motion that is displaced outwards comes back to the circle."""
     rate = 2.0 * abs(birth.growth * (curve.value - birth.p)) or 1e-3
-    count = int(min(PATIENCE, max(200, 2.0 / rate)))
+    count = int(min(_returns(here, PATIENCE), max(200, 2.0 / rate)))
     start = curve.points[0] + DISPLACED * (curve.points[0] - centre)
     distances = _displacements(here, curve, birth, centre, start)
     logs = np.empty(0)
@@ -164,6 +165,11 @@ def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> 
         asked = min(2 * asked, count)
 
 
+def _returns(here: Section, most: int) -> int:
+    """Returns of a simulation, as many as its section has time for."""
+    return min(most, getattr(here, "returns_watched", most))
+
+
 def _slowest(rotation: float) -> float:
     """Turns per return of the slow drift beside a resonance, where a displacement grows and shrinks once in a turn."""
     drifts = [abs(q * rotation - round(q * rotation)) for q in range(1, RESONANCES + 1)]
@@ -172,12 +178,13 @@ def _slowest(rotation: float) -> float:
 
 def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, radius: float) -> float | None:
     """Rotation number of a simulation on the circle; None where it leaves the circle."""
-    x, z, asked = curve.points[0], np.empty(RETURNS, dtype=complex), FIRST
+    most = _returns(here, RETURNS)
+    x, z, asked = curve.points[0], np.empty(most, dtype=complex), FIRST
     outline = curve.at(np.linspace(0.0, 2.0 * np.pi, 721))
-    for i in range(RETURNS):
+    for i in range(most):
         x = here.step(x)
         z[i] = (x - centre) @ birth.frame.left.conj()
-        if i + 1 < min(asked, RETURNS):
+        if i + 1 < min(asked, most):
             continue
         asked *= 2
         if not np.isfinite(z[: i + 1]).all():
@@ -185,7 +192,7 @@ def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, ra
         if np.sqrt(((outline - x) ** 2).sum(axis=1).min()) > 0.02 * radius:
             return None
         turns, error = rotation_number(z[: i + 1], curve.rotation)
-        if error < SETTLED or i + 1 == RETURNS:
+        if error < SETTLED or i + 1 == most:
             return turns
     return None
 
@@ -198,7 +205,8 @@ def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birt
     here, x = section(value), last.points[0]
     far = 1e3 * birth.frame.size
     same = 1e-8 * birth.frame.size
-    for asked in (PATIENCE // 20, PATIENCE // 4, PATIENCE):
+    patience = _returns(here, PATIENCE)
+    for asked in (patience // 20, patience // 4, patience):
         for _ in range(asked):
             x = here.step(x)
             if not np.linalg.norm(x) < far:

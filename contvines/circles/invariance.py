@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .section import Section, Varied, slopes
+from .section import Imaged, Section, Varied, slopes
 
 STEP = 1e-6  # of differences of the simulated map, relative to the size of the section and of the parameter
 INSIDE = 0.01  # ... and at most, relative to the size of the circle and to the distance from its birth
@@ -113,6 +113,8 @@ def first_harmonic(curve: Curve, frame: Frame) -> complex:
 def _images(section: Section, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The next points (n, d), with their derivatives by the points (n, d, d) and by the parameter (n, d) where the section knows them."""
     n, d = points.shape
+    if isinstance(section, Imaged):
+        return section.images(points)
     by_state, by_value = np.full((n, d, d), np.nan), np.full((n, d), np.nan)
     if not isinstance(section, Varied):
         return np.array([section.step(x) for x in points]), by_state, by_value

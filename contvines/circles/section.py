@@ -10,6 +10,8 @@ The contract, in words:
 5. ``section.step(x)`` is the next point, one period of the cycle later, shape (d,); NaN where the motion does not come back.
 6. ``section.varied(x)``, where a section has it: the next point with its derivatives by x, shape (d, d), and by the parameter, shape
    (d,); NaN where they are not known. Without it differences of ``step`` stand in.
+   ``section.images(points)`` does that of many points at once; of flows it is the map of which the cycle is a fixed point exactly, while ``step``
+   is a simulation. ``section.returns_watched`` are the returns of a simulation at most, where each takes long.
 7. ``section.struck(x, near)``, where a section has it: of a point at a wall, or no farther from it than `near`, the other point there from
    which the motion goes on alike (just before and just after an impact), and the direction away from the wall; None elsewhere.
 """
@@ -45,6 +47,15 @@ class Varied(Protocol):
 
 
 @runtime_checkable
+class Imaged(Protocol):
+    """A section that knows the steps of many points, with their derivatives."""
+
+    def images(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+
+    def length(self, direction: np.ndarray) -> float: ...
+
+
+@runtime_checkable
 class Walled(Protocol):
     """A section that knows the walls at which motions rebound."""
 
@@ -61,7 +72,7 @@ def section_of(problem: Problem, p: float) -> Section:
     """
     if not isinstance(problem, Sectioned) or problem.spectrum != "map":
         raise ValueError(
-            f"{type(problem).__name__} has no motions that can be simulated period by period, so no circles; maps and machines have"
+            f"{type(problem).__name__} has no motions that can be simulated period by period, so no circles; maps, machines and flows have"
         )
     return problem.section(p)
 

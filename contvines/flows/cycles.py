@@ -22,6 +22,7 @@ from .forms import LARGEST, cubic, neimark_sacker
 from .kernels import KERNELS, SPARSE, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
 from .returns import ReturnMap
+from .section import FlowSection
 from .sparse import LEADING, SparseEquations
 from .sparse import distance_to_rest as rest_of_sparse
 from .witness import Witnessed
@@ -590,6 +591,14 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
     def return_map(self, u: np.ndarray, p: float) -> ReturnMap:
         """The map of which a cycle is a fixed point."""
         return ReturnMap(self, u, p)
+
+    def section(self, p: float) -> FlowSection:
+        """Motions beside the cycle with which the problem begins, once per period."""
+        if self._returns is None:
+            self._returns = ReturnMap(self, self.u0, self.p0)
+        return FlowSection(self._returns, p)
+
+    _returns: ReturnMap | None = None
 
     # ------------------------------------------------------------------ identity
     def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:

@@ -1,0 +1,93 @@
+"""Tori of flows: invariant circles of return maps.
+
+Langford's system without the term that breaks its symmetry: r' = (z - lambda) r, z' = a + z - z^3/3 - r^2 (1 + rho z), phi' = w. Its cycle is an equilibrium of
+(r, z), its torus a cycle of (r, z) with period T: the rotation number is that of (2 pi / w) / T turns per return.
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import contvines as cv
+
+A, RHO, W = 0.6, 0.25, 3.5
+
+
+def langford(x, p):
+    square = x[0] ** 2 + x[1] ** 2
+    return [
+        (x[2] - p.q) * x[0] - W * x[1],
+        W * x[0] + (x[2] - p.q) * x[1],
+        A + x[2] - x[2] ** 3 / 3 - square * (1 + RHO * x[2]),
+    ]
+
+
+def planar(t, y, q):
+    r, z = y
+    return [(z - q) * r, A + z - z**3 / 3 - r * r * (1 + RHO * z)]
+
+
+def radius(z):
+    return np.sqrt((A + z - z**3 / 3) / (1 + RHO * z))
+
+
+def birth():
+    return brentq(lambda z: 1 - z * z - RHO * radius(z) ** 2, 0.3, 1.0)
+
+
+def planar_period(q):
+    def upwards(t, y, q):
+        return y[1] - q
+
+    upwards.direction = 1.0
+    run = solve_ivp(
+        planar,
+        (0.0, 4000.0),
+        [radius(q), q + 0.05],
+        args=(q,),
+        events=upwards,
+        method="DOP853",
+        rtol=1e-11,
+        atol=1e-12,
+    )
+    return np.diff(run.t_events[0][-3:])[-1]
+
+
+def test_a_torus_of_langfords_system():
+    flow = cv.FlowProblem(langford, [0.8, 0.0, 0.9], {"q": 0.95}, states=("x", "y", "z"))
+    graph = cv.diagram(flow.attractor(q=0.95), over="q", within=(0.8, 1.0))
+    (point,) = graph.of_kind("neimark-sacker")
+    assert point.value == pytest.approx(birth(), abs=1e-10)
+    found = point.circles(count=1)
+    last = found.circles[-1]
+    assert last.value < point.value and last.stable and last.replay < 1e-7
+    turns = (2 * np.pi / W) / planar_period(last.value)
+    assert last.rotation % 1.0 == pytest.approx(
+        turns % 1.0, abs=1e-8
+    ) or -last.rotation % 1.0 == pytest.approx(turns % 1.0, abs=1e-8)
+    # close to its birth the torus has the size that the normal form says
+    assert found.circles[0].radius == pytest.approx(found.circles[0].predicted, rel=1e-3)
+    assert set(found.names) < {"x", "y", "z"}
+
+
+def test_a_torus_of_a_forced_oscillator():
+    """Two oscillators that do not know of one another: Stuart-Landau's, and a forced linear one. Circle of radius sqrt(m), rotation w P / 2 pi."""
+
+    def rate(x, p, t):
+        square = x[0] ** 2 + x[1] ** 2
+        return [p.m * x[0] - x[1] - x[0] * square, x[0] + p.m * x[1] - x[1] * square, -x[2] + np.cos(1.7 * t)]
+
+    flow = cv.FlowProblem(rate, [0.0, 0.0, 0.0], {"m": -0.2}, period=2 * np.pi / 1.7, states=("u", "v", "w"))
+    times = np.linspace(0.0, 2 * np.pi / 1.7, 60)
+    states = np.column_stack(
+        [0 * times, 0 * times, (np.cos(1.7 * times) + 1.7 * np.sin(1.7 * times)) / (1 + 1.7**2)]
+    )
+    graph = cv.diagram(flow.cycle(times, states), over="m", within=(-0.5, 0.5))
+    (point,) = graph.of_kind("neimark-sacker")
+    assert point.value == pytest.approx(0.0, abs=1e-9)
+    found = point.circles(count=1)
+    last = found.circles[-1]
+    assert last.radius == pytest.approx(np.sqrt(last.value), rel=1e-6)
+    rotation = 1.0 / 1.7
+    assert min(abs(last.rotation % 1.0 - rotation), abs(-last.rotation % 1.0 - rotation)) < 1e-9
