@@ -7,7 +7,7 @@ Langford's system without the term that breaks its symmetry: r' = (z - lambda) r
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root
 
 import contvines as cv
 
@@ -36,22 +36,17 @@ def birth():
     return brentq(lambda z: 1 - z * z - RHO * radius(z) ** 2, 0.3, 1.0)
 
 
-def planar_period(q):
-    def upwards(t, y, q):
-        return y[1] - q
+def planar_period(q, guess, size):
+    """By shooting from the largest or smallest r, where z = q; the equilibrium is divided out."""
 
-    upwards.direction = 1.0
-    run = solve_ivp(
-        planar,
-        (0.0, 4000.0),
-        [radius(q), q + 0.05],
-        args=(q,),
-        events=upwards,
-        method="DOP853",
-        rtol=1e-11,
-        atol=1e-12,
-    )
-    return np.diff(run.t_events[0][-3:])[-1]
+    def gap(unknown):
+        period, away = unknown
+        end = solve_ivp(
+            planar, (0.0, period), [radius(q) + away, q], args=(q,), method="DOP853", rtol=1e-12, atol=1e-14
+        )
+        return (end.y[:, -1] - [radius(q) + away, q]) / away
+
+    return root(gap, [guess, size], tol=1e-13).x[0]
 
 
 def test_a_torus_of_langfords_system():
@@ -62,10 +57,10 @@ def test_a_torus_of_langfords_system():
     found = point.circles(count=1)
     last = found.circles[-1]
     assert last.value < point.value and last.stable and last.replay < 1e-7
-    turns = (2 * np.pi / W) / planar_period(last.value)
-    assert last.rotation % 1.0 == pytest.approx(
-        turns % 1.0, abs=1e-8
-    ) or -last.rotation % 1.0 == pytest.approx(turns % 1.0, abs=1e-8)
+    turns = last.rotation % 1.0
+    turns = min(turns, 1.0 - turns)
+    period = planar_period(last.value, (2 * np.pi / W) / turns, last.radius)
+    assert (2 * np.pi / W) / period == pytest.approx(turns, abs=1e-8)
     # close to its birth the torus has the size that the normal form says
     assert found.circles[0].radius == pytest.approx(found.circles[0].predicted, rel=1e-3)
     assert set(found.names) < {"x", "y", "z"}
