@@ -35,6 +35,12 @@ def transient(
             "--record", metavar="FILE.csv", help="Time and acceleration of the base, a column each."
         ),
     ] = None,
+    start_up: Annotated[
+        bool,
+        typer.Option(
+            "--start-up", help="From rest, from the moment at which the study's own excitation begins."
+        ),
+    ] = False,
     tail: Annotated[
         str | None,
         typer.Option("--tail", metavar="TIME", help='Go on after the record with the base at rest, "2 s".'),
@@ -49,7 +55,7 @@ def transient(
     size: SizeOption = None,
     json_: JsonOption = False,
 ) -> None:
-    """A shock, a recorded base motion or a free decay, compared with the bare oscillator.
+    """A start-up, a shock, a recorded base motion or a free decay, compared with the bare oscillator.
 
     The record is a CSV of time and acceleration; its heads may name units (time [ms], acceleration [g]).
     """
@@ -57,11 +63,11 @@ def transient(
     from contvines.command.study import read_study
     from contvines.export import check_target
 
-    if (release is None) == (record is None):
-        both = "both are" if release is not None else "neither is"
+    if [release is not None, record is not None, start_up].count(True) != 1:
+        given = "none is" if release is None and record is None and not start_up else "more than one is"
         raise ValueError(
-            f'--release and --record: {both} given; give one of them: --release "5 mm" for a free decay, '
-            "--record shock.csv for a measured motion of the base."
+            f'--release, --record and --start-up: {given} given; give one of them: --release "5 mm" for a free decay, '
+            "--record shock.csv for a measured motion of the base, --start-up for the study's own excitation."
         )
     if tail is not None and record is None:
         raise ValueError(f"--tail {tail}: this goes with --record.")
@@ -74,7 +80,10 @@ def transient(
         raise ValueError(
             f"{study}: [model] name = {read.name!r}: transients are those of the built-in machine 'coupled'."
         )
-    found = _released(read, release) if release is not None else _recorded(read, record, tail)  # type: ignore[arg-type]
+    if start_up:
+        found = _started(read)
+    else:
+        found = _released(read, release) if release is not None else _recorded(read, record, tail)  # type: ignore[arg-type]
     tell(found, found.as_json() if json_ else None)
     if output is not None:
         found.write(output)
@@ -170,6 +179,53 @@ def _released(study: Study, text: str) -> Told:
         ("bare_energy", "", decay.bare),
     ]
     return Told(f"Free decay of {study.path.name} from {text}", rows, series)
+
+
+def _started(study: Study) -> Told:
+    import numpy as np
+
+    from contvines.command.measured import scales
+    from orbits.design.start_up import start_up
+    from orbits.machines.physical import units
+
+    model, params = study.model, study.model.vector(study.loose)
+    length, unit, seconds, second = scales(model, params)
+    try:
+        seen = start_up(model, params)
+    except ValueError as error:
+        raise ValueError(f"{study.path}: --start-up: {error}.") from None
+    gauges = model.tables.GAUGES if unit else {}
+    speed = units.unit_of(gauges["velocity"]) if unit else ""
+    over, bare = np.abs(seen.oscillator), np.abs(seen.bare)
+    fastest = float(seen.impact_speeds.max(initial=0.0)) * float(model.gauge("velocity", params))
+    rows = [
+        ("peak", float(over.max()) * length, unit, "largest displacement of the oscillator"),
+        ("peak_at", float(seen.times[int(over.argmax())]) * seconds, second, "when"),
+        ("bare_peak", float(bare.max()) * length, unit, "the same without absorber"),
+        ("settled", seen.settled * seconds, second, "time to settle to 5 % (no number: it does not)"),
+        ("bare_settled", seen.bare_settled * seconds, second, "the same without absorber"),
+        ("impacts", float(seen.impact_times.size), "", "how many"),
+        ("fastest_impact", fastest, speed, "largest impact speed"),
+        (
+            "worst_relative",
+            float(np.abs(seen.relative).max()) * length,
+            unit,
+            "largest relative displacement",
+        ),
+        (
+            "absorber_share",
+            seen.absorber_share,
+            "",
+            "share of the dissipated energy that impacts and friction take",
+        ),
+    ]
+    series = [
+        ("time", second, seen.times * seconds),
+        ("oscillator", unit, seen.oscillator * length),
+        ("relative", unit, seen.relative * length),
+        ("bare_oscillator", unit, seen.bare * length),
+    ]
+    return Told(f"Start-up of {study.path.name} from rest", rows, series, seen.impact_times * seconds)
 
 
 def _recorded(study: Study, path: Path, tail: str | None) -> Told:

@@ -53,7 +53,7 @@ def test_a_free_decay(run, study, tmp_path):
 @pytest.mark.parametrize(
     ("options", "data", "says"),
     [
-        ([], None, "neither is given"),
+        ([], None, "none is given"),
         (["--release", "0 mm"], None, "give a number other than 0"),
         (["--release", "12"], None, "has no unit"),
         (["--release", "fast"], None, "this is no length"),
@@ -79,3 +79,14 @@ def test_a_machine_without_oscillator_is_refused(run, tmp_path):
         '[start]\nword = "LR"\namplitude = 0.5\n[continue]\nparameter = "amplitude"\nwithin = [0.3, 0.8]\n'
     )
     assert "has no oscillator" in run("transient", tmp_path / "s.toml", "--release", "1")[2]
+
+
+def test_start_up_tells_the_first_periods(run, study, tmp_path):
+    done = run("transient", study, "--start-up", "--json", "-o", tmp_path / "start.csv")
+    assert done[0] == 0, done[2]
+    told = json.loads(done[1])
+    rows = np.genfromtxt(tmp_path / "start.csv", delimiter=",", skip_header=1)
+    assert told["peak"] == pytest.approx(np.abs(rows[:, 1]).max())
+    assert told["bare_peak"] == pytest.approx(np.abs(rows[:, 3]).max())
+    assert told["worst_relative"] == pytest.approx(np.abs(rows[:, 2]).max())
+    assert told["bare_settled"] > 0.0
