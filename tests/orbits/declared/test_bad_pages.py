@@ -41,7 +41,6 @@ def stepped(state, phase, p, contact):
 
 
 BAD = {
-    "none": ({"contacts": []}, r"contacts = \[\]: give at least one Wall, DryFriction or Switch"),
     "rates": ({"motion": lambda s, ph, p, c: (s.v,)}, "motion returns 1 rate for 2 states .x, v.; return one rate per state"),
     "parameter": ({"motion": lambda s, ph, p, c: (s.v, p.mass)}, "p.mass: the page declares no such parameter; it has forcing"),
     "branching": ({"motion": stepped}, r"a comparison \(>\) of a symbol has no single formula.*declare a Switch"),
