@@ -1,4 +1,4 @@
-"""Two absorbers on one oscillator: against a plain integration of Newton's laws, a page written anew without units, and the machine with one absorber."""
+"""Two absorbers on one oscillator: against a plain integration of Newton's laws with events, and the machine with one absorber."""
 
 import json
 import math
