@@ -29,7 +29,7 @@ from .witness import Witnessed
 
 SAME = 1e-7  # points closer than this, in units of the scale, are one
 AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
-NEARLY_AT_REST = 1e-4  # ... and where a branch comes to an end there, known to fewer digits, of this size
+NEARLY_AT_REST = 1e-3  # ... and where a branch comes to an end there, known to fewer digits, of this size
 ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
 CLOSE = 1e-6  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
 LONGEST = 1e3  # times the first period: a branch whose period has grown so much ends as a homoclinic orbit

@@ -8,6 +8,7 @@ import importlib.util
 import sys
 import time
 
+from orbits import Orbit
 from tools.pages.independent import deviation
 from tools.pages.pages import PAGES
 
@@ -28,6 +29,8 @@ def deviations(graph) -> dict[str, float]:
         problem = graph.branches[point.branch].problem
         if point.kind != "end" and problem.dimension == len(point.u):
             orbit = problem.orbit(point.u, point.value)
+            if not isinstance(orbit, Orbit):  # a cycle of the smooth flow: judged by shooting elsewhere
+                continue
             found[label] = deviation(orbit, orbit.model.equations.formulas_of_motion)
     return found
 
