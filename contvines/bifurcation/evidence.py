@@ -75,11 +75,15 @@ def evidence(
         sides = [np.nan_to_num(np.sign(slopes)), np.sign(signs), *(past + 1)]
         tests = [*own.T, balance(engine, rows)] if engine.exchanges else own.T
         sides += [np.where(values >= 0.0, 1, -1) for values in tests]
-        margins = rows[:, 2 * engine.m :] - MARGIN
+        first = 5 + own.shape[1]
+        distances = np.empty(
+            (len(rows), first + rows.shape[1] - 2 * engine.m)
+        )  # of long branches the margins are many
+        margins = np.subtract(rows[:, 2 * engine.m :], MARGIN, out=distances[:, first:])
         smallest = np.fmin.reduce(margins, axis=1, initial=np.inf)
-    distances = np.column_stack([slopes, *near, own, smallest, margins])
+    distances[:, :first] = np.column_stack([slopes, *near, own, smallest])
     pairs = np.asarray(np.isfinite(sizes[2]).any(axis=1))
-    return Evidence(np.column_stack(sides).astype(int), distances, smallest < 0.0, pairs, 5 + own.shape[1])
+    return Evidence(np.column_stack(sides).astype(int), distances, smallest < 0.0, pairs, first)
 
 
 def filled(sides: np.ndarray) -> np.ndarray:

@@ -54,7 +54,10 @@ class SymmetryTest:
         """u - T(u) for points of shape (n, N) at parameter values of shape (n,)."""
         if self.affine is not None:
             order, signs, constant = self.affine
-            gap = points - (signs * points[:, order] + constant)
+            gap = np.take(points, order, axis=1)  # of long branches a large array: worked on in place
+            gap *= signs
+            gap += constant
+            np.subtract(points, gap, out=gap)
         else:
             gap = points - np.array([image_of(self.symmetry, u, float(p)) for u, p in zip(points, values)])
         if self.shift is not None:

@@ -132,7 +132,6 @@ def _chunks(
             # a step that failed at once is nothing to keep: a start that is refused leaves no journal
             if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
                 values: dict[str, Any] = {part: getattr(chunk, part) for part in source.Points._fields}
-                values["rows"] = chunk.rows.copy()
                 journal.record(name, {**values, "status": int(chunk.status), "h": h})
         chunk.before = history[-2] if len(history) > 1 else None
         retrace = yield chunk
