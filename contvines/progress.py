@@ -93,15 +93,14 @@ class _Log:
 
 
 @contextmanager
-def counted(total: int, what: str, asked: Tell | bool | None = None) -> Iterator[Tell | None]:
-    """Progress of so many pieces of work, told after each; `asked` as for :func:`shown`.
+def counted(total: int, what: str, asked: Tell | bool | None = None, done: int = 0) -> Iterator[Tell | None]:
+    """Progress of so many pieces of work, told after each; `asked` as for :func:`shown`, `done` that an earlier run has done.
 
     No thread draws by itself here: beside one, worker processes could not be copies of this process.
     """
     if callable(asked) or asked is False or os.environ.get("CONTVINES_PROGRESS") == "off":
         yield asked if callable(asked) else None
         return
-    done = 0
 
     def count(_: Any) -> str:
         return f"{done} of {total} {what}"
@@ -122,7 +121,7 @@ def counted(total: int, what: str, asked: Tell | bool | None = None) -> Iterator
         from rich.progress import Progress
 
         with Progress(console=Console(stderr=True), transient=True, auto_refresh=False) as progress:
-            task = progress.add_task(what, total=total)
+            task = progress.add_task(what, total=total, completed=done)
             yield lambda _: progress.update(task, advance=1, refresh=True)
     else:
         yield telling(_Log(count)) if asked else None

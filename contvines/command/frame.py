@@ -122,21 +122,6 @@ def working(note: str, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
         yield progress
 
 
-@contextmanager
-def counting(name: str, total: int, quiet: bool) -> Iterator[Callable[[int], None]]:
-    """What counts finished pieces of work; a bar on stderr if that is a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda done: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    # no thread that draws by itself: beside one, workers could not be copies of this process
-    with Progress(console=Console(stderr=True), transient=True, auto_refresh=False) as progress:
-        task = progress.add_task(name, total=total)
-        yield lambda done: progress.update(task, advance=done, refresh=True)
-
-
 def finished_of(target: Path, fingerprint: str, quiet: bool, *, problems: bool) -> Any:
     """The finished result of a run in its file; None if the run is still to be done, or to be gone on with.
 

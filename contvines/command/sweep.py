@@ -9,7 +9,6 @@ from contvines.command.frame import (
     Interrupted,
     beside,
     check_plot,
-    counting,
     draw,
     held,
     refuse_source,
@@ -76,6 +75,7 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
 
     from contvines.command.compose import machine
     from contvines.command.sweep_rows import FIRST, Rows, kept
+    from contvines.progress import counted
     from orbits.attractors.search import measure_names
     from orbits.attractors.sweep import sweep as simulate
 
@@ -84,15 +84,18 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
     others: dict[str, Any] = {k: v for k, v in study.loose.items() if k != study.parameter}
     names = [n for n in measure_names(model) if n not in FIRST]
-    with Rows(target, study, down, names) as file, counting("sweep", len(values), quiet) as count:
+    with (
+        Rows(target, study, down, names) as file,
+        counted(len(values), "values", not quiet, done=len(file.rows)) as count,
+    ):
         done = len(file.rows)
         if done:
             say(f"{target} is unfinished: going on after {done} of {len(values)} values.", quiet)
-        count(done)
 
         def keep(row: Any) -> None:
             file.keep(kept(row, "down" if down else "up", names))
-            count(1)
+            if count is not None:
+                count(row)
 
         then = "the same command goes on from there, from the state reached" if file.lasting else "no more"
         try:

@@ -219,13 +219,7 @@ def _started(study: Study) -> Told:
             "share of the dissipated energy that impacts and friction take",
         ),
     ]
-    series = [
-        ("time", second, seen.times * seconds),
-        ("oscillator", unit, seen.oscillator * length),
-        ("relative", unit, seen.relative * length),
-        ("bare_oscillator", unit, seen.bare * length),
-    ]
-    return Told(f"Start-up of {study.path.name} from rest", rows, series, seen.impact_times * seconds)
+    return _motion(f"Start-up of {study.path.name} from rest", rows, seen, (length, unit, seconds, second))
 
 
 def _recorded(study: Study, path: Path, tail: str | None) -> Told:
@@ -277,13 +271,19 @@ def _recorded(study: Study, path: Path, tail: str | None) -> Told:
             "share of the dissipated energy that impacts and friction take",
         ),
     ]
+    title = f"{study.path.name} under the base motion of {path.name}, {times.size} instants"
+    return _motion(title, rows, seen, (length, unit, seconds, second))
+
+
+def _motion(
+    title: str, rows: list[tuple[str, float, str, str]], seen: Any, scales: tuple[float, str, float, str]
+) -> Told:
+    """A simulated motion with the absorber and without, in the study's units of length and time."""
+    length, unit, seconds, second = scales
     series = [
         ("time", second, seen.times * seconds),
         ("oscillator", unit, seen.oscillator * length),
         ("relative", unit, seen.relative * length),
         ("bare_oscillator", unit, seen.bare * length),
     ]
-    return Told(
-        f"{study.path.name} under the base motion of {path.name}, {times.size} instants", rows, series,
-        seen.impact_times * seconds,
-    )  # fmt: skip
+    return Told(title, rows, series, seen.impact_times * seconds)

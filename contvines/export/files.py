@@ -30,8 +30,8 @@ def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
     csv: one row per point of every branch (branch, index, parameter, stable, real, margin, special point,
     unknowns, multipliers, word, periods, and every measure that a branch of the graph has; what is not defined
     is left empty). json: what `contvines show --json` prints. graphml: branches as nodes, switches as edges. mat:
-    one struct of arrays per branch (its measures a struct in it) and per special point. latex: tables of branches and special points (file.tex). Measures need the
-    branches' problems: load the graph with them.
+    one struct of arrays per branch (its measures a struct in it) and per special point. latex: tables of branches and
+    special points (file.tex). Measures need the branches' problems: load the graph with them.
 
     Raises
     ------

@@ -19,8 +19,8 @@ from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page import measures
 from orbits.flows.page.cycle_equations import PageEquations
-from orbits.flows.page.solving import newton
 from orbits.flows.protocol import told
+from orbits.flows.solving import newton
 from orbits.integrators.expressions import derivatives, variable, written
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.stored import machine_again
