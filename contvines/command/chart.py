@@ -1,5 +1,6 @@
 """`contvines chart` and `contvines locus`: one or all special points of a diagram followed in a second parameter."""
 
+import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -103,12 +104,14 @@ def chart(
     """Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted."""
     target = place_of(output, file, "-chart.vines")
     check_plot(plot)
-    graph, over, ends = _diagram(file, over, within, trust, fresh)
+    graph, diagram, over, ends = _diagram(file, over, within, trust, fresh)
     refuse_detached(
         graph, *(label for label, point in graph.special.items() if point.kind not in ("end", "user"))
     )
     with held(target, quiet, fresh):
-        found = _chart(graph, over, ends, virtual, target, quiet)
+        found = chart_of(
+            graph, over, ends, virtual, target, quiet, _source(diagram, target, over, ends, virtual)
+        )
     _tell(found, target, plot, quiet)
 
 
@@ -120,18 +123,26 @@ def _tell(found: Any, target: Path, plot: Path | None, quiet: bool) -> None:
     draw(plot, found.plot, quiet)
 
 
-def _chart(graph: Any, over: str, ends: tuple[float, float], virtual: bool, target: Path, quiet: bool) -> Any:
-    """The chart of a diagram: from its file if that is finished, computed else."""
+def chart_of(
+    graph: Any,
+    over: str,
+    ends: tuple[float, float],
+    virtual: bool,
+    target: Path,
+    quiet: bool,
+    source: dict[str, Any] | None,
+) -> Any:
+    """The chart of a diagram: from its file if that is finished, computed else; `source` is kept for `contvines rerun`."""
     from contvines.loci.charting import chart as make
     from contvines.store import Store
 
-    fingerprint = _fingerprint(graph, over, ends, virtual)
+    fingerprint = fingerprint_of(graph, over, ends, virtual)
     found = finished_of(target, fingerprint, quiet, problems=False)
     if found is not None:
         say(f"{target} holds the finished chart; nothing to compute.", quiet)
         return found
     note = f"all finished points are kept in {target}; the same command goes on from there"
-    with Store.attach(target, fingerprint, {"chart": [over, *ends]}) as store:
+    with Store.attach(target, fingerprint, {"chart": [over, *ends], "source": source}) as store:
         with working(note, quiet) as progress:
             found = make(graph, over, ends, virtual=virtual, journal=store, progress=progress)
         store.tidy()
@@ -140,8 +151,8 @@ def _chart(graph: Any, over: str, ends: tuple[float, float], virtual: bool, targ
 
 def _diagram(
     file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, fresh: bool
-) -> tuple[Any, str, tuple[float, float]]:
-    """The diagram to chart, made first if a study is given, and what to chart it over."""
+) -> tuple[Any, Path, str, tuple[float, float]]:
+    """The diagram to chart, made first if a study is given, its file, and what to chart it over."""
     from contvines.command.study import is_database, read_study
 
     if is_database(file):
@@ -150,7 +161,7 @@ def _diagram(
         if over is None or within is None:
             missing = "--over" if over is None else "--within"
             raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8 would do.")
-        return graph, over, interval("--within", within, over, graph.units)
+        return graph, file, over, interval("--within", within, over, graph.units)
     from contvines.command.frame import beside
     from contvines.command.run import diagram
 
@@ -163,14 +174,29 @@ def _diagram(
             "parameter and within."
         )
     diagram(file, quiet=True, fresh=fresh)
-    graph = load_file(beside(file, ".vines"))
+    made = beside(file, ".vines")
+    graph = load_file(made)
     if within is not None:
-        return graph, over, interval("--within", within, over, graph.units)
+        return graph, made, over, interval("--within", within, over, graph.units)
     assert said is not None
-    return graph, over, (said.within[0], said.within[1])
+    return graph, made, over, (said.within[0], said.within[1])
 
 
-def _fingerprint(graph: Any, over: str, within: tuple[float, float], virtual: bool) -> str:
+def _source(
+    diagram: Path, target: Path, over: str, ends: tuple[float, float], virtual: bool
+) -> dict[str, Any] | None:
+    """The study of a diagram, as its file keeps it, and what is charted; None where it keeps none."""
+    from contvines.store import Store
+
+    with Store.open(diagram) as store:
+        kept = (store.study or {}).get("source")
+    if not kept:
+        return None
+    place = os.path.relpath(diagram.absolute().parent / kept["study"], target.absolute().parent)
+    return {**kept, "study": place, "chart": [over, *ends], "virtual": virtual}
+
+
+def fingerprint_of(graph: Any, over: str, within: tuple[float, float], virtual: bool) -> str:
     import hashlib
     import json
 

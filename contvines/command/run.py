@@ -170,7 +170,7 @@ def _run(
     target = place_of(output, path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_plot(plot)
     with held(target, quiet, fresh):
-        graph = _graph(study, command, target, quiet, problems=plot is not None, look=look)
+        graph = graph_of(study, command, target, quiet, problems=plot is not None, look=look)
     if not quiet:
         typer.echo(str(graph))
     if compare and not quiet:
@@ -185,7 +185,7 @@ def _run(
     draw(plot, lambda: _picture(graph, x, y, compare), quiet)
 
 
-def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:
+def graph_of(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:
     """The graph of a study: from its file if that is finished, computed else."""
     from contvines.command.compose import first_orbit, population, run_atlas, run_diagram
     from contvines.store import Store
@@ -197,7 +197,7 @@ def _graph(study: Any, command: str, target: Path, quiet: bool, *, problems: boo
         run = run_atlas if command == "atlas" else run_diagram
         seed = population(study) if command == "atlas" else first_orbit(study)
         note = f"all finished points are kept in {target}; the same command goes on from there"
-        with Store.attach(target, fingerprint, study.describe()) as store:
+        with Store.attach(target, fingerprint, study.kept(command, target)) as store:
             with working(note, quiet) as progress:
                 graph = run(study, seed, journal=store, progress=progress, **alone)
             store.tidy()

@@ -4,6 +4,7 @@ Every value that cannot be used is refused with a sentence that names the field,
 all such sentences of one study are reported together.
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ def read_study(path: str | Path) -> Study:
     """
     path = Path(path)
     try:
-        return check_study(toml_data(path.read_text(encoding="utf-8")), path)
+        return study_of(path.read_text(encoding="utf-8"), path)
     except FileNotFoundError:
         why = "there is no such file; give the path of a TOML study."
     except IsADirectoryError:
@@ -35,11 +36,22 @@ def read_study(path: str | Path) -> Study:
             " It is a database: commands that take a study want the .toml file." if is_database(path) else ""
         )
         why = f"this is not a TOML file (it is not text).{hint}"
+    raise StudyError(f"{path}: {why}")
+
+
+def study_of(text: str, path: Path) -> Study:
+    """Check a study given as its text; `path` is its place, beside which files that it names are looked for.
+
+    Raises
+    ------
+    StudyError
+    """
+    try:
+        return replace(check_study(toml_data(text), path), text=text)
     except TomlError as error:
-        why = f"{error}."
+        raise StudyError(f"{path}: {error}.") from error
     except StudyError as error:
         raise StudyError(f"{path}: {error}") from error
-    raise StudyError(f"{path}: {why}")
 
 
 def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:

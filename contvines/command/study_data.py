@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum, auto
@@ -41,6 +42,7 @@ class Study:
     loose : parameters that are given to the machine with each orbit.
     box : ranges of many starts of a flow.
     sweep, atlas, chart, survey : the sections of these names.
+    text : the TOML text.
     """
 
     path: Path
@@ -66,6 +68,7 @@ class Study:
     atlas: AtlasSection = field(default_factory=AtlasSection)
     chart: ChartSection | None = None
     survey: SurveySection = field(default_factory=SurveySection)
+    text: str = ""
 
     @classmethod
     def of(
@@ -114,6 +117,18 @@ class Study:
 
             go["kinds"] = [self.kinds, load_kinds(self.path, self.kinds)[1]]
         return {"model": self._model(), "start": start, "continue": go}
+
+    def kept(self, command: str, target: Path) -> dict[str, Any]:
+        """What a file keeps of its study: `describe()`, and the text from which `contvines rerun` does the command again.
+
+        Parameters
+        ----------
+        command : str
+        target : Path
+            The file; the study's place is kept as seen from there.
+        """
+        place = os.path.relpath(self.path.absolute(), target.absolute().parent)
+        return {**self.describe(), "source": {"command": command, "study": place, "text": self.text}}
 
     def _model(self) -> dict[str, Any]:
         if self.sort is Sort.PHYSICAL:

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from .compare import differences
+from contvines.graph.differences import differences
+
 from .studies import file_of, studies
 
 STUDIES = studies()

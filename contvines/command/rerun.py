@@ -1,0 +1,126 @@
+"""`contvines rerun`: a result computed again from the study that its file keeps, and what differs."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from contvines.command.chart import chart_of, fingerprint_of
+from contvines.command.frame import (
+    held,
+    load_file,
+    place_of,
+    refuse_unfinished,
+    say,
+)
+from contvines.command.options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOption
+from contvines.command.run import graph_of
+from contvines.command.study_data import Study
+
+OutputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "-o",
+        "--output",
+        metavar="FILE.vines",
+        help="Where to keep the new result; by default FILE-rerun.vines here.",
+    ),
+]
+
+
+def rerun(
+    file: FileArgument,
+    output: OutputOption = None,
+    fresh: FreshOption = False,
+    quiet: QuietOption = False,
+    json: JsonOption = False,
+    trust: TrustOption = False,
+) -> None:
+    """Compute a result again from the study that its file keeps, and list what differs.
+
+    The new result is kept in FILE-rerun.vines; FILE.vines stays as it is.
+    Values agree to 1e-10, or to the errors that both results state. Exit
+    status 1 if anything differs.
+    """
+    from contvines.graph.differences import differences, of_chart, of_graph
+    from contvines.provenance import as_text, provenance
+    from contvines.store import Store
+
+    before = load_file(file, problems=False, charts=True)
+    refuse_unfinished(before, file)
+    with Store.open(file) as store:
+        made, fingerprint, kept = store.made, store.fingerprint, store.study or {}
+    study, source = _study(file, kept.get("source"), trust)
+    target = place_of(output, file, "-rerun.vines")
+    chart = "chart" in source
+    command = source["command"]
+    with held(target, quiet, fresh or _finished(target)):
+        if chart:
+            diagram = target.with_name(f"{target.stem}-diagram.vines")
+            with held(diagram, quiet, fresh or _finished(diagram)):
+                graph = graph_of(study, command, diagram, quiet, problems=True, look=False)
+            over, low, high = source["chart"]
+            after = chart_of(graph, over, (low, high), source["virtual"], target, quiet, source)
+            same = fingerprint_of(graph, over, (low, high), source["virtual"]) == fingerprint
+        else:
+            after = graph_of(study, command, target, quiet, problems=False, look=before.looked)
+            same = study.fingerprint(command) == fingerprint
+    of: Any = of_chart if chart else of_graph
+    found = differences(of(before), of(after))
+    if json:
+        from contvines.command.frame import tell
+
+        tell(None, {"before": made, "after": provenance(), "same_study": same, "differences": found})
+    else:
+        if not same:
+            say("what the study names has changed since: the two results are of different studies.")
+        typer.echo("\n".join([_size(after), *(found or ["no differences"])]))
+        if not quiet:
+            typer.echo(f"before: {as_text(made) or 'made by a version that did not say so'}")
+            typer.echo(f"after:  {as_text(provenance())}")
+    if found or not same:
+        raise typer.Exit(1)
+
+
+def _finished(target: Path) -> bool:
+    """Whether an earlier run has ended there: an unfinished one is gone on with."""
+    from contvines.store import Store
+
+    if not target.is_file():
+        return False
+    with Store.open(target) as store:
+        return store.finished
+
+
+def _size(result: Any) -> str:
+    """How much has been compared."""
+    if hasattr(result, "loci"):
+        return f"{len(result.loci)} loci and {len(result.points)} points of codimension two compared"
+    counts = len(result.branches), len(result.special), len(result.switches)
+    return "{} branches, {} special points and {} switches compared".format(*counts)
+
+
+def _study(file: Path, source: Any, trust: bool) -> tuple[Study, dict[str, Any]]:
+    """The study that a file keeps, read as if it stood where it stood.
+
+    Raises
+    ------
+    ValueError
+        If the file keeps none, or one that names Python files while it is not trusted.
+    """
+    from contvines.command.study import study_of
+    from contvines.command.toml_text import toml_data
+
+    if not isinstance(source, dict) or not source.get("text"):
+        raise ValueError(
+            f"{file}: this file keeps no study to run again: it was saved from Python, or by a version that kept none; "
+            f"contvines diagram STUDY.toml -o {file.stem}-again.vines computes the study anew."
+        )
+    data, place = toml_data(source["text"]), file.absolute().parent / str(source["study"])
+    named = [str(data.get(part, {}).get(key, "")) for part, key in (("model", "name"), ("continue", "kinds"))]
+    if not trust and any(".py" in name for name in named):
+        code = next(name for name in named if ".py" in name)
+        raise ValueError(
+            f"{file}: its study runs the code of {code!r} beside {place}; --trust allows it, for a file whose maker you trust."
+        )
+    return study_of(source["text"], place), source

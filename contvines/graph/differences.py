@@ -1,0 +1,228 @@
+"""Differences between two graphs, or two charts, that were made alike: what moved, what is missing, what is new.
+
+Values agree to 1e-10 of their size or to the stated location errors. Labels may change only among points of one kind that lie
+nearer than 1e-8 to each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..bifurcation.kinds import BORDERS, RENAMED
+
+if TYPE_CHECKING:
+    from ..loci.chart import Chart
+    from .graph import Graph
+
+VALUE = 1e-10
+ENDS = 1e-8  # of branches and of stable stretches: borders of both kinds are located from either side
+LOCI = 1e-6  # ends of loci where they run into a point of codimension two: the equations of a locus are singular there
+NEAR = 1e-8
+MULTIPLIERS = 1e-5  # at a fold they move with the square root of the location error
+
+
+def differences(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
+    """What differs between two results.
+
+    Parameters
+    ----------
+    before, after : dict
+        Before and after, both from `of_graph`, or both from `of_chart`.
+
+    Returns
+    -------
+    list of str
+        A sentence each; none where they agree.
+    """
+    before = _with_names_of_today(before)
+    found = list(_points(before["points"], after["points"]))
+    if "loci" in before:
+        return found + list(_loci(before["loci"], after["loci"]))
+    renamed = _renamed(before["points"], after["points"])
+    found += _branches(before["branches"], after["branches"])
+    links = sorted([renamed.get(point, point), *ends] for point, *ends in before["links"])
+    found += [f"the link {link} is missing" for link in links if link not in after["links"]]
+    found += [f"the link {link} is new" for link in after["links"] if link not in links]
+    if before["attractors"] != after["attractors"]:
+        found.append(f"attractors {before['attractors']} became {after['attractors']}")
+    return found
+
+
+def _with_names_of_today(before: dict[str, Any]) -> dict[str, Any]:
+    """Borders at which an event vanishes were "chatter", labelled CH, in earlier files."""
+    points = before["points"]
+    labels = {label: f"VE{label[2:]}" for label, point in points.items() if point["kind"] in RENAMED}
+    if not labels:
+        return before
+    renamed = {
+        labels.get(label, label): point | {"kind": RENAMED.get(point["kind"], point["kind"])}
+        for label, point in points.items()
+    }
+    links = [[labels.get(point, point), *ends] for point, *ends in before["links"]]
+    return before | {"points": renamed, "links": links}
+
+
+def _size(value: Any) -> float:
+    return 1.0 + float(np.abs(value).max())
+
+
+def _gap(one: dict[str, Any], other: dict[str, Any]) -> float:
+    return float(np.abs(np.subtract(one["value"], other["value"])).max()) / _size(one["value"])
+
+
+def _renamed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, str]:
+    """Label in the second result of each point of the first: its own, or that of another point of its kind which is as near as allowed."""
+    found: dict[str, str] = {}
+    for label, point in before.items():
+        close = {
+            other: _gap(point, entry) for other, entry in after.items() if entry["kind"] == point["kind"]
+        }
+        near = [other for other, gap in close.items() if gap < NEAR and other not in found.values()]
+        if label in near:
+            found[label] = label
+        elif near:
+            found[label] = min(near, key=lambda other: close[other])
+    for label, point in before.items():  # one that moved further
+        if (
+            label not in found
+            and label not in found.values()
+            and label in after
+            and after[label]["kind"] == point["kind"]
+        ):
+            found[label] = label
+    return found
+
+
+def _points(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
+    renamed = _renamed(before, after)
+    for label, point in before.items():
+        if label not in renamed:
+            yield f"{label} ({point['kind']} at {point['value']}) is missing"
+            continue
+        now = after[renamed[label]]
+        if renamed[label] != label and not any(
+            other is not point and other["kind"] == point["kind"] and _gap(point, other) < NEAR
+            for other in before.values()
+        ):
+            yield f"{label} is called {renamed[label]}"
+        allowed = max(VALUE, (point["error"] + now["error"]) / _size(point["value"]))
+        if _gap(point, now) > allowed:
+            yield f"{label} moved from {point['value']} to {now['value']}"
+        for name in ("real", "criticality", "branch", "on"):
+            if name in point and point[name] != now[name]:
+                yield f"{label}: {name} was {point[name]} and is {now[name]}"
+        if "multipliers" in point and point["kind"] not in BORDERS and not _alike(point, now):
+            yield f"{label}: moduli of multipliers were {point['multipliers']} and are {now['multipliers']}"
+    for label in set(after) - set(renamed.values()):
+        yield f"{label} ({after[label]['kind']} at {after[label]['value']}) is new"
+
+
+def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
+    a, b = np.array(one["multipliers"]), np.array(other["multipliers"])
+    return a.shape == b.shape and bool(np.allclose(a, b, rtol=MULTIPLIERS, atol=MULTIPLIERS, equal_nan=True))
+
+
+def _branches(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
+    for label, branch in before.items():
+        if label not in after:
+            yield f"branch {label} ({branch['word']} k={branch['periods']}) is missing"
+            continue
+        now = after[label]
+        for name in ("word", "periods", "symmetric", "real", "closed"):
+            if branch[name] != now[name]:
+                yield f"{label}: {name} was {branch[name]} and is {now[name]}"
+        for name in ("range", "stable"):
+            if not _same_intervals(branch[name], now[name]):
+                yield f"{label}: {name} was {branch[name]} and is {now[name]}"
+    for label in set(after) - set(before):
+        yield f"branch {label} ({after[label]['word']} k={after[label]['periods']}) is new"
+
+
+def _same_intervals(one: Any, other: Any, ends: float = ENDS) -> bool:
+    if one is None or other is None:
+        return one is other
+    a, b = np.array(sorted(one), dtype=float), np.array(sorted(other), dtype=float)
+    return a.shape == b.shape and bool(np.allclose(a, b, rtol=ends, atol=ends))
+
+
+def _loci(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
+    for label, locus in before.items():
+        if label not in after:
+            yield f"locus {label} ({locus['kind']} from {locus['seed']}) is missing"
+            continue
+        now = after[label]
+        for name in ("kind", "seed", "closed"):
+            if locus[name] != now[name]:
+                yield f"{label}: {name} was {locus[name]} and is {now[name]}"
+        if not _same_intervals(locus["ends"], now["ends"], LOCI):
+            yield f"{label}: its ends were {locus['ends']} and are {now['ends']}"
+    for label in set(after) - set(before):
+        yield f"locus {label} ({after[label]['kind']} from {after[label]['seed']}) is new"
+
+
+def of_graph(graph: Graph) -> dict[str, Any]:
+    """Branches, special points and links of a graph, from its documented JSON."""
+    data = graph.to_dict()
+    return {
+        "branches": {
+            entry["label"]: {
+                "word": entry["word"],
+                "periods": entry["periods"],
+                "symmetric": entry["symmetric"],
+                "real": entry["real"],
+                "range": entry["range"],
+                "stable": entry["stable"],
+                "closed": entry["closed"],
+            }
+            for entry in data["branches"]
+        },
+        "points": {
+            entry["label"]: {
+                "kind": entry["kind"],
+                "branch": entry["branch"],
+                "value": next(iter(entry["value"].values())),
+                "error": entry["location_error"],
+                "real": entry["real"],
+                "criticality": entry["criticality"],
+                "multipliers": _moduli(entry["multipliers"]),
+            }
+            for entry in data["special"]
+        },
+        "links": sorted([link["point"], link["from"], link["to"]] for link in data["switches"]),
+        "attractors": sorted(
+            [entry["word"], entry["periods"]] for entry in data.get("attractors", []) if "word" in entry
+        ),
+    }
+
+
+def of_chart(chart: Chart) -> dict[str, Any]:
+    """Loci by kind with their ends, and codimension-two points, of a chart's documented JSON."""
+    data = chart.to_dict()
+    return {
+        "loci": {
+            entry["label"]: {
+                "kind": entry["kind"],
+                "seed": entry["seed"],
+                "closed": entry["closed"],
+                "ends": [] if entry["closed"] else sorted([entry["values"][0], entry["values"][-1]]),
+            }
+            for entry in data["loci"]
+        },
+        "points": {
+            entry["label"]: {
+                "kind": entry["kind"],
+                "value": [float(value) for value in entry["value"].values()],
+                "error": entry["error"],
+                "real": entry["real"],
+                "on": sorted(entry["on"]),
+            }
+            for entry in data["points"]
+        },
+    }
+
+
+def _moduli(pairs: list[list[float]]) -> list[float]:
+    return sorted(float(np.hypot(real, imag)) for real, imag in pairs)

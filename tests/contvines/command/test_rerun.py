@@ -1,0 +1,103 @@
+"""`contvines rerun`: a result again from the study that its file keeps; a study that has changed is told with what differs."""
+
+import json
+import math
+import sqlite3
+
+import pytest
+
+from contvines.command.cli import main
+from contvines.store import load, save
+from tests.contvines import fakes
+from tests.contvines.studies import PAPER_MACHINE
+
+STUDY = (
+    PAPER_MACHINE
+    + """[start]
+word = "LR"
+amplitude = 0.55
+[continue]
+parameter = "amplitude"
+within = [0.2, 0.6]
+depth = 0
+[chart]
+parameter = "friction"
+within = [0.4, 0.5]
+"""
+)
+
+
+def call(*words):
+    with pytest.raises(SystemExit) as end:
+        main([str(word) for word in words])
+    return end.value.code
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text(STUDY)
+    return tmp_path
+
+
+def edited(file, change):
+    """The study that a file keeps, changed as if somebody else had written it."""
+    with sqlite3.connect(file) as db:
+        (text,) = db.execute("SELECT value FROM meta WHERE key = 'study'").fetchone()
+        study = json.loads(text)
+        change(study["source"])
+        db.execute("UPDATE meta SET value = ? WHERE key = 'study'", (json.dumps(study),))
+    db.close()
+
+
+def test_a_result_is_the_same_again_though_its_study_has_been_edited(folder, capsys):
+    assert not call("diagram", "s.toml", "-q")
+    (folder / "s.toml").unlink()
+    assert not call("rerun", "s.vines", "-q")
+    assert "no differences" in capsys.readouterr().out
+    first, second = load("s.vines"), load("s-rerun.vines")
+    assert [p.value for p in first.special.values()] == [p.value for p in second.special.values()]
+    assert not call("rerun", "s.vines", "--json", "-q")
+    said = json.loads(capsys.readouterr().out)
+    assert (
+        said["same_study"] and said["differences"] == [] and said["before"]["numpy"] == said["after"]["numpy"]
+    )
+
+
+def test_what_differs_is_listed(folder, capsys):
+    """With r = 0.75 the fold is where its closed form says: another place than that of r = 0.76."""
+    assert not call("diagram", "s.toml", "-q")
+    edited("s.vines", lambda source: source.update(text=source["text"].replace("0.76", "0.75")))
+    assert call("rerun", "s.vines", "--json", "-q") == 1
+    said = json.loads(capsys.readouterr().out)
+    assert not said["same_study"]
+    moved = next(text for text in said["differences"] if text.startswith("LP1 moved from "))
+    ratio, height = 0.25 / 1.75, 0.5 * math.pi * 1.006 * 0.5 * 0.211
+    beta = (2 * math.pi - 4 * ratio * height) / (math.pi**2 + 4 * ratio**2)
+    expected = math.hypot(1 - math.pi * beta / 2, ratio * beta + height)
+    assert float(moved.split()[-1]) == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_a_chart_again(folder, capsys):
+    assert not call("chart", "s.toml", "-q")
+    assert not call("rerun", "s-chart.vines", "-q")
+    assert "no differences" in capsys.readouterr().out
+    assert not call(
+        "chart", "s.vines", "--over", "friction", "--within", "0.45", "0.5", "-q", "-o", "c.vines"
+    )
+    assert not call("rerun", "c.vines", "-q")
+
+
+def test_files_without_a_study_and_studies_with_code_are_refused(folder, capsys):
+    save(fakes.pitchfork_graph(), "python.vines")
+    assert call("rerun", "python.vines") == 1
+    assert "keeps no study" in capsys.readouterr().err
+    assert not call("diagram", "s.toml", "-q")
+    edited(
+        "s.vines",
+        lambda source: source.update(text=source["text"].replace('"absorber"', '"evil.py:machine"')),
+    )
+    (folder / "evil.py").write_text("raise SystemExit(99)")
+    assert call("rerun", "s.vines") == 1
+    assert "--trust" in capsys.readouterr().err
