@@ -42,9 +42,9 @@ def rerun(
     Values agree to 1e-10, or to the errors that both results state. Exit
     status 1 if anything differs.
     """
-    from contvines.graph.differences import differences, of_chart, of_graph
     from contvines.provenance import as_text, provenance
     from contvines.store import Store
+    from contvines.store.differences import differences, of_chart, of_graph
 
     before = load_file(file, problems=False, charts=True)
     refuse_unfinished(before, file)

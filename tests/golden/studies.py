@@ -10,7 +10,7 @@ from typing import Any
 
 import contvines as cv
 import orbits
-from contvines.graph.differences import of_chart, of_graph
+from contvines.store.differences import of_chart, of_graph
 from orbits.machines.page.loading import load_page
 from tools.demos import listed, maps
 from tools.demos.make_table import graph_of

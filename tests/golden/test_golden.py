@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from contvines.graph.differences import differences
+from contvines.store.differences import differences
 
 from .studies import file_of, studies
 

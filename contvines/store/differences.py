@@ -14,8 +14,8 @@ import numpy as np
 from ..bifurcation.kinds import BORDERS, RENAMED
 
 if TYPE_CHECKING:
+    from ..graph.graph import Graph
     from ..loci.chart import Chart
-    from .graph import Graph
 
 VALUE = 1e-10
 ENDS = 1e-8  # of branches and of stable stretches: borders of both kinds are located from either side
