@@ -36,6 +36,8 @@ BORDER_COLORS = {
     "vanishing-event": "#a21caf",
 }
 BORDER_COLOR = "#6b6b6b"  # of any other border
+HATCHES = (None, "////", "....", "\\\\\\\\", "----", "xxxx", "||||", "++++")
+HATCHED = "#d9d9d9"
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")
 HATCH_LENGTH = 0.012  # of the axes
 FITS = 0.9  # share of a name that must lie within its region
@@ -85,28 +87,28 @@ def plot_chart(
         _tint(axes, chart)
         for locus in chart.loci.values():
             _draw(axes, locus, handles)
-        axes.set_xlim(qlo, qhi)
-        axes.set_ylim(plo, phi)
+        axes.set_xlim(plo, phi)
+        axes.set_ylim(qlo, qhi)
         for locus in chart.loci.values():
             if locus.kind not in COLORS and locus.seed is not None:
                 _hatch(axes, locus)
         for point in chart.points.values():
             axes.plot(
-                point.value[1],
                 point.value[0],
+                point.value[1],
                 "o",
                 color="black" if point.real else "0.6",
                 markersize=4,
                 zorder=5,
             )
-        axes.set_xlabel(axis_label(q, unit=chart.units.get(q), notation=chart.notation))
-        axes.set_ylabel(axis_label(p, unit=chart.units.get(p), notation=chart.notation))
+        axes.set_xlabel(axis_label(p, unit=chart.units.get(p), notation=chart.notation))
+        axes.set_ylabel(axis_label(q, unit=chart.units.get(q), notation=chart.notation))
         inside = legend == "inside" or (legend is True and not own)
         if not inside:
             place_legend(axes, list(handles.values()), legend, own, usual="below")
         settle(figure)
         if own and axes.get_window_extent().height < LOW * figure.dpi:
-            axes.set_ylabel(axis_label(p, short=True, unit=chart.units.get(p), notation=chart.notation))
+            axes.set_ylabel(axis_label(q, short=True, unit=chart.units.get(q), notation=chart.notation))
             settle(figure)
         settle(figure)  # the labels of the axes have their size by now
         if own:
@@ -138,19 +140,30 @@ def _draw(axes: Any, locus: Locus, handles: dict[str, Any]) -> None:
     both = real[:-1] & real[1:]
     solid[~(np.append(both, False) | np.append(False, both))] = np.nan
     dotted[np.append(both, True) & np.append(True, both)] = np.nan
-    look, name = _look(locus), MARKS.get(locus.kind, PLAIN).name
-    (line,) = axes.plot(solid[:, 1], solid[:, 0], label=name, zorder=3, **look)
-    axes.plot(dotted[:, 1], dotted[:, 0], linestyle=":", zorder=3, **{**look, "linewidth": 1.0})
+    look, mark = _look(locus), MARKS.get(locus.kind, PLAIN)
+    marked = {
+        "marker": mark.marker,
+        "markevery": (
+            0.07,
+            0.23,
+        ),  # of the axes' diagonal: a few marks on each locus, for those who see no colours
+        "markersize": 4.0,
+        "markerfacecolor": look["color"] if mark.filled else "white",
+        "markeredgewidth": 0.8,
+    }
+    name = mark.name
+    (line,) = axes.plot(solid[:, 0], solid[:, 1], label=name, zorder=3, **look, **marked)
+    axes.plot(dotted[:, 0], dotted[:, 1], linestyle=":", zorder=3, **{**look, "linewidth": 1.0})
     handles.setdefault(name, line)
 
 
 def _hatch(axes: Any, locus: Locus) -> None:
     """Short strokes on the side of a border where its motion cannot be."""
-    side = locus.beyond
+    side = -locus.beyond  # which is told with the second parameter to the right
     if side == 0:
         return
     to_axes = axes.transData + axes.transAxes.inverted()
-    places = to_axes.transform(locus.values[:, ::-1])
+    places = to_axes.transform(locus.values)
     lengths = np.append(0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T)))
     if not lengths[-1] > 0.0:
         return
@@ -177,36 +190,29 @@ def _label(axes: Any, chart: Chart, taken: list[Any]) -> None:
     """Labels of the points, those at one place together, clear of the loci and of the regions' names."""
     import matplotlib as mpl
 
-    wanted = [
-        Label(point.label, point.value[1], point.value[0], rank=not point.real)
-        for point in chart.points.values()
-    ]
-    lines = [dense(axes, locus.values[:, ::-1]) for locus in chart.loci.values()]
+    wanted = [Label(point.label, *point.value, rank=not point.real) for point in chart.points.values()]
+    lines = [dense(axes, locus.values) for locus in chart.loci.values()]
     size = 0.8 * mpl.rcParams["font.size"]
     place_labels(axes, grouped(axes, wanted), np.vstack([np.empty((0, 2)), *lines]), size=size, taken=taken)
 
 
 def _tint(axes: Any, chart: Chart) -> None:
-    (plo, phi), (qlo, qhi) = chart.within
-    seen: dict[tuple[str, ...], str] = {}
+    """Tint and hatch the regions, those alike in which the same is stable: told apart without colours, too."""
+    seen: dict[tuple[str, ...], int] = {}
     for region in chart.regions:
-        key = tuple(sorted(region.words))
-        color = seen.setdefault(key, TINTS[len(seen) % len(TINTS)])
+        place = seen.setdefault(tuple(sorted(region.words)), len(seen))
         if not region.cells.size:
             continue
-        from matplotlib.colors import to_rgb
-
-        picture = np.zeros((*region.cells.shape, 4))
-        picture[..., :3] = to_rgb(color)
-        picture[..., 3] = region.cells
-        axes.imshow(
-            picture,
-            origin="lower",
-            extent=(qlo, qhi, plo, phi),
-            aspect="auto",
-            interpolation="nearest",
-            zorder=0,
+        xs, ys = (
+            np.concatenate(([low], low + (np.arange(n) + 0.5) * (high - low) / n, [high]))
+            for n, (low, high) in zip(region.cells.shape, chart.within, strict=True)
         )
+        inside = np.pad(region.cells.T.astype(float), 1, mode="edge")
+        hatch, size = HATCHES[place % len(HATCHES)], len(TINTS)
+        axes.contourf(xs, ys, inside, [0.5, 1.5], colors=[TINTS[place % size]], zorder=0)
+        if hatch:
+            lines = axes.contourf(xs, ys, inside, [0.5, 1.5], colors="none", hatches=[hatch], zorder=0.5)
+            lines.set(edgecolor=HATCHED, linewidth=0.0)
 
 
 def _name(axes: Any, chart: Chart, taken: list[Box]) -> list[Box]:
@@ -223,7 +229,7 @@ def _name(axes: Any, chart: Chart, taken: list[Box]) -> list[Box]:
             more = [f"+{len(region.words) - count}"] if len(region.words) > count else []
             more += ["(not all over)"] if region.others else []
             look = {"ha": "center", "va": "center", "fontsize": "x-small", "color": "0.25", "zorder": 4}
-            text = axes.text(region.at[1], region.at[0], "\n".join([*names, *more]), **look)
+            text = axes.text(*region.at, "\n".join([*names, *more]), **look)
             if (box := _room_for(axes, chart, region, text, taken)) is not None:
                 boxes.append(box)
                 break
@@ -234,7 +240,7 @@ def _name(axes: Any, chart: Chart, taken: list[Box]) -> list[Box]:
 def _room_for(axes: Any, chart: Chart, region: Any, text: Any, taken: list[Box]) -> Box | None:
     """Leave or move a text to where it lies within its region and on nothing else; its box on the page, or None."""
     (plo, phi), (qlo, qhi) = chart.within
-    places = [(region.at[0], region.at[1], 0.0)]
+    places = [(*region.at, 0.0)]
     if region.cells.size:  # and near it in the region, well away from its edges, where that place is taken
         rows, columns = region.cells.shape
         inner = np.argwhere(region.cells)[:: max(1, int(region.cells.sum()) // 200)] + 0.5
@@ -242,7 +248,7 @@ def _room_for(axes: Any, chart: Chart, region: Any, text: Any, taken: list[Box])
         away = np.hypot((p - region.at[0]) / (phi - plo), (q - region.at[1]) / (qhi - qlo))
         places += [(float(p[k]), float(q[k]), AWAY) for k in np.argsort(away)]
     for p, q, pad in places:
-        text.set_position((q, p))
+        text.set_position((p, q))
         box = text.get_window_extent().padded(pad)
         free = not any(
             box.x0 < x1 and x0 < box.x1 and box.y0 < y1 and y0 < box.y1 for x0, y0, x1, y1 in taken
@@ -260,7 +266,7 @@ def _has_room(axes: Any, chart: Chart, region: Any, box: Any, share: float) -> b
     places = axes.transData.inverted().transform([(x, y) for x in xs for y in ys])
     (plo, phi), (qlo, qhi) = chart.within
     rows, columns = region.cells.shape
-    i = np.floor((places[:, 1] - plo) / (phi - plo) * rows).astype(int)
-    j = np.floor((places[:, 0] - qlo) / (qhi - qlo) * columns).astype(int)
+    i = np.floor((places[:, 0] - plo) / (phi - plo) * rows).astype(int)
+    j = np.floor((places[:, 1] - qlo) / (qhi - qlo) * columns).astype(int)
     inside = (i >= 0) & (i < rows) & (j >= 0) & (j < columns)
     return bool(np.all(inside) and region.cells[i, j].mean() >= share)

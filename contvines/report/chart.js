@@ -16,10 +16,10 @@ function traces() {
     const scale = names.flatMap((_, k) => [[k / n, palette[k % palette.length]], [(k + 1) / n, palette[k % palette.length]]]);
     if (names.length === 1) scale.push([0.5, palette[0]], [1, palette[0]]);
     const index = data.regions.map((r) => names.indexOf(r.name) + 0.5);
-    const z = data.raster.map((row) => row.map((k) => (k < 0 ? null : index[k])));
-    found.push({ type: "heatmap", x0: data.corner[1], dx: data.cell[1], y0: data.corner[0], dy: data.cell[0], z, zmin: 0, zmax: n, colorscale: scale, showscale: false, hoverinfo: "skip" });
+    const z = (data.raster[0] || []).map((_, j) => data.raster.map((row) => (row[j] < 0 ? null : index[row[j]])));
+    found.push({ type: "heatmap", x0: data.corner[0], dx: data.cell[0], y0: data.corner[1], dy: data.cell[1], z, zmin: 0, zmax: n, colorscale: scale, showscale: false, hoverinfo: "skip" });
     const named = data.regions.filter((r) => r.share > 0.012);
-    found.push({ type: "scatter", mode: "text", x: named.map((r) => r.at[q]), y: named.map((r) => r.at[p]), text: named.map((r) => r.short),
+    found.push({ type: "scatter", mode: "text", x: named.map((r) => r.at[p]), y: named.map((r) => r.at[q]), text: named.map((r) => r.short),
       textfont: { size: 10, color: ink() }, hoverinfo: "skip", showlegend: false });
   }
   const seen = new Set();
@@ -30,7 +30,7 @@ function traces() {
       while (last < locus.p.length - 1 && state(last) === state(first)) last += 1;
       const part = (v) => v.slice(first, last + 1);
       if (state(first) || $("virtual").checked)
-        found.push({ type: "scatter", mode: "lines+markers", x: part(locus.q), y: part(locus.p), name: locus.name, legendgroup: locus.name, showlegend: !seen.has(locus.name),
+        found.push({ type: "scatter", mode: "lines+markers", x: part(locus.p), y: part(locus.q), name: locus.name, legendgroup: locus.name, showlegend: !seen.has(locus.name),
           line: { color: colorOf(locus), width: locus.border ? 1.4 : 2.4, dash: state(first) ? (locus.border ? "dash" : "solid") : "dot" }, marker: { size: 4, opacity: 0.01, color: colorOf(locus) },
           customdata: part(locus.p.map((_, i) => [locus.label, i])), hoverinfo: "text",
           text: part(locus.p.map((v, i) => `<b>${locus.label}</b> ${locus.name}<br>${p} = ${number(v, 8)}<br>${q} = ${number(locus.q[i], 8)}${locus.real[i] ? "" : "<br>virtual"}`)) });
@@ -39,11 +39,11 @@ function traces() {
     }
   }
   const marked = data.points.filter((point) => point.real || $("virtual").checked);
-  found.push({ type: "scatter", mode: "markers+text", x: marked.map((m) => m.value[q]), y: marked.map((m) => m.value[p]), text: marked.map((m) => m.label), textposition: "top center",
+  found.push({ type: "scatter", mode: "markers+text", x: marked.map((m) => m.value[p]), y: marked.map((m) => m.value[q]), text: marked.map((m) => m.label), textposition: "top center",
     textfont: { size: 11, color: ink() }, marker: { size: 9, color: ink() }, showlegend: false, customdata: marked.map((m) => [null, null, m.label]), hoverinfo: "text",
     hovertext: marked.map((m) => `<b>${m.label}</b> ${m.name}<br>${p} = ${number(m.value[p], 10)}<br>${q} = ${number(m.value[q], 10)}`) });
   if (here) {
-    const at = here.point ? [here.point.value[q], here.point.value[p]] : [loci[here.locus].q[here.index], loci[here.locus].p[here.index]];
+    const at = here.point ? [here.point.value[p], here.point.value[q]] : [loci[here.locus].p[here.index], loci[here.locus].q[here.index]];
     found.push({ type: "scatter", mode: "markers", x: [at[0]], y: [at[1]], hoverinfo: "skip", showlegend: false, marker: { size: 17, symbol: "circle-open", color: dark.matches ? "#ff9d5c" : "#b5531c", line: { width: 2.5 } } });
   }
   return found;
@@ -52,7 +52,7 @@ function draw(keep = true) {
   const old = $("diagram").layout;
   const range = (name, own) => ({ range: keep && old && old[name] ? old[name].range : own });
   Plotly.react("diagram", traces(), layout({ showlegend: true, legend: { orientation: "h", y: 1.02, yanchor: "bottom" },
-    xaxis: axis(data.names[q], range("xaxis", data.within[1])), yaxis: axis(data.names[p], range("yaxis", data.within[0])) }), options);
+    xaxis: axis(data.names[p], range("xaxis", data.within[0])), yaxis: axis(data.names[q], range("yaxis", data.within[1])) }), options);
 }
 
 // ------------------------------------------------------------------ one motion

@@ -112,7 +112,7 @@ def test_a_chart_is_drawn(chart, tmp_path):
     matplotlib.use("Agg")
     figure = chart.plot()
     figure.savefig(tmp_path / "cusp.png")
-    assert figure.axes[0].get_xlabel() == "b"
+    assert figure.axes[0].get_xlabel() == "a"
 
 
 @pytest.mark.slow
