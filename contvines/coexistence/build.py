@@ -12,7 +12,7 @@ from ..bifurcation.kind import Kind
 from ..continuation.hints import hinting
 from ..continuation.settings import Settings
 from ..graph.automatic import new_run
-from ..graph.builder import finish
+from ..graph.builder import finish, leave_waiting
 from ..graph.graph import Graph
 from ..graph.run import Run
 from ..interruptible import Asked, OnInterrupt, carried_out
@@ -303,6 +303,8 @@ class _Looking:
     def tell_left(self) -> None:
         """Keep how much work was done, and say what the budget and the choice of values leave out."""
         graph, effort = self.run.graph, self.effort
+        if self.run.queue:  # later roots have left more of them waiting
+            leave_waiting(self.run)
         graph.settings |= {"work": effort.spent, "unknown": [list(p) for p in unknown(graph, self.asked)]}
         if self.left:
             left = ", ".join(f"{what} ({count})" for what, count in self.left.items())

@@ -75,12 +75,7 @@ def work(run: Run) -> None:
         try:
             while run.queue:
                 if len(graph.branches) >= run.settings.max_branches:
-                    graph.message = (
-                        f"stopped at max_branches = {run.settings.max_branches} with {len(run.queue)} branches waiting: "
-                        "the graph is not complete; raise max_branches, or lower depth"
-                    )
-                    graph.complete = False
-                    tell_waiting(run)
+                    leave_waiting(run)
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
@@ -103,10 +98,15 @@ def finish(run: Run) -> None:
     run.tell(graph.message, float("nan"))
 
 
-def tell_waiting(run: Run) -> None:
-    """Say at the special points whose branches wait why these are not followed; of a single branch nobody expects others."""
-    most = run.settings.max_branches
-    for pending in run.queue if most > 1 else ():
+def leave_waiting(run: Run) -> None:
+    """End a graph at `max_branches`: its message counts what waits, and special points name why it is not followed."""
+    most, graph = run.settings.max_branches, run.graph
+    graph.complete = False
+    graph.message = (
+        f"stopped at max_branches = {most} with {len(run.queue)} branches waiting: "
+        "the graph is not complete; raise max_branches, or lower depth"
+    )
+    for pending in run.queue if most > 1 else ():  # of a single branch nobody expects others
         if pending.point is not None and not pending.reached:
             run.remark(pending.point, f"a branch that leaves here is not followed: max_branches = {most}")
 
