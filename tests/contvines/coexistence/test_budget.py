@@ -8,6 +8,7 @@ from orbits import Absorber
 from orbits.attractors import recurrence
 from orbits.attractors.recurrence import LONGEST, settle
 from orbits.machines.catalogue import stepper as machine
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -76,3 +77,12 @@ def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
     state = np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0])
     settle(absorber, engine, absorber.vector({"amplitude": 1.59760071}), state, 0.0, 32, 1e-7, 1)
     assert len(looks) <= 2 + np.log(LONGEST) / np.log(4.0)
+
+
+def test_branches_that_wait_at_the_end_are_counted():
+    told = []
+    graph = cv.atlas(
+        ABSORBER, over="amplitude", within=(0.2, 1.3), values=3, starts=8, scan=0, progress=told.append, settings={"max_branches": 2}
+    )  # fmt: skip
+    assert len(graph.branches) > 2  # every motion that starts reach has its branch
+    assert f"with {told[-1].waiting} branches waiting" in graph.message
