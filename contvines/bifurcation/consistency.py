@@ -15,6 +15,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from ..continuation.engine import Solved
 from .determinant import turned
 from .located import Located, Role
@@ -36,6 +38,8 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     """
     engine = segment.engine
     before, after = segment.counts
+    if engine.detection == "map" and not engine.adaptive and _hidden_beside_fold(segment, found):
+        return True
     plus, minus, pairs = (b - a for a, b in zip(before, after))
     side = turned(segment.a, segment.b)
     if engine.scaled and engine.signed and abs(plus) == 1 and side is False:
@@ -50,6 +54,22 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
         for change, kinds in zip((plus, minus, pairs), PASSED_AT)
     )
     return missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)
+
+
+def _hidden_beside_fold(segment: Segment, found: Sequence[Located]) -> bool:
+    """Whether the multipliers outside the circle at a fold, its own left out, are others than at the ends, though nothing else was found.
+
+    A pair may leave the circle next to a fold, part on the real axis and come back there by one: the ends differ by that one alone.
+    """
+    if len(found) != 1 or found[0].kind != "fold":
+        return False
+    spectrum, near = segment.engine.spectrum(found[0].point.row), segment.engine.settings.critical
+    others = np.abs(np.delete(spectrum, np.argmin(np.abs(spectrum - 1.0))))
+    if np.any(np.abs(others - 1.0) <= near):
+        return False
+    outside = int(np.count_nonzero(others > 1.0))
+    totals = [plus + minus + 2 * pairs for plus, minus, pairs in segment.counts]
+    return any(total not in (outside, outside + 1) for total in totals)
 
 
 def unresolved(segment: Segment, middle: Solved) -> Located:

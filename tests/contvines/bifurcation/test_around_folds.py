@@ -80,3 +80,21 @@ def test_a_multiplier_that_comes_back_from_infinity_beside_a_fold(max_step, pole
     (fold,), (flip,) = graph.of_kind("fold"), graph.of_kind("period-doubling")
     assert abs(fold.value) < 1e-14
     assert flip.u[0] == pytest.approx(2.0 * pole / (2.0 - k), rel=1e-8)
+
+
+@pytest.mark.parametrize("k", [1e2, 1e4, 1e5])
+def test_a_pair_that_leaves_the_circle_and_comes_back_by_one_at_a_fold(k):
+    """Along p = x^2, with y = k x, trace and determinant are 1 + d and d + 0.6 y/(1 + y^2), d = 0.2 + 1.6/(1 + y^2).
+
+    The determinant is 1 at 0.8 y^2 - 0.6 y - 0.8 = 0: there the pair leaves; at y = 0 the multipliers are 1 and 1.8. Stable behind, one outside before.
+    """
+
+    def map_(u, p):
+        x, y = u
+        part = 1.0 / (1.0 + (k * x) ** 2)
+        return np.array([x + y, 0.3 * k * part * (p - x * x) + (0.2 + 1.6 * part) * y])
+
+    graph = cv.diagram(cv.MapProblem(map_, [0.5, 0.0], 0.25), within=(-0.1, 1.0))
+    (fold,), (pair,) = graph.of_kind("fold"), graph.of_kind("neimark-sacker")
+    assert fold.value == pytest.approx(0.0, abs=1e-10)
+    assert k * pair.u[0] == pytest.approx((0.6 + np.sqrt(0.36 + 2.56)) / 1.6, rel=1e-6)
