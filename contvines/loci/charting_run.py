@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from time import monotonic
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -33,6 +34,7 @@ from .regions import divide
 from .starts import begin, regular_side
 from .tracing import checked_ends, trace_locus
 
+T = TypeVar("T")
 SAME = 1e-7  # points of the plane closer than this part of its sides are one
 END = 1e-5  # of them: a locus ends there
 BESIDE = 0.1  # of them: a segment so far away may belong to an arc through a place
@@ -54,7 +56,8 @@ class ChartProgress(NamedTuple):
     done, known : int
         Starts of loci done, and known so far.
     seconds : float
-        Estimate of the time that the waiting starts will take, from the time of those done; NaN before the first one is done.
+        Estimate of the time that the waiting starts will take, from the time of those done; behind the loci that of the regions, then of the
+        crossings. NaN before the first one is done.
     """
 
     message: str
@@ -113,13 +116,22 @@ class Charting:
         self.refused: list[str] = []
         self.done, self.tracing, self.begun = 0, False, monotonic()
 
-    def tell(self, message: str) -> None:
-        """Report progress."""
+    def tell(self, message: str, seconds: float | None = None) -> None:
+        """Report progress; the time left, if nothing else is known, from that of the starts done."""
         if self.progress is not None:
             waiting, loci, points = len(self.queue), len(self.chart.loci), len(self.chart.points)
-            seconds = (monotonic() - self.begun) * waiting / self.done if self.done else float("nan")
+            if seconds is None:
+                seconds = (monotonic() - self.begun) * waiting / self.done if self.done else float("nan")
             known = self.done + waiting + self.tracing
             self.progress(ChartProgress(message, loci, points, waiting, self.done, known, seconds))
+
+    def counted(self, what: str, pieces: Sequence[T]) -> Iterator[T]:
+        """Pieces of work that follow the loci, one by one, each told with the time that it and the later ones will take."""
+        begun = monotonic()
+        for i, piece in enumerate(pieces):
+            left = (monotonic() - begun) * (len(pieces) - i) / i if i else float("nan")
+            self.tell(f"{what} {i + 1} of {len(pieces)}", left)
+            yield piece
 
     def label(self, prefix: str) -> str:
         """The next label with this prefix."""
@@ -315,8 +327,7 @@ class Charting:
         known = KnownMotions(
             self.graph.branches.values(), self.chart.loci.values(), self.over, self.chart.within
         )
-        for i, region in enumerate(regions):
-            self.tell(f"region {i + 1} of {len(regions)}")
+        for region in self.counted("region", regions):
             region.attractors = self.witness(problem, region.at, known)
             for place in region.elsewhere:
                 place["attractors"] = self.witness(problem, (place["at"][0], place["at"][1]), known)
@@ -337,7 +348,7 @@ class Charting:
 
     def finish(self) -> None:
         """Find where loci cross, close the chart and keep it."""
-        self.chart.crossings = crossings(self.chart)
+        self.chart.crossings = crossings(self.chart, partial(self.counted, "crossing"))
         self.chart.finished = True
         if self.refused and not self.chart.loci:
             raise ValueError("no locus could be followed: " + "; ".join(dict.fromkeys(self.refused)))

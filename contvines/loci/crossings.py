@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from itertools import combinations
 from typing import Any
 
@@ -11,12 +12,20 @@ from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from .locus import Locus
 
+Met = tuple[str, str, int, int, np.ndarray]  # two loci, a segment of each, and where these meet
+
 MEETING = 1e-5  # of the plane's sides: a crossing so near to a point on both loci is that point
 SOLVED = 1e-12  # of the interval of the second parameter
 
 
-def crossings(chart: Any) -> list[dict[str, Any]]:
+def crossings(chart: Any, each: Callable[[list[Met]], Iterable[Met]] = iter) -> list[dict[str, Any]]:
     """The crossings of the real parts of a chart's loci.
+
+    Parameters
+    ----------
+    chart : Chart
+    each : callable
+        Hands out what may be a crossing one by one, and may tell of it.
 
     Returns
     -------
@@ -26,19 +35,23 @@ def crossings(chart: Any) -> list[dict[str, Any]]:
     lows = np.array([interval[0] for interval in chart.within])
     widths = np.array([interval[1] - interval[0] for interval in chart.within])
     curves = {label: (locus.values - lows) / widths for label, locus in chart.loci.items()}
-    found: list[dict[str, Any]] = []
+    met: list[Met] = []
     for one, other in combinations(chart.loci, 2):
-        first, second = chart.loci[one], chart.loci[other]
+        real, others = chart.loci[one].real, chart.loci[other].real
+        met += [
+            (one, other, i, j, lows + place * widths)
+            for i, j, place in segments(curves[one], curves[other])
+            if real[i : i + 2].all() and others[j : j + 2].all()
+        ]
+    found: list[dict[str, Any]] = []
+    for one, other, i, j, place in each(met):
+        p, q, error = _solved(chart.loci[one], chart.loci[other], i, j, place)
         meetings = [p.value for p in chart.points.values() if one in p.on and other in p.on]
-        for i, j, place in segments(curves[one], curves[other]):
-            if not (first.real[i : i + 2].all() and second.real[j : j + 2].all()):
-                continue
-            p, q, error = _solved(first, second, i, j, lows + place * widths)
-            if any(np.abs((np.array([p, q]) - m) / widths).max() < max(MEETING, error) for m in meetings):
-                continue
-            found.append(
-                {"on": [one, other], "value": dict(zip(chart.parameters, (p, q))), "error": float(error)}
-            )
+        if any(np.abs((np.array([p, q]) - m) / widths).max() < max(MEETING, error) for m in meetings):
+            continue
+        found.append(
+            {"on": [one, other], "value": dict(zip(chart.parameters, (p, q))), "error": float(error)}
+        )
     return found
 
 

@@ -106,6 +106,20 @@ def test_a_killed_chart_goes_on_where_it_stopped(graph, chart):
     )
 
 
+@pytest.mark.slow
+def test_regions_and_crossings_are_counted_behind_the_loci(graph):
+    """Each piece is told of once, with its number of so many; from the second one on with the time that those left will take."""
+    told = []
+    made = cv.chart(graph, over="b", within=(-0.5, 1.5), progress=told.append)
+    regions = [p for p in told if p.message.startswith("region ")]
+    assert len(regions) == len(made.regions)
+    assert all(p.done == p.known for p in regions)
+    assert all(p.seconds > 0.0 for p in regions[1:])
+    crossings = [p.message for p in told if p.message.startswith("crossing ")]
+    assert len(crossings) >= len(made.crossings)
+    assert crossings == [f"crossing {i + 1} of {len(crossings)}" for i in range(len(crossings))]
+
+
 def test_a_chart_is_drawn(chart, tmp_path):
     import matplotlib
 
