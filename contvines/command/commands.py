@@ -34,7 +34,7 @@ COMMANDS = {
     "prove": ("prove", "Prove that orbits exist, are real or virtual, stable or unstable."),
     "plot": ("plot", "Draw a result: the diagram, the multipliers of a branch, or the graph itself."),
     "rerun": ("rerun", "Compute a result again from the study that its file keeps, and list what differs."),
-    "export": ("export", "Write a result for other programs: csv, json, graphml or mat."),
+    "export": ("export", "Write a result for other programs: csv, json, graphml, mat, latex, auto or xpp."),
     "report": ("report", "Write a result as one HTML page that needs no network."),
     "sweep": (
         "sweep",

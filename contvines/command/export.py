@@ -18,6 +18,8 @@ class Format(StrEnum):
     graphml = "graphml"
     mat = "mat"
     latex = "latex"
+    auto = "auto"
+    xpp = "xpp"
 
 
 def export(
@@ -31,12 +33,14 @@ def export(
     ] = None,
     trust: TrustOption = False,
 ) -> None:
-    """Write a result for other programs: csv, json, graphml, mat or latex.
+    """Write a result for other programs: csv, json, graphml, mat, latex, auto or xpp.
 
     csv has a row per point of every branch: the unknowns u0, u1 ..., then
     multipliers, word, periods and all measures (empty where not defined).
     mat has the same, a struct per branch; json and graphml are summaries,
-    latex tables of branches and special points for booktabs.
+    latex tables of branches and special points for booktabs. auto writes
+    b.NAME, s.NAME and d.NAME as AUTO-07p does, xpp the points of a diagram of
+    XPPAUT.
 
     The unknowns follow the events in the word's order: at an impact the
     forcing's phase (radians) and the absorber's velocity after it (times
@@ -60,8 +64,9 @@ def export(
         to = Format(ending)
     ending = ENDINGS.get(to.value, to.value)
     target = output or beside(file, f".{ending}")
-    check_target(target, ending)
-    measures = to in (Format.csv, Format.mat)
+    if to is not Format.auto:
+        check_target(target, ending)
+    measures = to in (Format.csv, Format.mat, Format.auto, Format.xpp)
     graph = load_file(file, trust, measures, charts=True)
     if hasattr(graph, "loci"):
         from contvines.export.charts import export_chart

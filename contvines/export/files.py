@@ -12,15 +12,17 @@ import numpy as np
 
 from ..file_names import refuse_ending
 from ..provenance import provenance
+from .auto import places, write_auto
 from .columns import graph_columns, measures_of
 from .latex import write_latex
 from .standard_json import json_text
+from .xpp import write_xpp
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
 
-FORMATS = ("csv", "json", "graphml", "mat", "latex")
-ENDINGS = {"latex": "tex"}
+FORMATS = ("csv", "json", "graphml", "mat", "latex", "auto", "xpp")
+ENDINGS = {"latex": "tex", "xpp": "dat"}
 """Of files, where they are not called like their format."""
 
 
@@ -31,14 +33,23 @@ def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
     unknowns, multipliers, word, periods, and every measure that a branch of the graph has; what is not defined
     is left empty). json: what `contvines show --json` prints. graphml: branches as nodes, switches as edges. mat:
     one struct of arrays per branch (its measures a struct in it) and per special point. latex: tables of branches and
-    special points (file.tex). Measures need the branches' problems: load the graph with them.
+    special points (file.tex). auto: files b.NAME, s.NAME and d.NAME of AUTO-07p, for NAME.auto or b.NAME. xpp: the points of a diagram of
+    XPPAUT (file.dat). Measures need the branches' problems: load the graph with them.
 
     Raises
     ------
     ValueError
         If the format is not known, the place cannot be written, or it holds a file of another kind.
     """
-    writers = {"csv": _csv, "json": _json, "graphml": _graphml, "mat": _mat, "latex": write_latex}
+    writers = {
+        "csv": _csv,
+        "json": _json,
+        "graphml": _graphml,
+        "mat": _mat,
+        "latex": write_latex,
+        "auto": write_auto,
+        "xpp": write_xpp,
+    }
     if to is None:
         to = Path(path).suffix.lstrip(".").lower()
         to = next((form for form, ending in ENDINGS.items() if ending == to), to)
@@ -49,12 +60,12 @@ def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
     if to not in writers:
         raise ValueError(f"--to {to}: there is no such format; choose one of {', '.join(FORMATS)}.")
     path = Path(path)
-    check_target(path, ENDINGS.get(to, to))
+    for place in places(path) if to == "auto" else (path,):
+        check_target(place, place.suffix.lstrip(".") if to == "auto" else ENDINGS.get(to, to))
     try:
-        writers[to](graph, path)
+        return writers[to](graph, path) or path
     except OSError as error:
         raise ValueError(f"{path}: cannot be written ({error.strerror}).") from None
-    return path
 
 
 def check_target(path: Path, ending: str) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from .auto_files import AutoSolution, read_auto
 from .compiled import CompiledRates
 from .files import read_ode
 from .problem import FlowProblem
 
-__all__ = ["CompiledRates", "FlowProblem", "read_ode"]
+__all__ = ["AutoSolution", "CompiledRates", "FlowProblem", "read_auto", "read_ode"]
