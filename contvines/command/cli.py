@@ -19,7 +19,7 @@ LONGEST = 200  # letters of a word in a sentence (paths aside)
 
 app = typer.Typer(
     name="contvines",
-    help="Bifurcation graphs of vibro-impact absorbers: every branch, every border, only orbits that exist.",
+    help="Continuation and bifurcation analysis of motions with impacts and friction, of maps and of flows.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,  # help texts are printed as they are written: in markup what stands in brackets is lost
@@ -37,7 +37,8 @@ def _version(wanted: bool) -> None:
 
 
 @app.callback(
-    epilog="A first study: contvines diagram examples/friction.toml --plot friction.png",
+    epilog="A first study: contvines new absorber, then contvines diagram absorber.toml --plot absorber.png. "
+    "By task: contvines help.",
 )
 def _options(
     version: Annotated[

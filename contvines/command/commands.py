@@ -53,6 +53,7 @@ COMMANDS = {
         "design",
         "Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and sliding limits.",
     ),
+    "help": ("help", "List the commands by task, or explain one command or topic."),
     "new": ("new", "Write a commented study to begin with: every field with its meaning."),
     "doctor": (
         "doctor",

@@ -79,3 +79,23 @@ def test_a_file_says_with_what_it_was_made(tmp_path, capsys):
         assert set(store.made) == {"contvines", "numpy", "scipy", "python", "platform", "core", "date"}
     assert not call("show", path, "--json")
     assert json.loads(capsys.readouterr().out)["made"]["python"] == platform.python_version()
+
+
+def test_help_lists_each_command_once_and_explains_one(capsys):
+    from contvines.bifurcation.kinds import LABELS
+    from contvines.command.commands import COMMANDS
+    from contvines.command.help import TASKS
+
+    assert {name for names in TASKS.values() for name in names} <= set(COMMANDS)
+    assert not call("help")
+    lines = capsys.readouterr().out.splitlines()
+    listed = [line.split()[0] for line in lines if line[:2] == "  " and line[2] != " "]
+    assert sorted(listed) == sorted([*COMMANDS, "labels", "words"])
+    assert not call("help", "diagram")
+    assert "--plot" in capsys.readouterr().out
+    assert not call("help", "labels")
+    assert {line.split()[0] for line in capsys.readouterr().out.splitlines() if line[:2] == "  "} == set(
+        LABELS.values()
+    )
+    assert call("help", "diagam") == 1
+    assert "did you mean diagram?" in capsys.readouterr().err
