@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from contvines.command.schema import UnknownModel, catalogue_model, given, number, would_do
-from contvines.command.study_data import Sort, Study, wrong_intervals
+from contvines.command.study_data import Sort, Study, without_word, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.building import build
@@ -40,6 +40,8 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
         return ""
 
     go = file.continue_
+    if file.start.word is None:
+        parameters.setdefault(go.parameter, 0.5 * sum(go.within))
     wrong = wrong_intervals(file, parameters.get(go.parameter), refusal)
     if go.parameter not in parameters and not wrong:
         low, high = go.within
@@ -99,5 +101,7 @@ def built(study: Study) -> Study:
         section = "start"
         Word.parse(study.word or "", frictionless=study.model.frictionless(vector))
     except ValueError as error:
-        raise StudyError(f"[{section}] {error}") from error
+        raise StudyError(
+            f"[{section}] {error if section == 'model' else without_word(study, error)}"
+        ) from error
     return study

@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from contvines.command.study_data import Sort, Study
+from contvines.command.study_data import Sort, Study, without_word
 
 if TYPE_CHECKING:
     from contvines.graph.graph import Graph
@@ -88,7 +88,7 @@ def first_orbit(study: Study) -> Any:
             print(f"contvines: {study.path}: [start] {warning.message}.", file=sys.stderr)
         return orbit
     except ValueError as error:
-        raise ValueError(f"{study.path}: [start] {error}") from error
+        raise ValueError(f"{study.path}: [start] {without_word(study, error)}") from error
 
 
 def _page_start(study: Study) -> Any:

@@ -4,7 +4,7 @@ The quantities make a machine (`orbits.machines.physical`); intervals and values
 in which the machine's quantity was given. What is left is a study like any other.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from contvines.command.study_errors import refuse, validated
 from orbits.machines.catalogue import model_class
 from orbits.machines.physical import units
 from orbits.machines.physical.machine import physical, tables
-from orbits.machines.physical.quantities import QuantityError, near_quantity
+from orbits.machines.physical.quantities import Quantity, QuantityError, near_quantity
 
 OWN = ("name", "units", "unusual")
 SAID = ("word", "periods", "guess")
@@ -55,7 +55,7 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     wrong : list of str
         Sentences.
     """
-    model, start = data.get("model"), data.get("start")
+    model, start = data.get("model"), data.get("start", {})
     if not isinstance(model, dict) or not isinstance(start, dict):
         return None, {key: value for key, value in data.items() if key not in ("units", "model")}, []
     plain = {key: value for key, value in data.items() if key not in ("units", "model")}
@@ -74,17 +74,24 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
         for key, value in values.items()
         if key not in known and key not in extra
     ]
+    usual = _parameter(plain.get("continue"))
+    if (
+        usual is not None
+        and "word" not in start
+        and usual in known
+        and not _said(known, usual, (*model, *start))
+    ):
+        start = {**start, usual: _middle(known[usual], plain["continue"].get("within"))}
     # [start] replaces what [model] says of the same thing
     groups = {known[key].choice for key in start if key in known}
     places = {key: "model" for key in model if key in known and known[key].choice not in groups}
     places |= {key: "start" for key in start if key in known}
     try:
-        told = {key: data[section][key] for key, section in places.items()}
+        told = {key: (model if section == "model" else start)[key] for key, section in places.items()}
         machine = physical(name, told, bool(model.get("unusual", False)))
     except QuantityError as error:
         section = places.get(str(error).split(" ", 1)[0].rstrip(":"), "model")
         return None, _without_texts(plain), [*wrong, f"[{section}] {error}."]
-    usual = _parameter(plain.get("continue"))
     if usual in known:
         machine = machine.told_by(usual)
     for section, values in plain.items():
@@ -97,6 +104,27 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
 def _parameter(section: Any) -> str | None:
     name = section.get("parameter") if isinstance(section, dict) else None
     return name if isinstance(name, str) else None
+
+
+def _said(known: Mapping[str, Quantity], name: str, given: Iterable[str]) -> bool:
+    """Whether quantity `name`, or another one that is chosen in its place, is among those given."""
+    return any(key == name or known[key].choice == known[name].choice for key in given if key in known)
+
+
+def _middle(quantity: Quantity, within: Any) -> Any:
+    """The middle of an interval as a quantity in the unit of its lower end; that end itself where it is no interval of quantities.
+
+    Raises
+    ------
+    QuantityError
+        If an end is no such quantity.
+    """
+    if not isinstance(within, list) or len(within) != 2:
+        return within
+    (low, unit), (high, other) = (units.read(quantity, end) for end in within)
+    return units.text(
+        0.5 * (low + high * units.si(quantity, 1.0, other) / units.si(quantity, 1.0, unit)), unit
+    )
 
 
 def _lists(values: dict[str, Any]) -> Iterator[tuple[str, list[Any]]]:

@@ -180,7 +180,7 @@ class _MachineSections(Section):
 class StudySections(_MachineSections):
     """What every study of a built-in machine has beside it."""
 
-    start: WordSection
+    start: WordSection = WordSection()
 
 
 class PageSections(_MachineSections):
@@ -197,7 +197,7 @@ class UnknownModel(_MachineSections):
     """A study whose model is not known: all that can be checked without it."""
 
     model: Any = None
-    start: _AnyStart
+    start: _AnyStart = _AnyStart()
 
 
 def would_do(entry: Parameter) -> str:
@@ -252,10 +252,9 @@ def study_model(
     loose = {name: (kind | None, None) for name, kind in parameters.items()}
     start = _section(kinds["start"], {k: v for k, v in loose.items() if k not in kinds["start"].model_fields})
     go = _section(kinds["continue_"], {"parameter": (chosen, ...)})
-    first = base.model_fields["start"]
     sections: dict[str, Any] = {
         "model": (_section(Section, settings), ...),
-        "start": (start, ... if first.is_required() else start()),
+        "start": (start, start()),
         "continue_": (Annotated[go, Field(alias="continue")], ...),
     }
     if "chart" in kinds:

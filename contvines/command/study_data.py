@@ -11,6 +11,8 @@ from typing import Any
 
 from contvines.command.schema import AtlasSection, ChartSection, SurveySection, SweepSection
 
+SHOWN = 60  # letters of a word that a refusal repeats
+
 
 class Sort(Enum):
     """What a study continues."""
@@ -144,6 +146,17 @@ class Study:
         more = {"atlas": self.atlas.model_dump()} if command == "atlas" else {}
         text = json.dumps({"command": command, **more, **self.describe()}, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
+
+
+def without_word(study: Study, refusal: object) -> str:
+    """The refusal of a study's first orbit, with the way out where the study names its word."""
+    if study.word is None:
+        return str(refusal)
+    shown = study.word if len(study.word) <= SHOWN else study.word[: SHOWN - 3] + "..."
+    return (
+        f"{str(refusal).rstrip('.')}; or delete the line word = {json.dumps(shown)} of [start] (periods and guess, too): "
+        "the motion that settles from rest is taken then"
+    )
 
 
 def wrong_ends(section: str, within: list[float]) -> list[str]:

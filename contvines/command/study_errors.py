@@ -15,7 +15,6 @@ UNION = re.compile(
 MOST = 20  # sentences in one refusal
 SECTIONS = {
     "model": 'name = "absorber" and its parameters',
-    "start": 'a word, its periods and a first amplitude, for example word = "LR", periods = 1, amplitude = 0.55',
     "continue": 'what to vary and where, for example parameter = "amplitude", within = [0.2, 1.3]',
 }
 WANTED = {

@@ -79,6 +79,25 @@ def test_a_study_is_read():
     assert moved.describe() == study.describe() and moved.fingerprint() == study.fingerprint()
 
 
+def test_a_study_without_a_word_begins_in_the_middle_of_its_interval():
+    study = check_study(nested(start=None))
+    assert study.word is None and study.parameters["frequency"] == pytest.approx(7.85)
+    over = {"continue__parameter": "stiffness", "continue__within": ["9 kN/m", "10 kN/m"]}
+    said = check_study(
+        nested(**over, start={"frequency": "7.9 Hz"})
+    )  # the natural frequency tells the stiffness
+    assert said.parameters["stiffness"] == pytest.approx(3.8 * (16 * np.pi) ** 2, rel=1e-13)
+
+
+def test_a_refused_word_names_the_line_to_delete(tmp_path):
+    with pytest.raises(StudyError, match='delete the line word = "LtttR" of \\[start\\]'):
+        check_study(nested(start__word="LtttR"))
+    from contvines.command.compose import first_orbit
+
+    with pytest.raises(ValueError, match='no orbit .* delete the line word = "LRLRLRLRLR" of'):
+        first_orbit(check_study(nested(start__word="LRLRLRLRLR")))
+
+
 def test_any_quantity_may_vary():
     study = check_study(nested(continue__parameter="stiffness", continue__within=["9 kN/m", "10 kN/m"]))
     assert machine(study).amount_names[3] == "stiffness" or "stiffness" in machine(study).amount_names

@@ -59,6 +59,13 @@ def test_a_good_study_is_read_with_its_defaults():
     assert read.settings == {}
 
 
+@pytest.mark.parametrize("start", [None, {"periods": 1}])
+def test_a_study_without_a_word_begins_in_the_middle_of_its_interval(start):
+    read = study(start=start)
+    assert read.word is None
+    assert read.parameters["amplitude"] == pytest.approx(0.75)  # of 0.2 to 1.3
+
+
 def test_start_overrides_the_model():
     assert study(start__friction=0.1).parameters["friction"] == 0.1
 
@@ -111,7 +118,6 @@ def test_coupled_studies_have_their_own_parameters():
         ({"model__name": None}, ["[model] name is missing", "'absorber'"]),
         ({"model": None}, ["[model] is missing"]),
         ({"model": 3}, ["model = 3 is not a section"]),
-        ({"start": None}, ["[start] is missing"]),
         ({"continue_": None}, ["[continue] is missing"]),
         ({"contnue": {"depth": 2}}, ["contnue", "no such section", "did you mean 'continue'"]),
         ({"atlas": {"starts": -1}}, ["[atlas] starts = -1", "from 1 to 10000000"]),
