@@ -33,6 +33,7 @@ BETWEEN = (
     "located",
     "stationary",
     "one_place",
+    "mesh_offset",
     "symmetric",
     "same",
 )
@@ -98,6 +99,10 @@ class Settings:
         Special points: the parameter's part of a unit tangent, in its unit, that may be that of a fold.
     one_place : float
         Special points: distance (in the metric) below which two are at one place, and a fold at a border is the border.
+    mesh_offset : float
+        Special points: distance (in the metric) over which the slope of a multiplier is told when a finer mesh is asked for the error.
+    mesh_caution : float
+        Special points: times the difference to a mesh with halved intervals, the stated error of one on a mesh.
     symmetric : float
         Identity: parts that a symmetry changes below this are zero.
     same : float
@@ -133,6 +138,8 @@ class Settings:
     located: float = 1e-9
     stationary: float = 1e-6
     one_place: float = 1e-5
+    mesh_offset: float = 1e-4
+    mesh_caution: float = 2.0
     symmetric: float = 1e-6
     same: float = 1e-6
     step_rule: StepRule = BY_ANGLE
@@ -146,8 +153,10 @@ class Settings:
             value = getattr(self, name)
             if not (isinstance(value, int) and value >= 1):
                 raise ValueError(f"settings: {name} = {value!r} must be a whole number of at least 1")
-        if not self.escape > 0.0:
-            raise ValueError(f"settings: escape = {self.escape!r} must be a positive number")
+        for name in ("escape", "mesh_caution"):
+            value = getattr(self, name)
+            if not value > 0.0:
+                raise ValueError(f"settings: {name} = {value!r} must be a positive number")
         if not isinstance(self.step_rule, StepRule):
             raise ValueError(f"settings: step_rule = {self.step_rule!r} must be a contvines.StepRule")
         if self.min_step >= self.max_step:

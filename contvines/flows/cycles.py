@@ -430,9 +430,9 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         return max(own, missed) if missed < SENSIBLE else own
 
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
-        """How far the parameter may be from that of an infinite period: of a saddle-node p - p* is as 1 / T^2, of a saddle less is left."""
+        """How far the parameter may be from that of an infinite period: of a saddle-node p - p* is as 1 / T^2 to first order, taken twice; of a saddle less is left."""
         change = abs(float(tangent[self.states]))
-        return 0.5 * float(u[self.states]) * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
+        return float(u[self.states]) * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
 
     def adapted(self, u: np.ndarray) -> Callable[[np.ndarray], np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""

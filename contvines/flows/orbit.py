@@ -10,6 +10,7 @@ import numpy as np
 
 from . import mesh
 from .kernels import growth_of_volume, linearise, spectrum
+from .newton import solved
 from .simulation import integrated, variational
 
 SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
@@ -76,6 +77,29 @@ class CycleOrbit:
     def multipliers(self) -> np.ndarray:
         """Multipliers of the full period, without the trivial one of autonomous flows."""
         return self._spectrum[0]
+
+    @cached_property
+    def _finer(self) -> tuple[float, np.ndarray]:
+        """Period and multipliers on a mesh with intervals half as long, or nan."""
+        problem, nothing = self._problem, np.full(len(self.multipliers), np.nan + 0j)
+        u = problem.halved(self.u)
+        finer = problem.with_unknowns(u, self.value, 2 * problem.intervals, problem.copies)
+        found = solved(finer, u, self.value)
+        if found is None:
+            return np.nan, nothing
+        other = CycleOrbit(finer, found, self.value)
+        return other.period, other.multipliers
+
+    @property
+    def period_error(self) -> float:
+        """Error of the period: the difference to a mesh with intervals half as long, which is the error to 4^-degree of it, taken twice."""
+        return 2.0 * abs(self._finer[0] - self.period)
+
+    @property
+    def multiplier_errors(self) -> np.ndarray:
+        """Error of each multiplier, told in the same way."""
+        apart = np.abs(self.multipliers[:, None] - self._finer[1])
+        return 2.0 * apart.min(axis=1, initial=np.inf)
 
     @property
     def trivial_error(self) -> float:

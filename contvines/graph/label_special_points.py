@@ -12,6 +12,7 @@ from ..bifurcation.kind import Classified
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.located import Located, Role
 from ..bifurcation.location_error import missed, singular_within
+from ..bifurcation.mesh_error import mesh_error
 from ..bifurcation.multiplier_counts import counts
 from ..bifurcation.point_on_branch import PointOnBranch
 from ..bifurcation.switching import null_vectors
@@ -253,7 +254,9 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
         special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
     )
     if isinstance(problem, Adaptive):
-        own = problem.accuracy(special.u, special.value) * engine.parameter_unit(special.value)
+        own = mesh_error(engine, special)
+        if own is None:
+            own = problem.accuracy(special.u, special.value) * engine.parameter_unit(special.value)
         special.location_error = max(special.location_error, own)
         if special.kind == "homoclinic":
             special.location_error = max(

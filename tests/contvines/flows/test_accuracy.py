@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 import contvines as cv
 from contvines.flows import mesh
 from contvines.flows.newton import solved
+from tools.flow_demos import fields
 
 pytestmark = pytest.mark.slow
 
@@ -61,6 +62,35 @@ def test_periods_converge_with_twice_the_degree(degree, coarse, expected):
         assert error < stated + 1e-11  # rounding of the reference
         assert abs(orbit.multipliers[0].real - multiplier) < stated + 1e-10
     assert errors[1] < 0.5 ** (2 * degree - 1) * errors[0] + 1e-11
+
+
+@pytest.mark.parametrize("error", [1e-3, 1e-5, 1e-6])
+@pytest.mark.parametrize("degree", [2, 4, 6])
+def test_periods_and_multipliers_are_as_exact_as_they_say(degree, error, expected):
+    period, multiplier = expected
+    orbit = cv.FlowProblem(brusselator, [1.0, 2.0], {"b": B}, degree=degree, error=error).attractor()
+    assert abs(orbit.period - period) < orbit.period_error + 1e-12
+    assert orbit.period_error < 10.0 * abs(orbit.period - period) + 1e-10
+    assert abs(orbit.multipliers[0] - multiplier) < orbit.multiplier_errors[0] + 1e-12
+
+
+@pytest.mark.parametrize("degree", [3, 4, 5])
+def test_special_points_are_as_exact_as_they_say(degree):
+    """Langford's flow (COCO's demo): the Neimark-Sacker point in closed form; Bautin's normal form: the fold."""
+
+    seed = cv.FlowProblem(
+        lambda x, p: fields.langford(x, p.rho, np), [0.3, 0.4, 0.0], {"rho": 1.5}, degree=degree, error=1e-4
+    ).attractor()
+    graph = cv.diagram(seed, over="rho", within=(0.2, 2.0), depth=0)
+    (point,) = graph.of_kind("neimark-sacker")
+    exact = 0.51 / (1.3 - 0.343 / 3 - 0.51 * 0.7)
+    assert abs(point.value - exact) <= point.location_error
+    flow = cv.FlowProblem(
+        lambda x, p: fields.hopf(x, p.a, np), [0.0, 0.0], {"a": -1.0}, degree=degree, error=1e-4
+    )
+    graph = cv.diagram(flow, over="a", within=(-1.0, 1.0), depth=1)
+    (point,) = graph.of_kind("fold")
+    assert abs(point.value + 0.25) <= point.location_error
 
 
 def test_a_saddle_node_on_the_circle_ends_a_branch():

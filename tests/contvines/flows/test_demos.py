@@ -34,7 +34,7 @@ def compared(name):
         if row["value"] is not None:
             away = abs(point.value - row["value"])
             assert away <= AWAY.get(point.kind, CLOSE) * width, (point.label, row["value"])
-            assert away <= 30.0 * point.location_error + 3e-12 * width, "the stated error is too small"
+            assert away <= point.location_error + 1e-12 * width, "the stated error is too small"
     return demo, found
 
 
