@@ -20,6 +20,7 @@ import numpy as np
 from ..continuation.engine import Solved
 from .determinant import turned
 from .located import Located, Role
+from .multiplier_counts import pairs_past
 from .segment import Segment
 
 #: sort of multipliers -> kinds at which one of them passes the circle
@@ -41,6 +42,9 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     if engine.detection == "map" and not engine.adaptive and _hidden_beside_fold(segment, found):
         return True
     plus, minus, pairs = (b - a for a, b in zip(before, after))
+    if engine.detection == "real" and plus and plus % 2 == 0:
+        ends = pairs_past(engine, np.array([segment.a.row, segment.b.row]))
+        plus -= int(ends[1] - ends[0])  # a pair has passed the axis, where only branch points are looked for
     side = turned(segment.a, segment.b)
     if engine.scaled and engine.signed and abs(plus) == 1 and side is False:
         plus = 0  # a count that the determinant contradicts is that of rounding

@@ -12,15 +12,12 @@ from ..continuation.loop import MARGIN
 from ..continuation.status import Status
 from .branch_jumps import inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicious, turns_twice
+from .kinks import kinked, nearest, pointed
 from .locate import locate
-from .located import Located, Role
+from .located import NOWHERE, Located, Role
 from .segment import Segment
 from .segment_search import SegmentSearch
 
-REACH, EDGE = (
-    1.5,
-    0.9,
-)  # lengths of a segment within which the distance to a singular matrix, continued, may be zero
 BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
 MOST = 0.5  # ... but not more
 NEXT = (
@@ -66,25 +63,24 @@ class Detector(SegmentSearch):
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
         born = pairs_born(seen) if engine.m > 2 else np.zeros(len(lengths), dtype=bool)
-        close = np.zeros(len(lengths), dtype=bool)
+        sharp = pointed(nearest(engine, wide.rows), sides[:, 1], lengths)
         if engine.many:
             inside[:, SLOPE + 1 : SLOPE + 4] = False
-            close = self._near_singular(-wide.rows[:, 0], sides[:, 1], lengths)
         meets, lands = self._meetings_and_landings(chunk)
         told = ((sides[1:] != sides[:-1]).any(axis=1) | borders)[extra:] | meets
-        inside, born, close = inside[extra:], born[extra:] & ~meets, close[extra:]
+        inside, born, sharp = inside[extra:], born[extra:] & ~meets, sharp[extra:] & ~meets
         inside[meets] = (
             False  # a branch that comes back to a symmetry is marginal there: no point to cut it at
         )
         movable = lands if chunk.status == Status.RUNNING else lands[:-1]
         landed = int(movable.argmax()) if movable.any() else None
         events: list[Located] = []
-        for i in np.flatnonzero((told | close | born | inside.any(axis=1))[:landed]).tolist():
+        for i in np.flatnonzero((told | sharp | born | inside.any(axis=1))[:landed]).tolist():
             signs = sides[i + extra : i + extra + 2, 1].tolist()
             segment = Segment(engine, chunk.solved(i, signs[0]), chunk.solved(i + 1, signs[1]))
             columns = np.flatnonzero(inside[i]).tolist()
             split = self.inside(segment, real, columns) if columns or born[i] else None
-            if close[i]:
+            if engine.many and sharp[i]:
                 found = self._closely(segment, real)
             elif split is not None:
                 found = [*self.both(segment, *split, real), _plain(*split)]
@@ -95,6 +91,10 @@ class Detector(SegmentSearch):
                 if split is not None:
                     found = self.both(segment, *split, real)
             else:
+                found = []
+            if sharp[i] and not (engine.many or found) and kinked(segment):
+                return [*events, Located(float(i), "", 0, segment.a, NOWHERE, 0.0, Role.LEAP)]
+            if not (found or told[i] or split is not None or (engine.many and sharp[i])):
                 continue
             found.sort(key=lambda e: e.position)
             leaping = leap(segment, found)
@@ -169,24 +169,6 @@ class Detector(SegmentSearch):
             meets |= far[1:] & far[:-1] & (np.einsum("ij,ij->i", part[1:], part[:-1]) < 0.0)
             lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < NEXT * size[:-1])
         return meets, lands
-
-    def _near_singular(self, distance: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-        """Segments, of a problem with many unknowns, in which an even number of branch points may lie: where the signs at the ends are
-
-        the same, but the distances to a singular matrix, continued from before and from behind, reach zero.
-        """
-        falls, rises = distance[:-1] - distance[1:], distance[1:] - distance[:-1]
-        with np.errstate(all="ignore"):
-            ahead = np.where(
-                falls > 0.0, distance[1:] * lengths / falls, np.inf
-            )  # zero behind the segment's end
-            back = np.where(rises > 0.0, distance[:-1] * lengths / rises, np.inf)  # ... before its beginning
-        # at the ends of a chunk there is only one side to tell: its zero has to lie well inside
-        before, behind = np.append(np.inf, ahead[:-1]) / lengths, np.append(back[1:], np.inf) / lengths
-        inside = (before < REACH) & (behind < REACH)
-        if len(lengths) > 1:
-            inside[0], inside[-1] = behind[0] < EDGE, before[-1] < EDGE
-        return (signs[:-1] == signs[1:]) & inside
 
     def _closely(self, segment: Segment, real: bool) -> list[Located]:
         """The special points of a segment of a problem with many unknowns, from eigenvalues."""

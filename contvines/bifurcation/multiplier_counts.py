@@ -49,3 +49,10 @@ def balance(engine: Engine, rows: np.ndarray) -> np.ndarray:
     before = np.where(size <= 0.0, size, -np.inf).max(axis=-1, initial=-np.inf)
     both = np.isfinite(past) & np.isfinite(before)
     return np.where(both, np.where(both, past, 0.0) + np.where(both, before, 0.0), 0.0)
+
+
+def pairs_past(engine: Engine, rows: np.ndarray) -> np.ndarray:
+    """Of eigenvalues that all count as real ones ("real"), how many are past the axis in pairs that rounding has not made; shape (...)."""
+    re, im = rows[..., : 2 * engine.m : 2], np.abs(rows[..., 1 : 2 * engine.m : 2])
+    unit = np.minimum(np.hypot(re, im).max(axis=-1, keepdims=True, initial=0.0), 1.0)
+    return ((re > PAST) & (im > engine.settings.critical * unit)).sum(axis=-1)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -23,6 +23,7 @@ LEAST = 1.6
 ATTEMPTS = 22  # halvings of the amplitude
 UPRIGHT, VISIBLE = 1e-14, 1e-4  # a change of the parameter that is none, over at least this length
 MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
+CROOKED = 0.5  # part of what a side lacks of proportion that is left at half the distance: a quarter of a smooth one, seven tenths of a root
 ALIKE = 1e-5  # null vectors of one point grow alike; what grows by less than this part is none
 ASIDE = (1e-15, -3e-15, 1e-14, -3e-14)  # of the unknowns
 SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
@@ -301,9 +302,36 @@ def _depart(
     for asked in (exchanged, None) if exchanged is not None else (None,):
         for least, reach in ways:
             found = _lined(engine, u, p, tangent, amplitude, one_sided, direction, bend, least, reach, asked)
+            if found is not None and (straight := _straight(engine, engine.join(u, p), found)) is not None:
+                again = _lined(
+                    engine, u, p, tangent, amplitude, one_sided, straight, 0.0, least, reach, asked
+                )
+                return again or found
             if found is not None:
                 return found
     return None
+
+
+def _straight(engine: Engine, z: np.ndarray, found: Departure) -> np.ndarray | None:
+    """Where one of the two sides lies on the known branch, which turns round here (at a pitchfork), the direction of the other one; else None.
+
+    What a smooth branch leaves of proportion at half the distance is a quarter, what one with a root does, at which it turns, more.
+    """
+    if found.back is None:
+        return None
+    rough, straight = False, None
+    for side, first in ((1.0, found.ahead), (-1.0, found.back)):
+        nearer = (
+            _at(engine, z, found.direction, side * found.amplitude * part, 0.0, GRAZING)
+            for part in (0.5, 0.25)
+        )
+        gaps = [engine.join(point.u, point.p) - z for point in (first, *nearer) if point is not None]
+        left = [engine.norm(wide - 2.0 * narrow) for wide, narrow in pairwise(gaps)]
+        if len(left) == 2 and left[1] <= max(CROOKED * left[0], engine.settings.critical * found.amplitude):
+            straight = engine.unit(side * gaps[0])
+        else:
+            rough = True
+    return straight if rough else None
 
 
 def _lined(

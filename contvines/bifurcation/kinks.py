@@ -1,0 +1,75 @@
+"""Kinks: the nearest multiplier comes to the circle in a straight line, and goes back in another one.
+
+Along a branch a multiplier that touches the circle does so as a parabola. Where it falls to nothing in a straight line, and no count
+changes, a step has led from one branch to another through the point in which they cross: both are unstable alike, and where unknowns of
+very different sizes hide the corner the rule of the loop, which compares tangents, sees none.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..continuation.engine import Engine
+from .multiplier_counts import sizes_by_sort
+from .segment import Segment
+
+PLACES = np.linspace(0.0, 1.0, 9)
+STEEP = 0.25  # part of the slope at first by which the sides of a kink are at least as steep when looked at nearer
+ZOOMS = 8
+AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
+
+
+def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Segments with equal signs at both ends in which distances, continued from before and from behind in straight lines, reach zero.
+
+    Parameters
+    ----------
+    distances : ndarray, shape (n,)
+        Positive.
+    signs : ndarray, shape (n,)
+    lengths : ndarray, shape (n - 1,)
+    """
+    changes = np.diff(distances)
+    with np.errstate(all="ignore"):
+        ahead = np.where(changes < 0.0, -distances[1:] / changes, np.inf) * lengths
+        back = np.where(changes > 0.0, distances[:-1] / changes, np.inf) * lengths
+    # at the ends of a chunk there is only one side to tell: its zero has to lie well inside
+    before, behind = np.append(np.inf, ahead[:-1]) / lengths, np.append(back[1:], np.inf) / lengths
+    inside = (before < AHEAD) & (behind < AHEAD)
+    if len(lengths) > 1:
+        inside[0], inside[-1] = behind[0] < EDGE, before[-1] < EDGE
+    return (signs[:-1] == signs[1:]) & inside
+
+
+def nearest(engine: Engine, rows: np.ndarray) -> np.ndarray:
+    """Distance of the real multiplier nearest to +1 (of eigenvalues: to zero, pairs included, which pass the axis elsewhere), shape (n,)."""
+    if engine.many:
+        return -rows[:, 0]
+    with np.errstate(all="ignore"):
+        if engine.detection == "real":
+            sizes = np.hypot(rows[:, : 2 * engine.m : 2], rows[:, 1 : 2 * engine.m : 2])
+        else:
+            sizes = np.abs(sizes_by_sort(engine, rows)[0])
+        return np.fmin.reduce(sizes, axis=1, initial=np.inf)
+
+
+def kinked(segment: Segment) -> bool:
+    """Whether the real multiplier nearest to the circle has a kink there within a segment: looked at nearer, its sides stay as steep."""
+    engine, low, high, first = segment.engine, 0.0, 1.0, 0.0
+    for zoom in range(ZOOMS):
+        places = low + (high - low) * PLACES
+        rows, found = segment.rows(places)
+        places = places[found]
+        if len(places) < 3:
+            return False
+        near = nearest(engine, rows[found])
+        k = int(np.argmin(near[1:-1])) + 1
+        steepness = min(near[0], near[-1]) / (high - low)
+        if not (np.isfinite(near).all() and near[k] < min(near[0], near[-1])):
+            return False
+        if zoom == 0:
+            first = steepness
+        elif steepness < STEEP * first:
+            return False
+        low, high = float(places[k - 1]), float(places[k + 1])
+    return True
