@@ -7,7 +7,7 @@
 //
 // Same bits on every processor
 //   The compiler contracts nothing (-ffp-contract=off) and reorders nothing; both variants give the same bits. Of <math.h> only
-//   functions that are exact everywhere may be called: sqrt, fabs, floor, ceil, copysign, frexp, ldexp, isfinite, isnan and fma where
+//   functions that are exact everywhere may be called: sqrt, fabs, floor, ceil, rint, copysign, frexp, ldexp, isfinite, isnan and fma where
 //   a fused operation is meant. Sines, cosines, exponentials and the like come from `math.hpp`.
 //
 // How Python calls it

@@ -6,6 +6,7 @@
 #include "math.hpp"
 #include "record.hpp"
 #include "march.hpp"
+#include "scan.hpp"
 #include "simulation.hpp"
 
 #if defined(__x86_64__)
@@ -67,6 +68,8 @@ EXPORT whole core_points(continuation::Frame* frame, whole what, const double* c
                          const continuation::Aim* aim) {
     return continuation::points(*frame, what, chord, start, length, places, count, border, along, max_sweeps, {u, tangents, rows, numbers}, *aim);
 }
+
+EXPORT void core_scan(const continuation::Scanned* scanned) { continuation::scan(*scanned); }
 
 // ---- algebra ---------------------------------------------------------------------------------------------------------------------
 EXPORT whole core_multipliers(const double* A, const double* D, whole length, whole n, double twist, double* re, double* im, double* scratch) {

@@ -15,6 +15,7 @@ from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicio
 from .kinks import kinked, nearest, pointed
 from .locate import locate
 from .located import NOWHERE, Located, Role
+from .scan import Scan, scan
 from .segment import Segment
 from .segment_search import SegmentSearch
 
@@ -43,31 +44,34 @@ class Detector(SegmentSearch):
         wide = chunk.widened() if len(chunk) == 2 else chunk  # two points are too few for a parabola
         extra = len(wide) - len(chunk)
         own = [np.asarray(own.values(wide), dtype=float) for own in self.own]
+        scanned = scan(engine, self.symmetries, wide)
+        slopes, lengths = wide.tangents[:, -1], scanned.lengths
         seen = evidence(
             engine,
             wide.rows,
-            wide.tangents[:, -1],
+            scanned.smallest,
+            scanned.spectra,
+            slopes,
             wide.signs,
             engine.upright(float(wide.values[0])),
             np.column_stack(own) if own else np.zeros((len(wide), 0)),
         )
         sides, outside = filled(seen.sides), seen.outside
-        steps = np.diff(np.column_stack([wide.points, wide.values]), axis=0)
-        lengths = np.sqrt((steps**2) @ engine.weights)
         borders = (outside[1:] != outside[:-1]) & (outside[1:] == real)
         if real and outside[extra] and not outside[extra + 1 :].all():
             borders |= outside[1:]
-        inside = suspicious(seen, lengths)
-        inside[:, SLOPE] |= turns_twice(seen.distances[:, SLOPE], steps[:, -1], lengths)
+        columns, inside = suspicious(seen, scanned)
+        inside[:, SLOPE] |= turns_twice(seen.distances[:, SLOPE], np.diff(wide.values), lengths)
         smallest = seen.first_margin - 1
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
         born = pairs_born(seen) if engine.m > 2 else np.zeros(len(lengths), dtype=bool)
-        sharp = pointed(nearest(engine, wide.rows), sides[:, 1], lengths)
+        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths)
         if engine.many:
             inside[:, SLOPE + 1 : SLOPE + 4] = False
-        meets, lands = self._meetings_and_landings(chunk)
-        told = ((sides[1:] != sides[:-1]).any(axis=1) | borders)[extra:] | meets
+        meets, lands = self._meetings_and_landings(scanned)
+        told = ((sides[1:] != sides[:-1]).any(axis=1) | borders | meets)[extra:]
+        meets, lands = meets[extra:], lands[extra:]
         inside, born, sharp = inside[extra:], born[extra:] & ~meets, sharp[extra:] & ~meets
         inside[meets] = (
             False  # a branch that comes back to a symmetry is marginal there: no point to cut it at
@@ -78,8 +82,8 @@ class Detector(SegmentSearch):
         for i in np.flatnonzero((told | sharp | born | inside.any(axis=1))[:landed]).tolist():
             signs = sides[i + extra : i + extra + 2, 1].tolist()
             segment = Segment(engine, chunk.solved(i, signs[0]), chunk.solved(i + 1, signs[1]))
-            columns = np.flatnonzero(inside[i]).tolist()
-            split = self.inside(segment, real, columns) if columns or born[i] else None
+            suspects = columns[inside[i]].tolist()
+            split = self.inside(segment, real, suspects) if suspects or born[i] else None
             if engine.many and sharp[i]:
                 found = self._closely(segment, real)
             elif split is not None:
@@ -155,18 +159,16 @@ class Detector(SegmentSearch):
         found = [_placed(e, share + (1.0 - share) * e.position, bracket) for e in found]
         return before_stop(found) + ([] if leaping is None else [leaping])
 
-    def _meetings_and_landings(self, chunk: Chunk) -> tuple[np.ndarray, np.ndarray]:
+    def _meetings_and_landings(self, scanned: Scan) -> tuple[np.ndarray, np.ndarray]:
         """Segments on which the part that a symmetry changes turns round, and those that end next to where it does.
 
         A doubled branch that comes back to the fixed space is there as singular as any branch point: the nearer a point, the more of the other
         branch rounding mixes into its tangent, and what such points say is nothing. A step of another length ends elsewhere.
         """
-        meets, lands = np.zeros((2, len(chunk) - 1), dtype=bool)
-        for test in self.symmetries:
-            part = test.part(chunk.points, chunk.values)
-            size = np.abs(part).max(axis=1, initial=0.0)
+        meets, lands = np.zeros((2, len(scanned.lengths)), dtype=bool)
+        for size, turn in zip(scanned.sizes, scanned.turns):
             far = size > self.engine.settings.symmetric
-            meets |= far[1:] & far[:-1] & (np.einsum("ij,ij->i", part[1:], part[:-1]) < 0.0)
+            meets |= far[1:] & far[:-1] & (turn < 0.0)
             lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < NEXT * size[:-1])
         return meets, lands
 

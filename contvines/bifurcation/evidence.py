@@ -12,7 +12,8 @@ import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.loop import MARGIN
-from .multiplier_counts import PAST, balance, sizes_by_sort
+from .multiplier_counts import balance
+from .scan import Scan, Spectra
 
 UNLIKE = 0.2  # part of the largest of three distances of a pair by which its bend may differ between them
 TINY = np.finfo(float).tiny  # stands for zero where a logarithm or a bend is taken
@@ -32,24 +33,47 @@ class Evidence(NamedTuple):
         where nothing tells.
     distances : ndarray, shape (n, j)
         Numbers that pass zero at special points: the parameter's part of the tangent, of real multipliers on both sides and of pairs the nearest to the
-        circle, users' tests, the smallest margin, all margins.
-    outside : ndarray of bool, shape (n,)
-        Whether a margin is negative.
-    pairs : ndarray of bool, shape (n,)
-        Whether there are complex pairs.
-    first_margin : int
-        Column of the first margin.
+        circle, users' tests, the smallest margin.
+    margins : ndarray, shape (n, w)
+        All of them, of which the distances follow those in ``distances``.
+    pairs : ndarray, shape (n,)
+        Not 0 where there are complex pairs.
     """
 
     sides: np.ndarray
     distances: np.ndarray
-    outside: np.ndarray
+    margins: np.ndarray
     pairs: np.ndarray
-    first_margin: int
+
+    @property
+    def first_margin(self) -> int:
+        """Column of the first margin's distance."""
+        return self.distances.shape[1]
+
+    @property
+    def outside(self) -> np.ndarray:
+        """Whether a margin is negative."""
+        return self.distances[:, -1] < 0.0
+
+    def distance(self, column: int | np.ndarray) -> np.ndarray:
+        """One of the distances, or some of the margins', at all points."""
+        first = self.first_margin
+        return (
+            self.distances[:, column]
+            if np.max(column, initial=0) < first
+            else self.margins[:, column - first] - MARGIN
+        )
 
 
 def evidence(
-    engine: Engine, rows: np.ndarray, slopes: np.ndarray, signs: np.ndarray, flat: float, own: np.ndarray
+    engine: Engine,
+    rows: np.ndarray,
+    smallest: np.ndarray,
+    told: Spectra,
+    slopes: np.ndarray,
+    signs: np.ndarray,
+    flat: float,
+    own: np.ndarray,
 ) -> Evidence:
     """What points tell.
 
@@ -57,6 +81,10 @@ def evidence(
     ----------
     engine : Engine
     rows : ndarray, shape (n, row_size)
+    smallest : ndarray, shape (n,)
+        Smallest margins.
+    told : Spectra
+        What their multipliers tell.
     slopes : ndarray, shape (n,)
         The parameter's parts of the tangents; up to ``flat`` they are rounding.
     signs : ndarray, shape (n,)
@@ -65,25 +93,17 @@ def evidence(
     own : ndarray, shape (n, o)
         Values of users' tests.
     """
-    with np.errstate(all="ignore"):
-        sizes = sizes_by_sort(engine, rows)
-        past = (sizes > PAST).sum(axis=2)
-        near = np.fmin.reduce(np.abs(sizes), axis=2, initial=np.inf)
-        told = (near > PAST) & (near < np.inf)  # on the circle it is rounding
-        near = np.where(told, np.where(past % 2, -near, near), np.nan)
-        slopes = np.where(np.abs(slopes) > flat, slopes, np.nan)
-        sides = [np.nan_to_num(np.sign(slopes)), np.sign(signs), *(past + 1)]
-        tests = [*own.T, balance(engine, rows)] if engine.exchanges else own.T
-        sides += [np.where(values >= 0.0, 1, -1) for values in tests]
-        first = 5 + own.shape[1]
-        distances = np.empty(
-            (len(rows), first + rows.shape[1] - 2 * engine.m)
-        )  # of long branches the margins are many
-        margins = np.subtract(rows[:, 2 * engine.m :], MARGIN, out=distances[:, first:])
-        smallest = np.fmin.reduce(margins, axis=1, initial=np.inf)
-    distances[:, :first] = np.column_stack([slopes, *near, own, smallest])
-    pairs = np.asarray(np.isfinite(sizes[2]).any(axis=1))
-    return Evidence(np.column_stack(sides).astype(int), distances, smallest < 0.0, pairs, first)
+    directions = np.where(np.abs(slopes) > flat, np.sign(slopes), 0.0)
+    slopes = np.where(directions != 0.0, slopes, np.nan)
+    tests = [*own.T, balance(engine, rows)] if engine.exchanges else own.T
+    sides = [
+        directions,
+        np.sign(signs),
+        *(told.past + 1),
+        *(np.where(values >= 0.0, 1, -1) for values in tests),
+    ]
+    distances = np.column_stack([slopes, *told.near, own, smallest - MARGIN])
+    return Evidence(np.column_stack(sides).astype(int), distances, rows[:, 2 * engine.m :], told.pairs)
 
 
 def filled(sides: np.ndarray) -> np.ndarray:
@@ -96,34 +116,40 @@ def filled(sides: np.ndarray) -> np.ndarray:
     return np.take_along_axis(sides, np.where(last < 0, known.argmax(axis=0), last), axis=0)
 
 
-def suspicious(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
-    """Which distances may come to zero within segments and go back, shape (n - 1, j): parabolas through three neighbours of one sign do."""
-    values = seen.distances
-    found = np.zeros((len(lengths), values.shape[1]), dtype=bool)
-    if len(lengths) > 1:
-        columns = np.append(np.arange(seen.first_margin), seen.first_margin + _low(seen, lengths))
-        values = values[:, columns]
-        three = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
-        pair = three[:, :, PAIR]
-        three[:, :, PAIR] = np.where(pair > 0.0, np.maximum(pair - UNLIKE * pair.max(axis=0), TINY), pair)
-        dip = parabola_dips(three[0], three[1], three[2], lengths[:-1, None], lengths[1:, None])
-        found[:-1, columns] |= dip
-        found[1:, columns] |= dip
-    return found
+def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
+    """Which distances may come to zero within segments and go back: parabolas through three neighbours of one sign do.
 
-
-def _low(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
-    """Margins that come near enough to zero for a parabola to pass it: below the lowest of three points it falls by a part of the changes between them.
-
-    That part is at most a quarter of the square of the longer length over the shorter one.
+    Returns
+    -------
+    columns : ndarray of int, shape (j,)
+        All distances but margins', then those of margins for which it is not excluded.
+    found : ndarray of bool, shape (n - 1, j)
     """
-    margins = seen.distances[:, seen.first_margin :]
+    first, lengths = seen.first_margin, scan.lengths
+    if len(lengths) < 2:
+        return np.arange(first), np.zeros((len(lengths), first), dtype=bool)
+    size = np.abs(seen.distances)
     with np.errstate(all="ignore"):
-        least = np.fmin.reduce(np.abs(margins), axis=0)
-        change = np.fmax.reduce(np.abs(np.diff(margins, axis=0)), axis=0)
+        # below the lowest of three points a parabola falls by a part of the changes between them: at most a quarter of the
+        # square of the longer length over the shorter one
         uneven = lengths[1:] / lengths[:-1]
-        part = 0.25 * float(np.fmax.reduce(np.fmax(uneven, 1.0 / uneven), initial=1.0)) ** 2
-        return np.flatnonzero(least < 2.0 * part * change)
+        part = 0.5 * float(np.fmax.reduce(np.fmax(uneven, 1.0 / uneven), initial=1.0)) ** 2
+        least = np.fmin.reduce(size, axis=0)
+        least[PAIR] -= UNLIKE * np.fmax.reduce(size[:, PAIR])
+        low = np.flatnonzero(least < part * np.fmax.reduce(np.abs(np.diff(seen.distances, axis=0)), axis=0))
+        low_margins = first + np.flatnonzero(scan.least < part * scan.change)
+    found = np.zeros((len(lengths), first + len(low_margins)), dtype=bool)
+    for columns, places in ((low, low), (low_margins, slice(first, None))):
+        values = seen.distance(columns)
+        three = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
+        pair = three[:, :, columns == PAIR]
+        three[:, :, columns == PAIR] = np.where(
+            pair > 0.0, np.maximum(pair - UNLIKE * pair.max(axis=0), TINY), pair
+        )
+        dip = parabola_dips(three[0], three[1], three[2], lengths[:-1, None], lengths[1:, None])
+        found[:-1, places] |= dip
+        found[1:, places] |= dip
+    return np.append(np.arange(first), low_margins), found
 
 
 def parabola_dips(
@@ -164,8 +190,9 @@ def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
     A margin that is negative at both ends may be positive in between where the lines through the two points before and through
     the two behind are, which lie above it wherever it bends downwards, or is a roof, as the reserve of friction is.
     """
-    found = seen.outside[:-1] & seen.outside[1:]
-    margins = seen.distances[:, seen.first_margin :]
+    outside = seen.outside
+    found = outside[:-1] & outside[1:]
+    margins = seen.margins - MARGIN
     kept = (margins[:-1] < 0.0) & (margins[1:] < 0.0)
     for j in np.flatnonzero(kept[found].any(axis=0)):
         found &= _may_rise(margins[:, j], lengths) | ~kept[:, j]

@@ -20,6 +20,7 @@ from .located import NOWHERE, Located, Role
 from .location_error import blurred
 from .one_sided_limits import one_sided
 from .point_on_branch import PointOnBranch
+from .scan import spectra
 from .segment import Segment
 from .symmetry_test import SymmetryTest
 from .user_functions import own_tests
@@ -189,9 +190,12 @@ class SegmentSearch:
     def told(self, points: Sequence[Solved]) -> Evidence:
         """What some points tell."""
         own = np.array([[own.at(point) for own in self.own] for point in points])
+        rows = np.array([point.row for point in points])
         return evidence(
             self.engine,
-            np.array([point.row for point in points]),
+            rows,
+            self.engine.smallest_margin(rows),
+            spectra(self.engine, rows),
             np.array([point.tangent[-1] for point in points]),
             np.array([point.sign for point in points]),
             self.engine.upright(points[0].p),
@@ -211,36 +215,37 @@ class SegmentSearch:
         ends = self.told([segment.a, segment.b])
         smallest = ends.first_margin - 1
 
-        def look(low: float, high: float) -> tuple[list[tuple[float, Solved]], np.ndarray, np.ndarray]:
-            """Points between two places, their distances, and which of them tell something new."""
+        def look(low: float, high: float) -> tuple[list[tuple[float, Solved]], Evidence, np.ndarray]:
+            """Points between two places, what they tell, and which of them tell something new."""
             places = low + (high - low) * PLACES
             found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
             if not found:
-                return found, ends.distances[:0], np.zeros(0, dtype=bool)
+                return found, ends, np.zeros(0, dtype=bool)
             seen, (one, other) = self.told([point for _, point in found]), ends.sides
             new = ((seen.sides - one) * (seen.sides - other) * seen.sides * one * other != 0).any(axis=1)
             if real and not ends.outside.any():
                 new |= seen.outside
             elif not real and ends.outside.all():
                 new |= seen.distances[:, smallest] > self.engine.settings.shown
-            return found, seen.distances, new
+            return found, seen, new
 
         first = look(0.0, 1.0)
         for column in [None, *columns]:
-            (found, distances, new), low, high, ends_here = first, 0.0, 1.0, ends.distances[:, column]
+            (found, seen, new), low, high = first, 0.0, 1.0
+            ends_here = ends.distance(column or 0)
             for _ in range(ROOF if column == smallest else NARROWER):
                 if new.any():
                     return found[int(new.argmax())]
                 if column is None or not found:
                     break
-                values = np.array([ends_here[0], *distances[:, column], ends_here[1]])
+                values = np.array([ends_here[0], *seen.distance(column), ends_here[1]])
                 around = np.array([low, *(s for s, _ in found), high])
                 k = int(np.nan_to_num(np.abs(values[1:-1]), nan=np.inf).argmin()) + 1
                 three, gaps = values[k - 1 : k + 2], np.diff(around[k - 1 : k + 2])
                 if column != smallest and not parabola_dips(*(three * np.sign(three[0])), *gaps):
                     break
                 low, high, ends_here = around[k - 1], around[k + 1], three[::2]
-                found, distances, new = look(low, high)
+                found, seen, new = look(low, high)
         return None
 
     def passed(self, segment: Segment) -> tuple[float, Solved] | None:

@@ -1,0 +1,131 @@
+"""One pass over a chunk of points: lengths, margins, multipliers and symmetric parts, from which detection begins.
+
+The native core does it for compiled problems (native/scan.hpp), numpy for others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ..continuation.aims import KINDS
+from ..continuation.chunk import Chunk
+from ..continuation.engine import Engine
+from ..continuation.loop import MARGIN
+from ..core.library import NOTHING, POINTER, address, function
+from ..core.records import pack
+from .multiplier_counts import PAST, sizes_by_sort
+from .symmetry_test import SymmetryTest
+
+
+class Spectra(NamedTuple):
+    """Multipliers of n points.
+
+    Attributes
+    ----------
+    near : ndarray, shape (3, n)
+        Of real ones near 1, near -1 and of pairs the distance of the nearest from the circle, as a logarithm (for flows real parts from the
+        axis), negative where an odd number is past it; NaN where there are none, or one on the circle to rounding.
+    past : ndarray, shape (3, n)
+        How many are past the circle.
+    pairs : ndarray, shape (n,)
+        Not 0 where there are complex pairs.
+    """
+
+    near: np.ndarray
+    past: np.ndarray
+    pairs: np.ndarray
+
+
+class Scan(NamedTuple):
+    """Of n points and the n - 1 segments between them, w margins and s symmetries.
+
+    Attributes
+    ----------
+    lengths : ndarray, shape (n - 1,)
+    smallest : ndarray, shape (n,)
+        Smallest margins, infinity without margins.
+    spectra : Spectra
+    least, change : ndarray, shape (w,)
+        Least distance of each margin from zero, and its largest change over one segment.
+    sizes : ndarray, shape (s, n)
+        Largest entry of the part that each symmetry changes.
+    turns : ndarray, shape (s, n - 1)
+        Inner products of that part at both ends of segments: negative where it turns round.
+    """
+
+    lengths: np.ndarray
+    smallest: np.ndarray
+    spectra: Spectra
+    least: np.ndarray
+    change: np.ndarray
+    sizes: np.ndarray
+    turns: np.ndarray
+
+
+def scan(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
+    """Scan a chunk."""
+    native = engine.compiled and engine.plain and all(test.affine is not None for test in symmetries)
+    return (in_native if native else with_arrays)(engine, symmetries, chunk)
+
+
+def spectra(engine: Engine, rows: np.ndarray) -> Spectra:
+    """What the multipliers of some rows tell."""
+    with np.errstate(all="ignore"):
+        sizes = sizes_by_sort(engine, rows)
+        past = (sizes > PAST).sum(axis=2)
+        near = np.fmin.reduce(np.abs(sizes), axis=2, initial=np.inf)
+        told = (near > PAST) & (near < np.inf)
+        near = np.where(told, np.where(past % 2, -near, near), np.nan)
+        return Spectra(near, past, np.isfinite(sizes[2]).any(axis=1))
+
+
+def with_arrays(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
+    """The reference."""
+    steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
+    margins = chunk.rows[:, 2 * engine.m :]
+    parts = [test.part(chunk.points, chunk.values) for test in symmetries]
+    with np.errstate(all="ignore"):
+        return Scan(
+            np.sqrt((steps**2) @ engine.weights),
+            engine.smallest_margin(chunk.rows),
+            spectra(engine, chunk.rows),
+            np.fmin.reduce(np.abs(margins - MARGIN), axis=0, initial=np.inf),
+            np.fmax.reduce(np.abs(np.diff(margins, axis=0)), axis=0, initial=0.0),
+            np.array([np.abs(part).max(axis=1, initial=0.0) for part in parts]),
+            np.array([np.einsum("ij,ij->i", part[1:], part[:-1]) for part in parts]),
+        )
+
+
+def in_native(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
+    """The same in the native core, for symmetries that are signed permutations."""
+    count, n, k, width = len(chunk), engine.n, len(symmetries), engine.row_size - 2 * engine.m
+    affine = [test.affine for test in symmetries if test.affine is not None]
+    orders = np.array([order for order, _, _ in affine], np.int64)
+    signs = np.array([sign for _, sign, _ in affine], float)
+    constants = np.array([constant for _, _, constant in affine], float)
+    found = Scan(
+        np.empty(count - 1),
+        np.empty(count),
+        Spectra(np.empty((3, count)), np.empty((3, count)), np.empty(count)),
+        np.empty(width),
+        np.empty(width),
+        np.empty((k, count)),
+        np.empty((k, count - 1)),
+    )
+    shift = np.zeros(n) if engine.shift is None else engine.shift
+    metric, room = (engine.metric.of_unknowns, engine.metric.of_parameter), np.empty((2, k, n))
+    scanned = pack(
+        count, n, engine.row_size, engine.m, KINDS[engine.detection], k, *map(float, metric), chunk.points, chunk.values, chunk.rows,
+        orders, signs, constants, shift, room, *found[:2], *found.spectra, *found[3:],
+    )  # fmt: skip
+    _native()(address(scanned))
+    return found
+
+
+@cache
+def _native() -> Callable[..., None]:
+    return function("core_scan", NOTHING, POINTER)

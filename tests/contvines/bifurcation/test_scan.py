@@ -1,0 +1,101 @@
+"""The scan of chunks: numbers known by hand, and the native core against numpy on drawn rows."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from contvines.bifurcation.scan import in_native, with_arrays
+from contvines.bifurcation.symmetry_test import SymmetryTest
+from contvines.continuation.arrays import Metric
+from contvines.continuation.chunk import Chunk
+from contvines.continuation.rows import Rows
+from contvines.continuation.status import Status
+from contvines.core.library import native
+
+BOTH = [with_arrays, *([in_native] if native() else [])]
+TURN = 2.0 * np.pi
+
+
+class Shown(Rows):
+    """What a scan asks of an engine: n unknowns of which the first is an angle, m multipliers, w margins."""
+
+    def __init__(self, n, m, w, detection="map", parameter_weight=0.25):
+        self.n, self.m, self.row_size, self.detection = n, m, 2 * m + w, detection
+        self.weights = np.append(np.full(n, 1.0 / n), parameter_weight)
+        self.metric = Metric(self.weights, np.ones(n + 1), 1.0 / n, parameter_weight)
+        self.shift = TURN * np.eye(n)[0]
+        self.compiled = self.plain = True
+
+
+def chunk(points, values, rows):
+    """A chunk; what a scan does not read is left out."""
+    return Chunk(points, values, np.zeros(0), rows, np.zeros(0), np.zeros(0), Status.RUNNING)
+
+
+def symmetry(apply, engine):
+    """The test of a symmetry."""
+    found = SimpleNamespace(apply=apply, offset=None, kind="symmetry-breaking")
+    return SymmetryTest(found, engine.n, engine.shift)
+
+
+@pytest.mark.parametrize("scan", BOTH)
+def test_numbers_known_by_hand(scan):
+    engine = Shown(2, 2, 2)
+    # what it changes is twice the second unknown
+    mirror = symmetry(lambda u: u * [1.0, -1.0] + [TURN, 0.0], engine)
+    points, values = np.array([[0.0, 0.5], [3.0, -3.5], [3.0, -3.5]]), np.array([0.0, 2.0, 4.0])
+    rows = np.array(
+        [
+            [np.e, 0.0, -(np.e**-2), 0.0, 3.0, 1.0],
+            [0.0, 1.0, 0.0, -1.0, np.nan, -2.0],
+            [np.e, 0.0, np.e**3, 0.0, 1.0, -1.0],
+        ]
+    )
+    found = scan(engine, [mirror], chunk(points, values, rows))
+    np.testing.assert_allclose(found.lengths, [np.sqrt(0.5 * 25.0 + 0.25 * 4.0), 1.0], rtol=1e-15)
+    np.testing.assert_allclose(found.smallest, [1.0, -2.0, -1.0])
+    near = [
+        [-1.0, np.nan, 1.0],
+        [2.0, np.nan, np.nan],
+        [np.nan, np.nan, np.nan],
+    ]  # a pair on the circle tells nothing
+    np.testing.assert_allclose(found.spectra.near, near, rtol=1e-14)
+    np.testing.assert_allclose(found.spectra.past, [[1, 0, 2], [0, 0, 0], [0, 0, 0]])
+    np.testing.assert_allclose(found.spectra.pairs, [0, 1, 0])
+    np.testing.assert_allclose(found.least, [1.0, 1.0], rtol=1e-11)
+    np.testing.assert_allclose(found.change, [0.0, 3.0])
+    np.testing.assert_allclose(found.sizes, [[1.0, 7.0, 7.0]])
+    np.testing.assert_allclose(found.turns, [[-7.0, 49.0]])
+
+
+NUMBERS = st.one_of(
+    st.sampled_from([0.0, -0.0, 1.0, -1.0, np.inf, -np.inf, np.nan, 1e-300, -2e-12, 1e300]),
+    st.floats(-8.0, 8.0, width=32),
+)
+
+
+@pytest.mark.skipif(not native(), reason="no native core")
+@given(st.data())
+def test_native_and_numpy_agree(data):
+    count, n, m, w = (data.draw(st.integers(low, high)) for low, high in ((2, 9), (1, 11), (0, 4), (0, 11)))
+    engine = Shown(n, m, w, data.draw(st.sampled_from(["map", "flow", "real", "none"])))
+    if data.draw(st.booleans()):
+        engine.shift = None
+    order = np.array(data.draw(st.permutations(range(n))))
+    signs = np.array(data.draw(st.lists(st.sampled_from([-1.0, 1.0]), min_size=n, max_size=n)))
+    applied = [lambda u: u + 0.0, lambda u: signs * u[order] + 0.25]
+    symmetries = [symmetry(apply, engine) for apply in applied[: data.draw(st.integers(0, 2))]]
+    assert all(test.affine is not None for test in symmetries)
+    drawn = chunk(
+        data.draw(arrays(float, (count, n), elements=st.floats(-20.0, 20.0))),
+        data.draw(arrays(float, count, elements=st.floats(-2.0, 2.0))),
+        data.draw(arrays(float, (count, 2 * m + w), elements=NUMBERS)),
+    )
+    one, other = (scan(engine, symmetries, drawn) for scan in (with_arrays, in_native))
+    flat = [[*found[:2], *found.spectra, *found[3:]] for found in (one, other)]
+    for expected, numbers in zip(*flat):
+        np.testing.assert_allclose(numbers, np.reshape(expected, numbers.shape), rtol=1e-13, atol=1e-11)
