@@ -5,6 +5,7 @@ from pathlib import Path
 from contvines.command.compose import machine
 from contvines.command.study_data import Sort, Study
 from contvines.shared.near_names import did_you_mean
+from orbits.machines.measures import way_out
 
 WITH_Y = ("diagram", "atlas", "trace", "plot")  # commands with axes
 
@@ -23,7 +24,7 @@ def check_bounds(study: Study, command: str) -> None:
         raise ValueError(
             "[continue] bounds: an atlas follows all that it meets to its end; leave them out, or use contvines diagram."
         )
-    known = _names(study)
+    known = measures_of(study)
     for name, (low, high) in study.bounds.items():
         if name not in known:
             raise ValueError(
@@ -53,10 +54,10 @@ def check_axes(study: Study, axes: dict[str, str | None], plot: Path | None) -> 
     for option, name in axes.items():
         if name is None:
             continue
-        known = list(dict.fromkeys([study.parameter, *_names(study)]))
+        known = list(dict.fromkeys([study.parameter, *measures_of(study)]))
         if name not in known:
             raise ValueError(
-                f"{option} {name}: there is no such measure{did_you_mean(name, known)}; choose one of {', '.join(known)}."
+                f"{option} {name}: there is no such measure{way_out(name) or did_you_mean(name, known)}; choose one of {', '.join(known)}."
             )
         if plot is None:
             raise ValueError(
@@ -64,12 +65,14 @@ def check_axes(study: Study, axes: dict[str, str | None], plot: Path | None) -> 
             )
 
 
-def _names(study: Study) -> list[str]:
+def measures_of(study: Study) -> list[str]:
+    """Names of all measures of a study's motions."""
     if study.sort is Sort.FLOW:
         return ["norm", "period", *study.flow.of_states]
-    from orbits.flows.native.measures import names
+    from orbits.flows.catalogue import flow_of
 
-    return list(names(machine(study)))
+    model = machine(study)
+    return list(flow_of(model).measure_names(model))
 
 
 def help_note(words: list[str]) -> str:

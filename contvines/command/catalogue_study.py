@@ -9,6 +9,7 @@ from contvines.command.study_errors import StudyError, refuse, validated
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.building import build
 from orbits.machines.catalogue import NAMES, model_class
+from orbits.machines.parameters import CONTACT_TIME
 from orbits.words import Word
 
 
@@ -56,7 +57,7 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
     loose = {key: value for key, value in parameters.items() if key not in machine.field_names()}
     own = {key: value for key, value in parameters.items() if key not in loose}
     try:
-        made = build({"name": name, **own})
+        made = build({"name": name, **own, **given(file.model, [CONTACT_TIME.name])})
     except ValueError as error:
         raise StudyError(f"[model] {error}") from error
     return built(Study.of(path, Sort.CATALOGUE, name, parameters, file, model=made, loose=loose))

@@ -71,7 +71,7 @@ def _physical(name: str) -> dict[str, Any] | None:
 
     from contvines.command.schema import StudySections, study_model
     from orbits.machines.catalogue import model_class
-    from orbits.machines.physical.machine import tables
+    from orbits.machines.physical.machine import CONTACT, tables
     from orbits.machines.physical.quantities import QuantityError
 
     try:
@@ -85,11 +85,13 @@ def _physical(name: str) -> dict[str, Any] | None:
         ]
         for key, entry in known.items()
     }
+    contact = f"{CONTACT.meaning}; for example {CONTACT.example}"
     settings: dict[str, Any] = {
         "name": (Literal[name], ...),  # type: ignore[valid-type]
         "units": (Literal["si"] | None, None),
         "unusual": (Annotated[bool, Field(description="allow sizes that nobody builds")], False),
         **{key: (fields[key] | None, entry.default) for key, entry in known.items()},
+        CONTACT.name: (Annotated[str | None, Field(description=contact)], None),
     }
     made = _with_units(inlined(study_model(StudySections, settings, fields)))
     made["properties"]["units"] = {"const": "si"}

@@ -19,7 +19,7 @@ from orbits.machines.physical import units
 from orbits.machines.physical.machine import physical, tables
 from orbits.machines.physical.quantities import Quantity, QuantityError, near_quantity
 
-OWN = ("name", "units", "unusual")
+OWN = ("name", "units", "unusual", "contact_time")
 SAID = ("word", "periods", "guess")
 
 
@@ -88,6 +88,7 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     places |= {key: "start" for key in start if key in known}
     try:
         told = {key: (model if section == "model" else start)[key] for key, section in places.items()}
+        told |= {key: model[key] for key in ("contact_time",) if key in model}
         machine = physical(name, told, bool(model.get("unusual", False)))
     except QuantityError as error:
         section = places.get(str(error).split(" ", 1)[0].rstrip(":"), "model")

@@ -14,7 +14,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from orbits.machines.parameters import Parameter
+from orbits.machines.parameters import CONTACT_TIME, Parameter
 
 LONGEST = 65_536  # letters of a word: 16 for each of the most forcing periods
 
@@ -305,4 +305,5 @@ def catalogue_model(name: str) -> type[Section]:
                 kind | None if default is None else kind,
                 default if left else entry.number(default),
             )
+    settings[CONTACT_TIME.name] = (number(CONTACT_TIME) | None, None)
     return study_model(StudySections, settings, {entry.name: number(entry) for entry in machine.settable})

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from contvines.command.own_code import own_code, run_file
 from contvines.command.study_data import Sort, Study
+from contvines.shared.near_names import did_you_mean
 
 if TYPE_CHECKING:
     from contvines.survey.plan import Plan
@@ -77,8 +78,10 @@ def outcomes_of(study: Study) -> list[Any]:
     ValueError
         If a name or a file is unknown.
     """
+    from contvines.command.asked_measures import measures_of
     from contvines.command.machine_outcomes import OWN
     from contvines.survey.survey import outcome_named
+    from orbits.machines.measures import way_out
 
     found = []
     for said in _spelled(study):
@@ -88,6 +91,12 @@ def outcomes_of(study: Study) -> list[Any]:
                 raise ValueError(
                     f"[survey] outcomes: {said!r} is a share of simulated starts, and there are none: with atlas = true an atlas of each "
                     "machine is made, with values = 9 and starts = 16 each is simulated at nine values"
+                )
+            measure = said.removeprefix("largest:")
+            if measure != said and measure not in (known := measures_of(study)):
+                raise ValueError(
+                    f"[survey] outcomes: {said!r}: there is no such measure{way_out(measure) or did_you_mean(measure, known)}; "
+                    f"choose one of {', '.join(known)}"
                 )
             if file.endswith(".py"):
                 place = own_code(study.path, file, f"[survey] outcomes: {said!r}")
@@ -169,6 +178,8 @@ def units_of(study: Study, model: Any) -> dict[str, str]:
             units |= dict.fromkeys((f"stable_{rest}", f"stable_{rest}_from", f"stable_{rest}_to"), over)
         elif kind == "first":
             units[f"first_{rest}"] = over
+        elif kind == "largest":
+            units |= {f"largest_{rest}": model.units.get(rest, ""), f"largest_{rest}_at": over}
     return units
 
 

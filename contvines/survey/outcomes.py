@@ -57,6 +57,16 @@ def peak(found: Findings) -> dict[str, float]:
     return {"peak": value, "peak_at": place}
 
 
+def largest(found: Findings, measure: str) -> dict[str, float]:
+    """The largest value of any measure, over all stable motions that coexist, and where it is; no number where one was simulated that lacks it."""
+    known = [highest(stretch)[:2] for stretch in stretches(found.graph, measure)]
+    others = [(measures.get(measure, np.nan), value) for value, measures in _alone(found)]
+    if any(np.isnan(value) for value, _ in others):
+        known = []
+    value, place = max((pair for pair in known + others if np.isfinite(pair[0])), default=(np.nan, np.nan))
+    return {f"largest_{measure}": value, f"largest_{measure}_at": place}
+
+
 def lower_peak(found: Findings) -> dict[str, float]:
     """The same where at each value the lowest of the coexisting responses is met; those simulated count where there is no branch."""
     name = default_measure(found.graph)
@@ -239,9 +249,10 @@ MADE: dict[str, Callable[..., Mapping[str, float]]] = {
     "stable": stable_range,
     "first": first_point,
     "share": share,
+    "largest": largest,
 }
-"""Outcomes of a word or kind, written ``stable:LR``, ``first:period-doubling``."""
-ARGUMENTS = {"stable": "word", "first": "kind", "share": "word"}
+"""Outcomes of a word, kind or measure, written ``stable:LR``, ``first:period-doubling``, ``largest:impulse``."""
+ARGUMENTS = {"stable": "word", "first": "kind", "share": "word", "largest": "measure"}
 """What follows the colon, as the functions call it."""
 OF_ALL = frozenset(
     ("peak", "peak_at", "lower_peak", "lower_peak_at", "coexisting", "ambiguous", "impact_power", "friction_power", "pumping_time",

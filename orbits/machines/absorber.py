@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
@@ -33,6 +33,8 @@ class Absorber(Model):
         eps = m / M >= 0.
     frequency : float
         Omega > 0, excitation frequency over omega_0.
+    contact_time : float, optional
+        Duration of an impact in 1/omega_0, which moves nothing: with it orbits have the measure ``peak_force``.
 
     Notes
     -----
@@ -45,6 +47,7 @@ class Absorber(Model):
     gravity: float
     mass_ratio: float = 0.0
     frequency: float = 1.0
+    contact_time: float | None = field(default=None, repr=False)
 
     name: ClassVar[str] = "absorber"
     default_parameter: ClassVar[str] = "amplitude"

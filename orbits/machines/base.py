@@ -23,7 +23,7 @@ import numpy as np
 
 from contvines.shared.near_names import did_you_mean, no_parameter
 from orbits.machines.mechanics import Mechanics
-from orbits.machines.parameters import Limits, Parameter, ParameterError
+from orbits.machines.parameters import CONTACT_TIME, Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest, rest_of
 
 
@@ -93,6 +93,8 @@ class Model(Mechanics):
             value = getattr(self, entry.name, None)
             if value is not None:
                 object.__setattr__(self, entry.name, entry.named(value))
+        if self.contact_time is not None:
+            object.__setattr__(self, "contact_time", CONTACT_TIME.number(self.contact_time))
         self._check_together()
 
     def _check_together(self) -> None:
@@ -158,7 +160,8 @@ class Model(Mechanics):
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """The machine's own fields by name, ready for JSON; those of a page are its parameters, at `params` where they are given."""
-        return {"name": self.name} | {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        return {"name": self.name} | {key: own[key] for key in own if key != "contact_time" or own[key]}
 
     def changed(self, **values: Any) -> Self:
         """The same machine with other values."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -53,6 +53,8 @@ class Cavity(Sided):
         eps = m / M >= 0.
     frequency : float
         Omega > 0, excitation frequency over omega_0.
+    contact_time : float, optional
+        Duration of an impact in 1/omega_0, which moves nothing: with it orbits have the measure ``peak_force``.
 
     Raises
     ------
@@ -77,6 +79,7 @@ class Cavity(Sided):
     distance_right: float = 1.0
     mass_ratio: float = 0.0
     frequency: float = 1.0
+    contact_time: float | None = field(default=None, repr=False)
 
     name: ClassVar[str] = "cavity"
     default_parameter: ClassVar[str] = "amplitude"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
@@ -57,6 +57,8 @@ class Coupled(Model):
         number from 0 to 1 leaves that part of it.
     slope : float
         Angle of the cavity, and of the oscillator's rail, in radians, from -pi/2 to pi/2; positive pulls the absorber towards the right wall, w = -1.
+    contact_time : float, optional
+        Duration of an impact in 1/omega_0, which moves nothing: with it orbits have the measure ``peak_force``.
 
     Raises
     ------
@@ -78,6 +80,7 @@ class Coupled(Model):
     frequency: float = 1.0
     excitation: str | float = "exact"
     slope: float = 0.0
+    contact_time: float | None = field(default=None, repr=False)
 
     name: ClassVar[str] = "coupled"
     moving_cavity: ClassVar[bool] = True

@@ -33,6 +33,7 @@ PARAMETERS = {  # name: (usual value, unit, meaning)
     "friction_1": (0.1, "", "Coulomb coefficient"),
     "friction_2": (0.1, "", "Coulomb coefficient"),
     "gravity": (9.81, "m/s^2", ""),
+    "contact_time": (0.5, "ms", "duration of an impact, which only its peak force depends on"),
 }
 # millimetres and metres a second: unknowns of like size, as continuation wants them
 STATES = {"q": "mm", "x1": "mm", "x2": "mm", "q_rate": "m/s", "x1_rate": "m/s", "x2_rate": "m/s"}
@@ -46,6 +47,14 @@ def _motion(state: Any, phase: Any, p: Any, contact: Any) -> tuple[Any, ...]:
     drag = (p.absorber_mass_1 * contact.floor1 + p.absorber_mass_2 * contact.floor2) / p.oscillator_mass
     push = rate * (rate * ahead + 2 * p.damping_ratio * faster) + drag
     return v, v1, v2, push, -contact.floor1, -contact.floor2
+
+
+def _energy(state: Any, phase: Any, p: Any) -> Any:
+    """Kinetic energies, and that of the spring."""
+    stiffness = p.oscillator_mass * (TURN * p.natural_frequency) ** 2
+    stretch = state.q - p.base_amplitude * sin(phase)
+    own = p.oscillator_mass * state.q_rate**2 + stiffness * stretch**2
+    return 0.5 * (own + p.absorber_mass_1 * state.x1_rate**2 + p.absorber_mass_2 * state.x2_rate**2)
 
 
 def _wall(absorber: int, side: int) -> Wall:
@@ -82,5 +91,6 @@ coupled_two = Machine(
     contacts=[*(_wall(absorber, side) for absorber in (1, 2) for side in (1, -1)), _floor(1), _floor(2)],
     mirror={"L1": "R1", "L2": "R2"},
     starts={name: (-5.0, 5.0) if unit == "mm" else (-0.5, 0.5) for name, unit in STATES.items()},
+    energy=_energy,
     units=STATES | {name: unit for name, (_, unit, _) in PARAMETERS.items() if unit},
 )

@@ -23,6 +23,7 @@ COMMON = (
     "impact_energy",
     "mean_force",
     "work_rate",
+    "peak_force",
 )
 LOADS = (
     "impact_rate",
@@ -31,6 +32,7 @@ LOADS = (
     "impulse_right",
     "impact_energy",
     "mean_force",
+    "peak_force",
 )  # nothing without impacts
 
 ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
@@ -60,14 +62,25 @@ KINDS = {
     "impact_rate": "rate",
     **dict.fromkeys(("impulse", "impulse_left", "impulse_right"), "impulse"),
     "impact_energy": "energy",
-    "mean_force": "force",
+    **dict.fromkeys(("mean_force", "peak_force"), "force"),
     "work_rate": "power",
     **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
 }
 """What kind of quantity each measure is, where it is more than a number."""
 
 
+def way_out(name: str) -> str:
+    """What gives a machine a measure that it has not, as a sentence ends with it; empty where nothing does."""
+    return (
+        " (a peak force needs contact_time, the duration of an impact: in [model], of a page among its parameters)"
+        if name == "peak_force"
+        else ""
+    )
+
+
 def names(model: Model) -> tuple[str, ...]:
-    """Measures that orbits of this machine have."""
+    """Measures that orbits of this machine have; a peak force only where the contact time is known."""
     known = COMMON + model.own_measures
+    if model.contact_time is None:
+        known = tuple(name for name in known if name != "peak_force")
     return known + tuple(mean for mean, name in MEANS.items() if name in known)

@@ -125,4 +125,5 @@ class Parameter:
 
 FRICTION = Parameter("friction", "Coulomb coefficient", NOT_NEGATIVE, r"\mu", "", 0.5)
 GRAVITY = Parameter("gravity", "g / (b omega_0^2)", NOT_NEGATIVE, r"\tilde g", "b omega_0^2", 0.211)
+CONTACT_TIME = Parameter("contact_time", "duration of an impact", POSITIVE, "T_c", "", 0.05)
 FREQUENCY = Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", "omega_0", 1.0)

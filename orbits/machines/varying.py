@@ -27,6 +27,9 @@ class Varying:
     younger: ClassVar[tuple[str, ...]] = ()
     """Parameters that older files do not have: their machines have the defaults."""
 
+    contact_time: float | None = None
+    """Duration of an impact, in 1/omega_0, in seconds where there are units; None where no peak force is asked for."""
+
     if TYPE_CHECKING:
         name: str
         default_parameter: str
@@ -90,7 +93,11 @@ class Varying:
     @property
     def notation(self) -> dict[str, str]:
         """Labels of axes by name of parameter or measure: in symbols, in words for numbers that have a unit."""
-        return {**SYMBOLS, **{name: WORDS[name] for name in self.units if name in WORDS}}
+        found = {**SYMBOLS, **{name: WORDS[name] for name in self.units if name in WORDS}}
+        if self.contact_time is not None:
+            shape = f"half sine of {self.contact_time:g} {self.units.get('contact_time', '')}".rstrip()
+            found["peak_force"] += f" ({shape})"
+        return found
 
     def described(self, params: np.ndarray) -> dict[str, Any]:
         """A parameter vector by name, ready for JSON."""

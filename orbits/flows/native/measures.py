@@ -19,7 +19,7 @@ from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table
 from orbits.machines.measures import ANGLES as ANGLES
-from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, names
+from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, names, way_out
 from orbits.words import Word
 
 
@@ -51,7 +51,8 @@ def dimensionless(
     impulse of an impact, (1 + r) |w'-| / (1 + eps), ``impulse_left`` and ``impulse_right`` the largest at that wall (0 where
     there is no impact); ``impact_energy`` the kinetic energy of the relative motion before the hardest impact,
     w'-^2 / (2 (1 + eps)); ``mean_force`` the sum of all impulses over the period's time, the mean of the force's size;
-    ``work_rate`` what impacts and friction take per unit of time.
+    ``work_rate`` what impacts and friction take per unit of time; ``peak_force`` of the hardest impact, if its force is half a sine
+    over the machine's contact time T: impulse = integral of F sin(pi t / T) = 2 F T / pi.
 
     Raises
     ------
@@ -62,7 +63,7 @@ def dimensionless(
     for name in wanted:
         if name not in known:
             raise KeyError(
-                f"measure {name!r} is unknown{did_you_mean(name, known)}; choose one of {', '.join(known)}"
+                f"measure {name!r} is unknown{way_out(name) or did_you_mean(name, known)}; choose one of {', '.join(known)}"
             )
     if not len(word):
         return {name: _at_rest(model, name, params) for name in wanted}
@@ -140,6 +141,9 @@ def _load(
     impulses = np.where(hits, reduced * (1.0 + restitution) * np.abs(rates), 0.0)
     if name == "mean_force":
         return impulses.sum(axis=1) / duration
+    if name == "peak_force":
+        assert model.contact_time is not None
+        return impulses.max(axis=1) * np.pi / (2.0 * model.contact_time * model.gauge("rate", params))
     if name != "impulse":
         letter = "L" if name == "impulse_left" else "R"
         impulses = np.where([event == letter for event in word.events], impulses, 0.0)

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.letters import HIT
+from orbits.flows.page.loads import Impacts, friction_work
+from orbits.machines.measures import way_out
+from orbits.machines.page.energies import CONTACT
 from orbits.words import Word
 
 OF_STATES = ("max", "min", "first", "strobe")
@@ -15,7 +18,8 @@ OF_STATES = ("max", "min", "first", "strobe")
 
 def names(machine: Any) -> tuple[str, ...]:
     """max_x, min_x (over the period), first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
-    event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact)."""
+    event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact); forces and energies at the contacts
+    (`orbits.machines.page.energies`), the energies per period of the orbit."""
     what = OF_STATES if machine.forced else OF_STATES[:3]
     own = [f"{kind}_{state}" for state in machine.states for kind in what]
     walls = any(letter.kind == HIT for letter in machine.alphabet.letters.values())
@@ -25,6 +29,7 @@ def names(machine: Any) -> tuple[str, ...]:
         "period",
         "rate",
         *(["approach_speed"] if walls else []),
+        *machine.load_names,
     )
 
 
@@ -46,12 +51,16 @@ def measure(
     known = names(machine)
     for name in wanted:
         if name not in known:
-            raise KeyError(f"there is no measure {name!r}; choose from {', '.join(known)}")
+            raise KeyError(f"there is no measure {name!r}{way_out(name)}; choose from {', '.join(known)}")
     result: dict[str, np.ndarray] = {}
     period = _periods(machine, periods, nodes, params)
     extremes = None
+    if not _LOADS.isdisjoint(name.partition("_")[0] for name in wanted):
+        result |= _loads(machine, word, periods, nodes, params, period, wanted)
     for name in wanted:
         kind, _, state = name.partition("_")
+        if name in result:
+            continue
         if name == "phase":
             result[name] = np.mod(nodes[:, 0, 0], 2.0 * np.pi)
         elif name == "period":
@@ -69,6 +78,48 @@ def measure(
                 extremes = _extremes(machine, word, periods, nodes, params)
             result[name] = extremes[0 if kind == "max" else 1][:, machine.states.index(state)]
     return result
+
+
+_LOADS = frozenset(("impact", "impulse", "friction", "mean", "work", "peak"))  # how their names begin
+
+
+def _loads(
+    machine: Any,
+    word: Word,
+    periods: int,
+    nodes: np.ndarray,
+    params: np.ndarray,
+    period: np.ndarray,
+    wanted: Sequence[str],
+) -> dict[str, np.ndarray]:
+    """Measures of `machine.load_names`; the sums of impacts are taken wall by wall."""
+    zero = np.zeros(len(nodes))
+    total, energy, loss, count = zero.copy(), zero.copy(), zero.copy(), 0
+    largest = {machine.contacts[j].letter: zero.copy() for j in machine.equations.gap}
+    for i in range(nodes.shape[1] if len(word) else 0):
+        letter = word.letter(i)
+        if letter.kind != HIT:
+            continue
+        clock = np.ascontiguousarray(nodes[:, i, 0]) if machine.forced else zero
+        hits, name = Impacts(machine, letter.contact, nodes[:, i, 1:], clock, params), letter.text
+        total, energy, loss = total + hits.impulses, np.maximum(energy, hits.energies), loss + hits.losses
+        largest[name], count = np.maximum(largest[name], hits.impulses), count + 1
+    impulse = np.max([zero, *largest.values()], axis=0)
+    found = {"impact_rate": count / period, "impulse": impulse, "impact_energy": energy, "impact_loss": loss}
+    found |= {"mean_force": total / period} | {f"impulse_{name}": values for name, values in largest.items()}
+    if "peak_force" in machine.load_names:  # the force of an impact is half a sine: impulse = 2 F T / pi
+        place = machine.parameter_names.index(CONTACT)
+        found["peak_force"] = (
+            impulse * np.pi / (2.0 * params[:, place] * machine.equations.factors.get(CONTACT, 1.0))
+        )
+    if {"friction_loss", "work_rate"}.intersection(wanted):
+        rubbed = zero.copy()
+        for k, rows in enumerate(nodes if machine.equations.limit else ()):
+            for i, (begin, end) in enumerate(zip(*_spans(machine, periods, rows))):
+                mode = word.modes[i % len(word.modes)]
+                rubbed[k] += friction_work(machine, mode, rows[i, 1:], begin, end, params[k])
+        found |= {"friction_loss": rubbed, "work_rate": (loss + rubbed) / period}
+    return found
 
 
 def _periods(machine: Any, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ import numpy as np
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
 from orbits.integrators.engine import engine
 from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
+from orbits.machines.page.energies import friction_power, impact_mass
 from orbits.machines.page.patterns import Equations, PatternKey
 from orbits.symbols import Symbol
 
@@ -166,6 +167,29 @@ class Compiled:
             ("rebound", wall),
             lambda: self.engine.Values(self.layout, [e.gap_rate(wall), e.restitution[wall]]),
         )
+
+    def loads(self, wall: int) -> Values:
+        """The rate of a gap, the wall's restitution and the mass of the relative motion."""
+        e = self.equations
+        return self._once(
+            ("loads", wall),
+            lambda: self.engine.Values(
+                self.layout, [e.gap_rate(wall), e.restitution[wall], impact_mass(e, wall)]
+            ),
+        )
+
+    def friction_power(self, key: PatternKey) -> Values:
+        """The power that the frictions take: one value."""
+        return self._once(
+            ("friction", key),
+            lambda: self.engine.Values(self.layout, [friction_power(self.equations.pattern(key))]),
+        )
+
+    def energy(self) -> Values:
+        """The energy of all bodies: one value."""
+        energy = self.equations.energy
+        assert energy is not None
+        return self._once("energy", lambda: self.engine.Values(self.layout, [energy]))
 
     def approach(self, wall: int) -> Values:
         """The rate of a gap, its slopes by the states, and the wall's push."""

@@ -17,6 +17,7 @@ from orbits.contacts.wall import FREE, Wall
 from orbits.machines.notation import SYMBOLS
 from orbits.machines.page import checks, names
 from orbits.machines.page.compiled import Compiled
+from orbits.machines.page.energies import CONTACT, UNITS, check_energy, impact_mass, load_names
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.mirror import MirrorImage
 from orbits.machines.page.page import Page, page_of
@@ -54,6 +55,11 @@ class Machine(Varying):
         Units of parameters and states by name, ``{"gap": "mm", "frequency": "Hz"}``: in them they are given (a text such as "1.2 mm" in any of
         its kind) and shown. The formulas of the page see SI units; what has no unit here they see as it is.
 
+    energy : callable, optional
+        ``(state, phase, p)`` -> kinetic and potential energy of all bodies, in joules: with it impacts have masses, and orbits and transients the
+        measures ``impulse``, ``impact_energy``, ``impact_loss``, ``friction_loss``, ``mean_force``, ``work_rate`` and, where a parameter is called
+        ``contact_time`` (in seconds), ``peak_force``.
+
     Raises
     ------
     PageError
@@ -77,6 +83,7 @@ class Machine(Varying):
         mirror: Mapping[str, str] | None = None,
         starts: Mapping[str, tuple[float, float]] | None = None,
         units: Mapping[str, str] | None = None,
+        energy: Callable | None = None,
     ) -> None:
         self._units = Units(units, states, tuple(parameters), phase_rate)
         parameters = {key: self._units.number(key, value) for key, value in parameters.items()}
@@ -89,7 +96,7 @@ class Machine(Varying):
         self.phase_rate, self.contacts = phase_rate, tuple(contacts)
         self.page: Page = page_of(motion)
         self.equations = Equations(
-            self.states, self.parameter_names, phase_rate, motion, self.contacts, self._units.factors
+            self.states, self.parameter_names, phase_rate, motion, self.contacts, self._units.factors, energy
         )
         params = self.vector()
         flips = self.equations.flips = checks.check_contacts(self.equations, params)
@@ -97,6 +104,12 @@ class Machine(Varying):
         images, turned = (None, frozenset()) if image is None else (image.images, image.turned)
         self._image = image
         rides = checks.riding(self.equations, params)
+        for j in self.equations.push if energy is not None else ():
+            check_energy(
+                self.equations,
+                checks.Draws(self.equations, params).of([impact_mass(self.equations, j)])[:, 0].tolist(),
+                j,
+            )
         self.alphabet = Alphabet(self.contacts, images, turned, flips, rides)
         self.equations.motion_with(dict.fromkeys(self._frictions, self.equations.x[0]))
 
@@ -118,12 +131,25 @@ class Machine(Varying):
     @property
     def notation(self) -> dict[str, str]:
         """Labels of axes by name of measure; states and parameters (never "phase") are shown by the names on the page."""
-        return {"phase": SYMBOLS["phase"]}
+        found = {name: SYMBOLS[name] for name in ("phase", *self.load_names) if name in SYMBOLS}
+        if "peak_force" in found:
+            found["peak_force"] += f" (half sine over {CONTACT})"
+        return found
 
     @property
     def units(self) -> dict[str, str]:
         """Units of parameters, states and measures by name; plain numbers have none."""
-        return self._units.shown(self.states)
+        shown = self._units.shown(self.states)
+        return (
+            shown | {name: UNITS[name if name in UNITS else "impulse"] for name in self.load_names}
+            if shown
+            else {}
+        )
+
+    @property
+    def load_names(self) -> tuple[str, ...]:
+        """Measures of its contacts' forces and energies."""
+        return load_names(self.equations, self.parameters)
 
     @property
     def default_parameter(self) -> str:

@@ -121,6 +121,8 @@ class Equations:
         As the page gives it.
     factors : mapping of str to float
         What one of a parameter or state is in SI units: the formulas of a page see SI units, all else the units that are shown.
+    energy : Symbol or None
+        Of all bodies, in joules.
     flips : dict of (wall, contact) to int or None
         What impacts do to the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
     """
@@ -133,6 +135,7 @@ class Equations:
         motion: Any,
         contacts: tuple[Any, ...],
         factors: Mapping[str, float] | None = None,
+        energy: Any = None,
     ) -> None:
         self.states, self.contacts, self.factors = states, contacts, dict(factors or {})
         self.formulas_of_motion = motion
@@ -169,6 +172,7 @@ class Equations:
                 self.limit[j] = self.quantity(contact.limit, f"the limit of friction {contact.name!r}")
             else:
                 self.surface[j] = self.value(contact.surface, f"the surface of switch {contact.name!r}")
+        self.energy: Symbol | None = None if energy is None else self.value(energy, "energy")
 
     # ------------------------------------------------------------------ reading the page
     def value(self, function: Any, what: str) -> Symbol:

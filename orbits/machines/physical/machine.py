@@ -24,6 +24,8 @@ from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, 
 from orbits.machines.physical.ratios import check_ratios
 from orbits.machines.physical.tables import PLACES
 
+CONTACT = Quantity("contact_time", "s", "1 ms", {}, (1e-7, 1.0), "the duration of an impact")
+
 
 def tables(model: type[Model]) -> ModuleType:
     """The module with a machine's `QUANTITIES`, `GAUGES`, `SCALES` and `completed`.
@@ -73,6 +75,8 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
     known: dict[str, Quantity] = table.QUANTITIES
     counted: dict[str, tuple[float, str]] = {}
     values: dict[str, float] = {}
+    given = dict(given)
+    contact = given.pop(CONTACT.name, None)
     for key, value in given.items():
         if key not in known:
             raise QuantityError(
@@ -85,6 +89,12 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
         values[key] = units.si(known[key], *counted[key])
         if not unusual:
             units.check_usual(known[key], values[key], f"{section}{key} = {value!r}")
+    contact_time = None
+    if contact is not None:
+        number, unit = units.read(CONTACT, contact, section)
+        contact_time = units.si(CONTACT, number, unit)
+        if not unusual:
+            units.check_usual(CONTACT, contact_time, f"{section}{CONTACT.name} = {contact!r}")
     chosen = independent(known, values)
     values = table.completed(values)
     for quantity in chosen:
@@ -98,7 +108,7 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
             would = f'"{quantity.example}"' if quantity.unit else quantity.example
             raise QuantityError(f"{section}{quantity.name} is missing{said}: {would} would do")
         counted[quantity.name] = units.read(quantity, quantity.default)
-    return _assembled(base, table, chosen, counted, unusual)
+    return _assembled(base, table, chosen, counted, unusual, contact_time)
 
 
 def _assembled(
@@ -107,13 +117,14 @@ def _assembled(
     chosen: tuple[Quantity, ...],
     counted: Mapping[str, tuple[float, str]],
     unusual: bool,
+    contact_time: float | None,
 ) -> Any:
     said = tuple(counted[q.name][1] for q in chosen)
     sizes = np.array([units.si(q, 1.0, unit) for q, unit in zip(chosen, said)])
     basis = Basis(chosen, (*base.parameter_names, *table.SCALES), sizes)
     amounts = np.array([counted[q.name][0] for q in chosen])
     numbers = dict(zip(basis.numbers, (float(v) for v in basis.numbers_of(amounts))))
-    machine = _made(base, numbers, basis, amounts, said, unusual)
+    machine = _made(base, numbers, basis, amounts, said, unusual, contact_time)
     if not unusual:
         told = {q.name: "{:.6g} {}".format(*counted[q.name]).rstrip() for q in chosen}
         check_ratios(numbers, told)
@@ -127,11 +138,12 @@ def _made(
     counts: np.ndarray,
     said: tuple[str, ...],
     unusual: bool,
+    contact_time: float | None,
 ) -> Any:
     """The machine with these numbers, and what was said of it."""
     cls = _class_of(base)
     own = cls.__dataclass_fields__
-    machine = cls(**{name: value for name, value in numbers.items() if name in own})
+    machine = cls(contact_time=contact_time, **{name: numbers[name] for name in numbers if name in own})
     loose = {name: value for name, value in numbers.items() if name not in own}
     for name, value in {
         "basis": basis, "counts": counts, "said": said, "loose": loose, "unusual": unusual, "base": base,
@@ -198,6 +210,8 @@ class Physical(Model):
             found.setdefault(
                 name, "rad" if kind == "angle" else units.unit_of(gauges[kind]) if kind in gauges else ""
             )
+        if self.contact_time is not None:
+            found[CONTACT.name] = CONTACT.unit
         return {name: unit for name, unit in found.items() if unit}
 
     def described(self, params: np.ndarray) -> dict[str, Any]:
@@ -271,7 +285,9 @@ class Physical(Model):
         """The machine with other quantities, as text or as numbers counted in `units`."""
         known: dict[str, Quantity] = self.tables.QUANTITIES
         groups = {known[name].choice for name in changes if name in known}
-        own = {name: value for name, value in self._texts.items() if known[name].choice not in groups}
+        own = {
+            n: value for n, value in self._texts.items() if n not in known or known[n].choice not in groups
+        }
         counted = {
             name: units.text(float(value), self.units[name])
             if not isinstance(value, str) and self.units.get(name)
@@ -301,11 +317,13 @@ class Physical(Model):
             for q, value in zip(chosen, ones.amounts_of(params))
         }
         kept = dict(zip(self.amount_names, zip(self.quantities.values(), self.said)))
-        return _assembled(self.base, self.tables, chosen, {**counted, **kept}, self.unusual)
+        counts = {**counted, **kept}
+        return _assembled(self.base, self.tables, chosen, counts, self.unusual, self.contact_time)
 
     @property
     def _texts(self) -> dict[str, Any]:
-        return {name: units.text(value, self.units.get(name, "")) for name, value in self.quantities.items()}
+        values = self.quantities | ({CONTACT.name: self.contact_time} if self.contact_time else {})
+        return {name: units.text(value, self.units.get(name, "")) for name, value in values.items()}
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """The machine's quantities as text, ready for JSON."""
@@ -315,7 +333,7 @@ class Physical(Model):
         """The same machine with other values of its own numbers."""
         numbers = dict(zip(self.parameter_names, (float(value) for value in self.vector(values))))
         counts = self.basis.amounts_of(np.array([*numbers.values()]))
-        return _made(self.base, numbers, self.basis, counts, self.said, self.unusual)
+        return _made(self.base, numbers, self.basis, counts, self.said, self.unusual, self.contact_time)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (self.settings(),)

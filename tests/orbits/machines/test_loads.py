@@ -1,11 +1,24 @@
 """Loads at the walls against the momentum balance of the simulated motion, and in SI units against the formulas by hand."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from orbits import Absorber, Coupled
+from orbits import Absorber, Coupled, Machine, Wall
+from orbits.contacts.letters import SLIP
+from orbits.machines.building import build
+from orbits.machines.measures import LOADS
+from orbits.machines.page.formulas import PageError
+from orbits.machines.page.loading import load_page
+from tests.machines import STRONG
 
 R, EPS = 0.76, 0.006
+EXAMPLES = Path(__file__).parents[3] / "examples" / "machines"
+
+
+def motion_of(page):
+    return page.equations.formulas_of_motion
 
 
 @pytest.fixture(scope="module")
@@ -36,8 +49,6 @@ def test_energies_add_up(orbit):
 
 def test_in_si_units():
     """All loads from the fastest impact's speed in m/s, the masses in kg and the frequency in Hz."""
-    from orbits.machines.building import build
-
     machine = build(
         {
             "name": "coupled", "units": "si", "oscillator_mass": "3.2 kg", "absorber_mass": "32 g", "half_width": "15 mm",
@@ -65,3 +76,88 @@ def test_at_rest_there_are_none():
             "impact_rate", "impulse", "impulse_left", "impact_energy", "mean_force", "work_rate"
         ).values()
     )
+
+
+def test_half_sine_has_the_impulse(orbit):
+    """The integral of F sin(pi t / T) from 0 to T is the impulse."""
+    machine = Absorber(**STRONG, contact_time=0.05)
+    found = machine.symmetric_orbit(amplitude=0.6).measures("impulse", "peak_force")
+    times = np.linspace(0.0, 0.05, 20_001)
+    area = np.trapezoid(found["peak_force"] * np.sin(np.pi * times / 0.05), times)
+    np.testing.assert_allclose(area, found["impulse"], rtol=1e-8)
+    assert "0.05" in machine.notation["peak_force"]
+    with pytest.raises(KeyError, match="contact_time"):
+        orbit.measure("peak_force")
+
+
+def test_half_sine_in_si_units():
+    text = {
+        "name": "coupled", "units": "si", "oscillator_mass": "3.2 kg", "absorber_mass": "32 g", "half_width": "15 mm",
+        "natural_frequency": "8 Hz", "damping_ratio": 0.01, "restitution": 0.65, "friction": 0.1, "base_amplitude": "1 mm",
+        "contact_time": "0.4 ms",
+    }  # fmt: skip
+    machine = build(text).with_(frequency="8 Hz", friction=0.1)
+    orbit = build(machine.told_by("stiffness").settings()).symmetric_orbit()
+    found = orbit.measures("impulse", "peak_force")
+    assert machine.units["peak_force"] == "N"
+    np.testing.assert_allclose(found["peak_force"], found["impulse"] * np.pi / 0.8e-3, rtol=1e-12)
+    for wrong, says in (
+        ("0.4", "no unit"),
+        ("0.4 mm", "is a length|unit of a length"),
+        ("3 s", "implausible"),
+    ):
+        with pytest.raises(ValueError, match=says):
+            build(text | {"contact_time": wrong})
+
+
+def test_a_page_with_its_energy_has_the_loads_of_the_machine():
+    """The coupled machine on a page, the oscillator's mass 1: energies and impulses are mass_ratio times those per absorber's mass."""
+    values = {**STRONG, "forcing": 2.47, "frequency": 1.01, "damping": 1.0}
+    page = load_page(EXAMPLES / "coupled.py", "machine")
+    machine = Machine(
+        name="coupled_page", states=page.states, parameters=page.parameters | {"contact_time": 0.05}, motion=motion_of(page),
+        contacts=page.contacts, phase_rate="frequency", mirror={"L": "R"},
+        energy=lambda x, phase, p: 0.5 * (x.v1**2 + p.mass_ratio * x.v2**2 + x.q1**2),
+    )  # fmt: skip
+    known = Coupled(**STRONG, damping=1.0, forcing=2.47, frequency=1.01, contact_time=0.05).symmetric_orbit()
+    events, eps = known.events, STRONG["mass_ratio"]
+    both = known.model.bodies(
+        np.array([events.w, events.rate_post]), np.array([known.nodes[:, 2], known.nodes[:, 3]]), known.params
+    )
+    nodes = np.column_stack([known.nodes[:, 0], both[0][0], both[1][0], both[0][1], both[1][1]])
+    orbit = machine.orbit(known.word.text, 1, nodes, **values)
+    alike = {name: name for name in (*LOADS, "friction_loss", "work_rate") if not name.startswith("impulse_")}
+    for name, same in (alike | {"impulse_L": "impulse_left", "impulse_R": "impulse_right"}).items():
+        scale = 1.0 if name == "impact_rate" else eps
+        np.testing.assert_allclose(orbit.measure(name), scale * known.measure(same), rtol=1e-8, err_msg=name)
+
+
+def test_friction_on_a_belt_takes_its_own_heat():
+    """Stuck to the belt nothing is lost; sliding, force times the sliding speed: by quadrature of solve_ivp."""
+    from scipy.integrate import solve_ivp
+
+    page = load_page(EXAMPLES / "belt_slider.py", "machine")
+    machine = Machine(
+        name="belt", states=("x", "v"), parameters=page.parameters, motion=motion_of(page), contacts=page.contacts,
+        energy=lambda s, phase, p: 0.5 * (s.x**2 + s.v**2),
+    )  # fmt: skip
+    orbit = machine.attractor({"x": 1.0}).found
+    p = machine.parameters
+    slip = next(i for i in range(len(orbit.nodes)) if orbit.word.letter(i).kind == SLIP)
+    x, v = orbit.nodes[slip, 1:]
+
+    def rates(t, y):
+        sliding = p["belt"] - y[1]
+        force = p["least"] + (p["most"] - p["least"]) / (1 + p["weakening"] * sliding**2)
+        return [y[1], -y[0] - 2 * p["damping"] * y[1] + force, force * sliding]
+
+    run = solve_ivp(rates, (0.0, orbit.nodes[slip, 0]), [x, v, 0.0], rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(orbit.measure("friction_loss"), run.y[2, -1], rtol=1e-7)
+
+
+def test_an_energy_without_mass_is_refused():
+    with pytest.raises(PageError, match="moves a mass of 0"):
+        Machine(
+            name="ball", states=("y", "v"), parameters={"r": 0.8}, motion=lambda s, phase, p, c: (s.v, -1.0),
+            contacts=[Wall("B", lambda s, phase, p: s.y, {"v": 1.0}, "r")], energy=lambda s, phase, p: s.y,
+        )  # fmt: skip
