@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from contvines.command.frame import check_plot, draw, say, tell
 from contvines.command.options import JsonOption, PlotOption, SizeOption
+from contvines.command.page_transient import frequency_on_line, of_page, time_on_line
 from contvines.command.study_data import Sort, Study
-
-if TYPE_CHECKING:
-    import numpy as np
+from contvines.command.transient_table import Told, loads_rows
 
 FARTHEST = 10.0  # metres that an oscillator is pulled aside
 HARDEST = 1e5  # m/s^2 that a base is accelerated by
@@ -21,12 +20,15 @@ LONGEST = 1e5  # that a motion is followed after a record, in radians of the osc
 
 def transient(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="The study whose machine is meant (coupled).")
+        Path,
+        typer.Argument(metavar="STUDY.toml", help="The study whose machine is meant (coupled, or a page)."),
     ],
     release: Annotated[
         str | None,
         typer.Option(
-            "--release", metavar="LENGTH", help='Let go from this displacement, "5 mm": a free decay.'
+            "--release",
+            metavar="LENGTH",
+            help='Let go from this displacement, "5 mm": a free decay (of a page: "x = 5 mm, v = 0.1 m/s").',
         ),
     ] = None,
     record: Annotated[
@@ -41,6 +43,26 @@ def transient(
             "--start-up", help="From rest, from the moment at which the study's own excitation begins."
         ),
     ] = False,
+    begin: Annotated[
+        str | None,
+        typer.Option(
+            "--from",
+            metavar="FREQUENCY",
+            help="With --start-up and --over: the frequency runs up from here to the study's.",
+        ),
+    ] = None,
+    over: Annotated[
+        str | None,
+        typer.Option("--over", metavar="TIME", help='How long it runs up, linearly in time, "5 s".'),
+    ] = None,
+    time: Annotated[
+        str | None,
+        typer.Option(
+            "--time",
+            metavar="TIME",
+            help="The share of the energy that is taken in so much time; of a page: how long it is followed.",
+        ),
+    ] = None,
     tail: Annotated[
         str | None,
         typer.Option("--tail", metavar="TIME", help='Go on after the record with the base at rest, "2 s".'),
@@ -69,6 +91,10 @@ def transient(
             f'--release, --record and --start-up: {given} given; give one of them: --release "5 mm" for a free decay, '
             "--record shock.csv for a measured motion of the base, --start-up for the study's own excitation."
         )
+    if (begin is None) != (over is None) or (begin is not None and not start_up):
+        raise ValueError(
+            "--from and --over go together, and with --start-up: the frequency runs up from the one in the other."
+        )
     if tail is not None and record is None:
         raise ValueError(f"--tail {tail}: this goes with --record.")
     if output is not None:
@@ -77,13 +103,17 @@ def transient(
     read = read_study(study)
     machine(read)
     if read.sort is Sort.PAGE:
-        raise ValueError(
-            f"{study}: [model] name = {read.name!r}: transients are those of the built-in machine 'coupled'."
-        )
-    if start_up:
-        found = _started(read)
+        if record is not None:
+            raise ValueError(
+                f"{study}: --record: of a page the base is part of its equations; --start-up or --release would do."
+            )
+        found = of_page(read, release, begin, over, time)
+    elif start_up:
+        if time is not None:
+            raise ValueError(f"--time {time}: this goes with --release.")
+        found = _started(read, begin, over)
     else:
-        found = _released(read, release) if release is not None else _recorded(read, record, tail)  # type: ignore[arg-type]
+        found = _released(read, release, time) if release is not None else _recorded(read, record, tail)  # type: ignore[arg-type]
     tell(found, found.as_json() if json_ else None)
     if output is not None:
         found.write(output)
@@ -91,65 +121,9 @@ def transient(
     draw(plot, lambda: found.draw(size), json_)
 
 
-class Told:
-    """A transient in the study's units.
-
-    Attributes
-    ----------
-    title : str
-    rows : list of (name, value, unit, words)
-    series : list of (name, unit, float array)
-        The first is time.
-    hits : float array
-        Times of impacts.
-    """
-
-    def __init__(
-        self,
-        title: str,
-        rows: list[tuple[str, float, str, str]],
-        series: list[tuple[str, str, np.ndarray]],
-        hits: np.ndarray | None = None,
-    ) -> None:
-        self.title, self.rows, self.series, self.hits = title, rows, series, hits
-
-    def as_json(self) -> dict[str, Any]:
-        """Names and values, and their units."""
-        units = {name: unit for name, _, unit, _ in self.rows if unit}
-        return {**{name: value for name, value, _, _ in self.rows}, **({"units": units} if units else {})}
-
-    def __str__(self) -> str:
-        from contvines.text_table import Table, fitted, terminal_width
-
-        table = Table(
-            ("figure", "value", "unit", "what it is"),
-            [(name, f"{value:.6g}", unit, words) for name, value, unit, words in self.rows],
-        )
-        return "\n".join([fitted(self.title), "", *table.lines(terminal_width())])
-
-    def write(self, path: Path) -> None:
-        """The series as a CSV."""
-        import csv
-
-        from contvines.graph.table import with_unit
-
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow([with_unit(name, unit) for name, unit, _ in self.series])
-            writer.writerows(
-                [repr(float(x)) for x in row] for row in zip(*(values for _, _, values in self.series))
-            )
-
-    def draw(self, size: tuple[float, float] | None = None) -> Any:
-        """The motion, or the energy, with the absorber and without; impacts as ticks."""
-        from contvines.plots.measured import plot_transient
-
-        return plot_transient(self.series, self.hits, figsize=size)
-
-
-def _released(study: Study, text: str) -> Told:
+def _released(study: Study, text: str, within: str | None) -> Told:
     from contvines.command.measured import length_on_line, scales
-    from orbits.design.transients import free_decay
+    from orbits.design.transients import free_decay, taken_share
     from orbits.machines.physical import units
 
     model, params = study.model, study.model.vector(study.loose)
@@ -165,6 +139,14 @@ def _released(study: Study, text: str) -> Told:
         decay = free_decay(model, params, displacement / length)
     except ValueError as error:
         raise ValueError(f"{study.path}: --release {text}: {error}.") from None
+    more = []
+    if within is not None:
+        told = length_on_line(within, "--time", second)
+        try:
+            share = taken_share(model, params, displacement / length, told / seconds)
+        except ValueError as error:
+            raise ValueError(f"{study.path}: --time {within}: {error}.") from None
+        more = [("taken_share", share, "", f"of the first energy: taken by impacts and friction in {within}")]
     lost = decay.impacts + decay.friction + decay.damping
     rows = [
         ("pumping_time", decay.pumping_time * seconds, second, "until nine tenths of the energy are gone"),
@@ -172,6 +154,7 @@ def _released(study: Study, text: str) -> Told:
         ("impact_share", decay.impacts / lost, "", "of what was dissipated: by impacts"),
         ("friction_share", decay.friction / lost, "", "by friction"),
         ("damping_share", decay.damping / lost, "", "by the oscillator's own damping"),
+        *more,
     ]
     series = [
         ("time", second, decay.times * seconds),
@@ -181,7 +164,7 @@ def _released(study: Study, text: str) -> Told:
     return Told(f"Free decay of {study.path.name} from {text}", rows, series)
 
 
-def _started(study: Study) -> Told:
+def _started(study: Study, begin: str | None, over: str | None) -> Told:
     import numpy as np
 
     from contvines.command.measured import scales
@@ -190,36 +173,48 @@ def _started(study: Study) -> Told:
 
     model, params = study.model, study.model.vector(study.loose)
     length, unit, seconds, second = scales(model, params)
+    run_up = None
+    if begin is not None and over is not None:
+        rising = (
+            frequency_on_line(study, begin)
+            / model.amount("frequency", params)
+            * float(model.phase_speed(params))
+        )
+        run_up = (rising, time_on_line(over, second) / seconds)
     try:
-        seen = start_up(model, params)
+        seen = start_up(model, params, run_up=run_up)
     except ValueError as error:
         raise ValueError(f"{study.path}: --start-up: {error}.") from None
     gauges = model.tables.GAUGES if unit else {}
     speed = units.unit_of(gauges["velocity"]) if unit else ""
-    over, bare = np.abs(seen.oscillator), np.abs(seen.bare)
-    fastest = float(seen.impact_speeds.max(initial=0.0)) * float(model.gauge("velocity", params))
+    moved, bare = np.abs(seen.oscillator), np.abs(seen.bare)
+    hardest = float(seen.impact_speeds.max(initial=0.0))
+    fastest = hardest * float(model.gauge("velocity", params))
+    eps, r = (float(model.column(params, name)) for name in ("mass_ratio", "restitution"))
+    impulse = (1.0 + r) / (1.0 + eps) * hardest * float(model.gauge("impulse", params))
     rows = [
-        ("peak", float(over.max()) * length, unit, "largest displacement of the oscillator"),
-        ("peak_at", float(seen.times[int(over.argmax())]) * seconds, second, "when"),
+        ("peak", float(moved.max()) * length, unit, "largest displacement of the oscillator"),
+        ("peak_at", float(seen.times[int(moved.argmax())]) * seconds, second, "when"),
         ("bare_peak", float(bare.max()) * length, unit, "the same without absorber"),
         ("settled", seen.settled * seconds, second, "time to settle to 5 % (no number: it does not)"),
         ("bare_settled", seen.bare_settled * seconds, second, "the same without absorber"),
         ("impacts", float(seen.impact_times.size), "", "how many"),
         ("fastest_impact", fastest, speed, "largest impact speed"),
+        *loads_rows(impulse, seen.impact_times.size, model.contact_time, model.units),
         (
             "worst_relative",
-            float(np.abs(seen.relative).max()) * length,
+            max(float(np.abs(seen.relative).max()), 1.0 if seen.impact_times.size else 0.0) * length,
             unit,
             "largest relative displacement",
         ),
-        (
-            "absorber_share",
-            seen.absorber_share,
-            "",
-            "share of the dissipated energy that impacts and friction take",
-        ),
     ]
-    return _motion(f"Start-up of {study.path.name} from rest", rows, seen, (length, unit, seconds, second))
+    if run_up is None:
+        words = "share of the dissipated energy that impacts and friction take"
+        rows.append(("absorber_share", seen.absorber_share, "", words))
+    rising = "" if begin is None else f", its frequency running up from {begin} in {over}"
+    return _motion(
+        f"Start-up of {study.path.name} from rest{rising}", rows, seen, (length, unit, seconds, second)
+    )
 
 
 def _recorded(study: Study, path: Path, tail: str | None) -> Told:

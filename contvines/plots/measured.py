@@ -50,6 +50,7 @@ def plot_transient(
 
     (clock, second, time), *curves = series
     name, unit, _ = curves[0]
+    compared = any(what.startswith("bare") for what, _, _ in curves)
     with styled(style):
         own = axes is None
         figure, axes = new_axes(axes, figsize=figsize)
@@ -61,7 +62,7 @@ def plot_transient(
             look: dict[str, Any] = (
                 {"color": BARE, "linestyle": (0, (4, 1.5)), "zorder": 1.9} if bare else {"color": OURS}
             )
-            label = "without absorber" if bare else "with absorber"
+            label = "without absorber" if bare else "with absorber" if compared else what.replace("_", " ")
             axes.plot(time, values, linewidth=thin, label=label, **look)
         if hits is not None and hits.size:
             low = np.full(hits.size, 0.02)

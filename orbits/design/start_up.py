@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from orbits.design.coupled_page import coupled_page
+from orbits.design.page_transients import page_transient
+from orbits.design.settling import settled
 from orbits.machines.base import ParameterError
 from orbits.simulation.runs import simulate
 
 FEWEST, MOST = 60, 2000  # forcing periods
 CONSTANTS = 6.0  # time constants of the bare oscillator that are followed
-BAND = 0.05  # share of its last size within which a response has settled
 PER_PERIOD = 80  # samples
 
 
@@ -51,7 +53,9 @@ class StartUp:
         return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
 
 
-def start_up(model: Any, params: np.ndarray, periods: int | None = None) -> StartUp:
+def start_up(
+    model: Any, params: np.ndarray, periods: int | None = None, run_up: tuple[float, float] | None = None
+) -> StartUp:
     """Simulate the machine from rest, the absorber in the middle, from the moment at which the excitation begins at its phase 0.
 
     Parameters
@@ -60,7 +64,9 @@ def start_up(model: Any, params: np.ndarray, periods: int | None = None) -> Star
         A machine with an oscillator.
     params : float array (P,)
     periods : int, optional
-        Forcing periods; by default six time constants of the bare oscillator, 60 to 2000 periods.
+        Forcing periods, after a run-up; by default six time constants of the bare oscillator, 60 to 2000 periods.
+    run_up : (float, float), optional
+        Frequency at the start and time of a run-up, in omega_0 and 1/omega_0: the frequency rises linearly to the machine's own.
 
     Raises
     ------
@@ -77,6 +83,12 @@ def start_up(model: Any, params: np.ndarray, periods: int | None = None) -> Star
         periods = int(min(max(math.ceil(wanted), FEWEST), MOST))
     if not 1 <= periods <= MOST:
         raise ParameterError(f"periods = {periods}: give 1 to {MOST}")
+    if run_up is not None:
+        return _running_up(
+            params[: len(model.base.parameter_names) if model.units else None],
+            periods * 2.0 * math.pi / omega,
+            run_up,
+        )
     run = simulate(model, {"q1": 0.0, "q2": 0.0}, periods=float(periods), events=None, **numbers)
     seen, balance = run.sample(per_period=PER_PERIOD), run.balance()
     times = seen.phase / omega
@@ -84,7 +96,17 @@ def start_up(model: Any, params: np.ndarray, periods: int | None = None) -> Star
     hits = run.codes < 2
     return StartUp(
         times, seen.cavity, seen.w, bare, run.phases[hits] / omega, np.abs(run.rows[hits, 3]),
-        balance.impacts, balance.friction, balance.damping, _settled(times, seen.cavity, periods), _settled(times, bare, periods),
+        balance.impacts, balance.friction, balance.damping, settled(times, seen.cavity, periods), settled(times, bare, periods),
+    )  # fmt: skip
+
+
+def _running_up(params: np.ndarray, time: float, run_up: tuple[float, float]) -> StartUp:
+    """The same on a page, where the phase may be any function of time."""
+    found = page_transient(coupled_page(), params, run_up_from=run_up[0], run_up_time=run_up[1], time=time)
+    q1, q2, bare = (found.states[name] for name in ("q1", "q2", "bare"))
+    return StartUp(
+        found.times, q1, q1 - q2, bare, found.impact_times, found.impact_speeds, float(found.impacts[-1]),
+        float(found.friction[-1]), math.nan, found.settled["q1"], found.settled["bare"],
     )  # fmt: skip
 
 
@@ -103,14 +125,3 @@ def _bare(times: np.ndarray, numbers: dict[str, float], omega: float) -> np.ndar
     place, speed = float(np.imag(answer)), float(np.imag(1j * omega * answer))
     a = complex(-place, (speed - own.real * place) / own.imag)
     return steady + np.real(a * np.exp(own * times))
-
-
-def _settled(times: np.ndarray, motion: np.ndarray, periods: int) -> float:
-    """From when on the largest displacement of every period is close to that of the last quarter; nan if that is not even."""
-    sizes = np.array([np.abs(part).max() for part in np.array_split(motion, periods)])
-    last = sizes[-max(1, periods // 4) :]
-    off = np.abs(sizes - last.mean()) > BAND * last.mean()
-    if off[-len(last) :].any():
-        return math.nan
-    first = int(np.flatnonzero(off)[-1]) + 1 if off.any() else 0
-    return float(times[-1] * first / periods)

@@ -101,6 +101,27 @@ def free_decay(model: Any, params: np.ndarray, displacement: float, lost: float 
     return Decay(t, e, q * q + speed * speed, impacts, friction, damper, when, gone)
 
 
+def taken_share(model: Any, params: np.ndarray, displacement: float, time: float) -> float:
+    """Share of the first energy that impacts and friction have taken in so much time [1/omega_0] of the free decay.
+
+    Raises
+    ------
+    ParameterError
+        As `free_decay` does, and for a time that is not above 0.
+    """
+    if not (0.0 < time <= 2.0 * math.pi * LONGEST):
+        raise ParameterError(
+            f"time = {time:g} is out of range; give a time above 0, of at most {LONGEST:g} periods"
+        )
+    numbers: Any = dict(zip(model.parameter_names, (float(x) for x in params))) | {
+        "forcing": 0.0,
+        "frequency": 1.0,
+    }
+    run = simulate(model, {"q1": displacement, "q2": displacement}, periods=time / (2.0 * math.pi), **numbers)
+    balance = run.balance()
+    return float(balance.impacts + balance.friction) / (0.5 * displacement**2)
+
+
 def _energy(state: np.ndarray, eps: float) -> float:
     """Energy of oscillator and absorber, (q1'^2 + q1^2 + eps q2'^2)/2, of a state."""
     from orbits.machines.stepping import RATE, V_RATE, V, W
@@ -123,4 +144,4 @@ def _when(times: np.ndarray, energy: np.ndarray, level: float) -> float:
     return float(times[i - 1] + share * (times[i] - times[i - 1]))
 
 
-__all__ = ["Decay", "Response", "free_decay", "recorded"]
+__all__ = ["Decay", "Response", "free_decay", "recorded", "taken_share"]

@@ -85,6 +85,7 @@ class Machine(Varying):
         units: Mapping[str, str] | None = None,
         energy: Callable | None = None,
     ) -> None:
+        self.given_units, self.energy = dict(units or {}), energy
         self._units = Units(units, states, tuple(parameters), phase_rate)
         parameters = {key: self._units.number(key, value) for key, value in parameters.items()}
         names.check_names(name, states, parameters, phase_rate, contacts)

@@ -90,3 +90,63 @@ def test_start_up_tells_the_first_periods(run, study, tmp_path):
     assert told["bare_peak"] == pytest.approx(np.abs(rows[:, 3]).max())
     assert told["worst_relative"] == pytest.approx(np.abs(rows[:, 2]).max())
     assert told["bare_settled"] > 0.0
+
+
+def test_energy_taken_in_a_given_time(run, study):
+    """As long as the pumping time it is the absorber's share of nine tenths."""
+    whole = json.loads(run("transient", study, "--release", "12 mm", "--json")[1])
+    told = json.loads(
+        run("transient", study, "--release", "12 mm", "--time", f"{whole['pumping_time']!r} s", "--json")[1]
+    )
+    share = 0.9 * (whole["impact_share"] + whole["friction_share"])
+    assert told["taken_share"] == pytest.approx(share, rel=0.05)  # between two periods
+
+
+def test_transients_of_pages(run, tmp_path):
+    (tmp_path / "two.toml").write_text(
+        '[model]\nname = "coupled_two"\n[start]\nfrequency = 8.0\n[continue]\nparameter = "frequency"\nwithin = [7.6, 8.4]\n'
+    )
+    done = run(
+        "transient",
+        tmp_path / "two.toml",
+        "--start-up",
+        "--json",
+        "-o",
+        tmp_path / "o.csv",
+        "--plot",
+        tmp_path / "p.png",
+    )
+    told = json.loads(done[1])
+    rows = np.genfromtxt(tmp_path / "o.csv", delimiter=",", skip_header=1)
+    assert told["largest_q"] == pytest.approx(np.abs(rows[:, 1]).max()) and told["units"]["peak_force"] == "N"
+    assert told["peak_force"] == pytest.approx(told["impulse"] * np.pi / 1e-3, rel=1e-12)
+    risen = json.loads(
+        run("transient", tmp_path / "two.toml", "--start-up", "--from", "4 Hz", "--over", "3 s", "--json")[1]
+    )
+    assert risen["settled_q"] > 3.0
+    free = json.loads(
+        run(
+            "transient", tmp_path / "two.toml", "--release", "q = 20 mm, x1 = 1.8 cm, x2 = 18 mm", "--time", "1 s", "--json"
+        )[1]
+    )
+    assert free["largest_q"] == pytest.approx(20.0) and 0.0 < free["taken_share"] < 1.0
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--release", "5 mm"], "is no state with a value"),
+        (["--release", "q = 5"], "q = '5' has no unit; \"1 mm\" would do"),
+        (["--start-up", "--from", "4 Hz"], "go together"),
+        (["--start-up", "--from", "4", "--over", "3 s"], "has no unit"),
+        (["--start-up", "--from", "4 Hz", "--over", "-3 s"], "give a time above 0"),
+        (["--start-up", "--from", "-4 Hz", "--over", "3 s"], "give a frequency of 0 or above"),
+        (["--record", "x.csv"], "part of its equations"),
+    ],
+)
+def test_bad_transients_of_pages(run, tmp_path, options, says):
+    (tmp_path / "two.toml").write_text(
+        '[model]\nname = "coupled_two"\n[start]\nfrequency = 8.0\n[continue]\nparameter = "frequency"\nwithin = [7.6, 8.4]\n'
+    )
+    done = run("transient", tmp_path / "two.toml", *options)
+    assert done[0] and says in done[2], done[2]

@@ -1,0 +1,176 @@
+"""Transients of machines on a page: from a state, or from rest while the excitation begins, at once or with a frequency that runs up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from orbits.contacts.letters import HIT
+from orbits.design.settling import BAND, settled
+from orbits.flows.page.loads import Impacts, friction_work
+from orbits.flows.page.stepper import TWO_PI
+from orbits.flows.protocol import SimulationError
+from orbits.machines.page.machine import Machine
+from orbits.machines.page.run_up import phase_at_end, run_up
+from orbits.simulation.page import PageTrajectory
+from orbits.simulation.runs import simulator_of
+
+FIRST, LONGEST = 120, 1920  # forcing periods; as long as nothing has settled, twice as many are looked at
+PER_PERIOD = 80  # samples
+MOST_EVENTS = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class PageTransient:
+    """A simulated transient, in the units of the page.
+
+    Attributes
+    ----------
+    times : float array (n,)
+    states : dict of float array (n,)
+        By name.
+    impact_times, impact_speeds, impulses : float array (k,)
+        Speeds in m/s and impulses in N s (of a page without units in its own numbers); impulses only of a page with an energy.
+    settled : dict of float
+        Of each state: from when on the largest size of every period stays within 5 % of the last ones; nan where it does not settle.
+    energy : float array (n,) or None
+        Of all bodies, of a page that tells it.
+    taken_times, impacts, friction : float array (m,)
+        Energy taken until these times by impacts and by friction; empty without an energy.
+    """
+
+    times: np.ndarray
+    states: dict[str, np.ndarray]
+    impact_times: np.ndarray
+    impact_speeds: np.ndarray
+    impulses: np.ndarray
+    settled: dict[str, float]
+    energy: np.ndarray | None
+    taken_times: np.ndarray
+    impacts: np.ndarray
+    friction: np.ndarray
+
+    def share(self, time: float) -> float:
+        """Share of the first energy that impacts and friction have taken until this time; nan where no energy is known."""
+        if self.energy is None or not self.energy[0] > 0.0:
+            return math.nan
+        taken = np.interp(time, self.taken_times, self.impacts + self.friction)
+        return float(taken / self.energy[0])
+
+
+def page_transient(
+    machine: Machine,
+    params: np.ndarray,
+    start: Mapping[str, float] | None = None,
+    *,
+    run_up_from: float | None = None,
+    run_up_time: float = 0.0,
+    time: float | None = None,
+) -> PageTransient:
+    """Simulate a machine from a state, at rest by default, from phase 0 on.
+
+    Parameters
+    ----------
+    machine : Machine
+    params : float array (P,)
+    start : mapping, optional
+        States by name.
+    run_up_from, run_up_time : float, optional
+        The frequency rises linearly from the first to the machine's own in so much time, and stays there.
+    time : float, optional
+        How long it is followed (after the run-up); by default until all has settled: 120 forcing periods, 240 ... 1920.
+
+    Raises
+    ------
+    SimulationError, PageError
+        If the start cannot be, or the motion does not go on; a self-excited machine needs a time.
+    """
+    if time is None and not machine.forced:
+        raise SimulationError(f"{machine.name!r} is self-excited: say how long it is to be followed")
+    legs: list[tuple[Machine, PageTrajectory, float]] = []
+    state, begin, passed = dict(start or {}), 0.0, 0.0
+    if run_up_from is not None:
+        rising = run_up(machine, params, run_up_from, run_up_time)
+        simulator = simulator_of(rising, params)
+        simulator.put(state)
+        run = simulator.run(run_up_time / TWO_PI, MOST_EVENTS)
+        legs.append((rising, run, 0.0))
+        state = dict(zip(machine.states, simulator.point.tolist()))
+        begin, passed = phase_at_end(machine, params, run_up_from, run_up_time), run_up_time
+    speed = float(machine.phase_speed(params))
+    periods = FIRST if time is None else time * speed / TWO_PI
+    while True:
+        simulator = simulator_of(machine, params)
+        simulator.put({**state, "phase": begin} if machine.forced else state)
+        first = simulator.time * TWO_PI
+        run = simulator.run(periods, MOST_EVENTS)
+        found = _transient(machine, [*legs, (machine, run, passed - first / speed)])
+        if time is not None or periods >= LONGEST or not any(map(math.isnan, found.settled.values())):
+            return found
+        periods *= 2
+
+
+def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float]]) -> PageTransient:
+    """Runs one after the other; the number is to be added to each run's time."""
+    times, states, energy, taken = [], [], [], []
+    hits: list[tuple[float, float, float]] = []
+    known = machine.equations.energy is not None
+    for own, run, shift in legs:
+        speed = float(own.phase_speed(run.params))
+        length = run.end - run.clocks[0]
+        period = TWO_PI if own.forced else TWO_PI / float(machine.phase_speed(run.params))
+        clocks = run.clocks[0] + np.linspace(0.0, length, max(2, math.ceil(length / period * PER_PERIOD)) + 1)
+        rows = run.sample(clocks)
+        times.append(clocks / speed + shift)
+        states.append(rows[:, : machine.size])
+        phases = np.mod(clocks, TWO_PI) if own.forced else np.zeros(len(clocks))
+        if known:
+            numbers = np.zeros((len(rows), len(run.params) + len(own.equations.signed)))
+            numbers[:, : len(run.params)] = run.params
+            energy.append(own.compiled.energy()(rows, phases, numbers)[:, 0])
+        ends = np.append(run.clocks[1:], run.end)
+        for i, (begin, end) in enumerate(zip(run.clocks, ends)):
+            turn = TWO_PI * math.floor(begin / TWO_PI) if own.forced else 0.0
+            here, lost = (begin - turn, end - turn), 0.0
+            if i and run.events[i - 1][1] == HIT:
+                wall = run.events[i - 1][0]
+                clock = np.array([here[0] if own.forced else 0.0])
+                impact = Impacts(own, wall, run.states[i : i + 1], clock, run.params[None])
+                hits.append((begin / speed + shift, float(impact.speeds[0]), float(impact.impulses[0])))
+                lost = float(impact.losses[0])
+            rubbed = (
+                friction_work(own, run.modes[i], run.states[i], *here, run.params)
+                if known and own.equations.limit
+                else 0.0
+            )
+            taken.append((begin / speed + shift, lost, 0.0))
+            taken.append((end / speed + shift, 0.0, rubbed))
+    time, table = np.concatenate(times), np.concatenate(states)
+    impacts = np.array(hits).reshape(-1, 3)
+    parts = np.array(taken if known else []).reshape(-1, 3)
+    count = max(1, round(float(legs[-1][1].end - legs[-1][1].clocks[0]) / TWO_PI)) if machine.forced else 0
+    last = len(times[-1])
+    calm = {
+        name: float(time[-last]) + settled(time[-last:] - time[-last], table[-last:, j], count)
+        if count
+        else math.nan
+        for j, name in enumerate(machine.states)
+    }
+    return PageTransient(
+        time,
+        dict(zip(machine.states, table.T)),
+        impacts[:, 0],
+        impacts[:, 1],
+        impacts[:, 2] if known else np.zeros(0),
+        calm,
+        np.concatenate(energy) if known else None,
+        parts[:, 0],
+        np.cumsum(parts[:, 1]),
+        np.cumsum(parts[:, 2]),
+    )
+
+
+__all__ = ["BAND", "PageTransient", "page_transient"]

@@ -1,0 +1,89 @@
+"""A forced machine whose frequency rises linearly: its phase becomes a function of time, and time one of its states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from orbits.contacts.dry_friction import DryFriction
+from orbits.contacts.wall import Wall
+from orbits.machines.page.formulas import Named, PageError, States
+from orbits.machines.page.machine import Machine
+
+CLOCK = "run_up_time"
+"""The further state, in seconds where the page has units."""
+
+
+def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> Machine:
+    """The machine while its frequency goes from `begin` to its own, phi'' constant; self-excited, as the clock is one of its states.
+
+    Parameters
+    ----------
+    machine : Machine
+        A forced one.
+    params : float array (P,)
+    begin : float
+        The frequency at the start, counted as the machine's own.
+    time : float
+
+    Raises
+    ------
+    PageError
+        If the machine is not forced, or the time or frequency cannot be.
+    """
+    name = machine.phase_rate
+    if name is None:
+        raise PageError(f"{machine.name!r} is not forced: it has no frequency that could run up")
+    if not (time > 0.0 and np.isfinite(time) and begin >= 0.0):
+        raise PageError(
+            f"a run-up from {begin:g} in {time:g}: a frequency of 0 or above and a time above 0 would do"
+        )
+    last = float(machine.phase_speed(params))
+    first = begin * machine.equations.factors.get(name, 1.0)
+    count = len(machine.states)
+
+    def wrapped(function: Any) -> Any:
+        """A function of the page, with phase and frequency at the time that the state has."""
+        if not callable(function):
+            return function
+
+        def formula(state: Any, phase: Any, p: Any, *contact: Any) -> Any:
+            clock = state[count]
+            frequency = first + (last - first) / time * clock
+            values = {key: value for key, value in vars(p).items() if key != "_what"} | {name: frequency}
+            turned = (first + 0.5 * (last - first) / time * clock) * clock
+            return function(States(machine.states, state[:count]), turned, Named("p", values), *contact)
+
+        return formula
+
+    motion: Callable = wrapped(machine.equations.formulas_of_motion)
+    energy = machine.energy
+    return Machine(
+        name=f"{machine.name}_running_up",
+        states=(*machine.states, CLOCK),
+        parameters=dict(zip(machine.parameter_names, (float(x) for x in params))),
+        motion=lambda state, phase, p, contact: (*motion(state, phase, p, contact), 1.0),
+        contacts=[_contact(contact, wrapped) for contact in machine.contacts],
+        units=machine.given_units,
+        energy=None if energy is None else wrapped(energy),
+    )
+
+
+def _contact(contact: Any, wrapped: Callable[[Any], Any]) -> Any:
+    """The same contact with its functions wrapped."""
+    if isinstance(contact, Wall):
+        push = {key: wrapped(value) for key, value in contact.push.items()}
+        return replace(contact, gap=wrapped(contact.gap), push=push, restitution=wrapped(contact.restitution))
+    if isinstance(contact, DryFriction):
+        return replace(contact, velocity=wrapped(contact.velocity), limit=wrapped(contact.limit))
+    return replace(contact, surface=wrapped(contact.surface))
+
+
+def phase_at_end(machine: Machine, params: np.ndarray, begin: float, time: float) -> float:
+    """The phase at the end of a run-up: the mean frequency times the time."""
+    assert machine.phase_rate is not None
+    first = begin * machine.equations.factors.get(machine.phase_rate, 1.0)
+    return 0.5 * (first + float(machine.phase_speed(params))) * time

@@ -1,0 +1,74 @@
+"""Transients of pages: against solve_ivp, the built-in machine, and the balance of energy."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from orbits import Coupled, Machine, Wall
+from orbits.design.page_transients import page_transient
+from orbits.design.start_up import start_up
+from orbits.machines.coupled_two import coupled_two
+from orbits.symbols import cos
+
+LINEAR = Machine(
+    name="linear", states=("x", "v"), parameters={"size": 0.3, "omega": 1.1, "damping": 0.05}, phase_rate="omega",
+    motion=lambda s, phase, p, c: (s.v, p.size * p.omega * cos(phase) - 2 * p.damping * s.v - s.x),
+    energy=lambda s, phase, p: 0.5 * (s.x**2 + s.v**2),
+)  # fmt: skip
+
+
+def test_a_run_up_is_a_chirp():
+    """The force size Omega(t) cos(phase(t)) with Omega from 0.2 to 1.1 in 40, then constant."""
+    seen = page_transient(LINEAR, LINEAR.vector(), run_up_from=0.2, run_up_time=40.0, time=30.0)
+
+    def rates(t, x):
+        rise = 0.9 / 40.0
+        omega = min(0.2 + rise * t, 1.1)
+        phase = 0.2 * t + 0.5 * rise * t * t if t < 40.0 else 0.65 * 40.0 + 1.1 * (t - 40.0)
+        return [x[1], 0.3 * omega * np.cos(phase) - 0.1 * x[1] - x[0]]
+
+    run = solve_ivp(rates, (0.0, 70.0), [0.0, 0.0], rtol=1e-11, atol=1e-12, max_step=0.1, dense_output=True)
+    np.testing.assert_allclose(seen.states["x"], run.sol(seen.times)[0], atol=2e-7)
+    assert seen.times[-1] == pytest.approx(70.0, abs=1e-9)
+
+
+def test_the_built_in_machine_runs_up_as_its_page_starts():
+    """Without a run-up worth the name it is the start-up of the native simulation, impacts included, and the bare oscillator is exact."""
+    machine = Coupled(
+        damping=2.0, mass_ratio=0.02, restitution=0.6, friction=0.05, gravity=0.3, slope=0.1, excitation=0.5
+    )
+    params = machine.vector({"forcing": 3.0, "frequency": 1.0})
+    plain = start_up(machine, params, periods=20)
+    seen = start_up(machine, params, periods=20, run_up=(1.0, 2.0 * np.pi))
+    hits = plain.impact_times[plain.impact_times < 15 * 2 * np.pi]
+    np.testing.assert_allclose(seen.impact_times[: hits.size], hits, atol=1e-6)
+    np.testing.assert_allclose(seen.impact_speeds[: hits.size], plain.impact_speeds[: hits.size], atol=1e-6)
+    bare = np.interp(plain.times, seen.times, seen.bare)
+    np.testing.assert_allclose(bare, plain.bare, atol=5e-3)  # between samples
+
+
+def test_energy_without_damping_is_taken_by_impacts_and_friction():
+    params = coupled_two.vector({"base_amplitude": 0.0, "damping_ratio": 0.0})
+    seen = page_transient(coupled_two, params, {"q": 20.0, "x1": 20.0, "x2": 20.0}, time=4.0)
+    lost = seen.energy[0] - seen.energy[-1]
+    assert seen.impacts[-1] > 0.0 and seen.friction[-1] > 0.0
+    assert seen.impacts[-1] + seen.friction[-1] == pytest.approx(lost, rel=1e-12)
+    assert seen.share(4.0) == pytest.approx(lost / seen.energy[0], rel=1e-12)
+    stiffness = 3.8 * (2 * np.pi * 8.0) ** 2
+    assert seen.energy[0] == pytest.approx(0.5 * stiffness * 0.02**2, rel=1e-12)
+
+
+def test_a_bouncing_ball_takes_its_energy_in_powers():
+    """Dropped from 1 with r = 0.5: the n-th impact is at sqrt(2)(1 + 2(r + ... + r^(n-1))) and leaves r^(2n) of the energy."""
+    ball = Machine(
+        name="ball", states=("y", "v"), parameters={"r": 0.5}, motion=lambda s, phase, p, c: (s.v, -1.0),
+        contacts=[Wall("B", lambda s, phase, p: s.y, {"v": 1.0}, "r")], energy=lambda s, phase, p: s.y + 0.5 * s.v**2,
+    )  # fmt: skip
+    seen = page_transient(ball, ball.vector(), {"y": 1.0}, time=3.0)
+    times = np.sqrt(2.0) * np.array([1.0, 2.0])
+    np.testing.assert_allclose(seen.impact_times[:2], times, rtol=1e-10)
+    np.testing.assert_allclose(seen.impulses[:2], 1.5 * np.sqrt(2.0) * np.array([1.0, 0.5]), rtol=1e-10)
+    assert seen.share(times[0] + 0.1) == pytest.approx(0.75) and seen.share(times[1] + 0.1) == pytest.approx(
+        0.9375
+    )
+    assert seen.share(times[0] - 0.1) == 0.0
