@@ -126,7 +126,13 @@ def test_transients_of_pages(run, tmp_path):
     assert risen["settled_q"] > 3.0
     free = json.loads(
         run(
-            "transient", tmp_path / "two.toml", "--release", "q = 20 mm, x1 = 1.8 cm, x2 = 18 mm", "--time", "1 s", "--json"
+            "transient",
+            tmp_path / "two.toml",
+            "--release",
+            "q = 20 mm, x1 = 1.8 cm, x2 = 18 mm",
+            "--time",
+            "1 s",
+            "--json",
         )[1]
     )
     assert free["largest_q"] == pytest.approx(20.0) and 0.0 < free["taken_share"] < 1.0
