@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..continuation.chunk import Chunk
-from ..continuation.engine import Solved
+from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
 from ..continuation.status import Status
 from .branch_jumps import inexact, leap
@@ -174,17 +175,23 @@ class Detector(SegmentSearch):
 
     def _closely(self, segment: Segment, real: bool) -> list[Located]:
         """The special points of a segment of a problem with many unknowns, from eigenvalues."""
+        search = self._closer
+        whole = Segment(search.engine, segment.a, segment.b)
+        a, b = whole.at(0.0), whole.at(1.0)
+        if a is None or b is None:
+            return []
+        a = a._replace(tangent=segment.a.tangent, sign=segment.a.sign)
+        b = b._replace(tangent=segment.b.tangent, sign=segment.b.sign)
+        return search.search(Segment(search.engine, a, b), real=real)
+
+    @cached_property
+    def _closer(self) -> SegmentSearch:
+        """A search in the same problem, watched by its eigenvalues."""
         problem: Any = self.engine.problem
-        problem.closely = True
-        try:
-            a, b = segment.at(0.0), segment.at(1.0)
-            if a is None or b is None:
-                return []
-            a = a._replace(tangent=segment.a.tangent, sign=segment.a.sign)
-            b = b._replace(tangent=segment.b.tangent, sign=segment.b.sign)
-            return self.search(Segment(self.engine, a, b), real=real)
-        finally:
-            problem.closely = False
+        engine = Engine(problem.closer(), self.engine.within, self.engine.settings)
+        search = SegmentSearch(engine, self.kinds)
+        search.own = self.own
+        return search
 
     def _within(self, segment: Segment, events: list[Located]) -> list[Located]:
         """The events up to where a branch leaves the interval within a segment, turns back outside, and comes in again."""

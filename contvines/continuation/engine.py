@@ -70,8 +70,8 @@ class Engine(Rows):
         # what the rows of multipliers tell: of problems with many unknowns eigenvalues only where they are asked for
         self.scaled = scales is not None
         self.exchanges = self.scaled and self.detection != "none"
-        self.many = isinstance(problem, Nearing) and problem.many
-        self.signed = bool(getattr(problem, "signed", True))
+        nearing = problem if isinstance(problem, Nearing) else None
+        self.many, self.signed = nearing is not None and nearing.many, nearing is None or nearing.signed
         self.adaptive = isinstance(problem, Adaptive)
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2

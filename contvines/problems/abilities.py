@@ -149,12 +149,13 @@ class Doubtful(Protocol):
 class Nearing(Protocol):
     """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`.
 
-    `signed`: whether the sign of the determinant is known.
+    `signed`: whether the sign of the determinant is known. `closer` hands out the same problem with eigenvalues.
     """
 
     many: bool
-    closely: bool
     signed: bool
+
+    def closer(self) -> Any: ...
 
 
 @runtime_checkable

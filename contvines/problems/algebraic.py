@@ -218,7 +218,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             return np.zeros(0)
         if self.detection == "real":
             if self.many:
-                if self.closely:
+                if self.close:
                     return self.algebra.nearest_eigenvalues(self, work)
                 return ALL_ZERO - self.algebra.distance_to_singular(self, work)
             if self.reference is None:

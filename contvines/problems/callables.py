@@ -49,8 +49,8 @@ class CallableProblem(ProblemDefaults):
         A matrix relative to which eigenvalues are watched for branch points where there is no spectrum.
     many : bool
         Whether they are watched only where a cheaper number asks for it; see :mod:`.nearness`.
-    closely : bool
-        Whether they are just now.
+    close : bool
+        Whether they are watched here; see `closer`.
     signed : bool
         Whether the sign of the determinant is known: not of a Jacobian without a matrix.
     trouble : str
@@ -68,7 +68,7 @@ class CallableProblem(ProblemDefaults):
     scales: Scales | None = None
     reference: Any = None
     many = False
-    closely = False
+    close = False
     trouble = ""
     unsolved = False
     _side: tuple[Any, np.ndarray] | None = None
@@ -101,6 +101,12 @@ class CallableProblem(ProblemDefaults):
                     text = f"a {type(f).__name__}" if hasattr(f, "shape") or isinstance(f, list) else repr(f)
                     raise ValueError(f"{place} = {text} must be a function of (u, p)")
         return tuple(pieces.wrap(self.given[key], key) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
+
+    def closer(self) -> Self:
+        """The same problem, watched by its eigenvalues."""
+        problem = copy(self)
+        problem.data, problem.close = problem, True
+        return problem
 
     # ------------------------------------------------------------------ parameters
     @property

@@ -2,8 +2,8 @@
 
 At every point of a branch there is a cheap number, the distance: with M = [[F_u, F_p], [border]] and a fixed random b it is 1/|M^-1 b|, which falls
 to zero like the smallest singular value of M, linearly, at branch points and not at folds (rows hold it with a minus: nothing is past zero). Where it could have been zero between
-two points though the sign of det M is the same (:meth:`contvines.bifurcation.detect.Detector.look`), the problem is looked at closely: its
-rows then hold the NEAREST eigenvalues to zero of F_u relative to its value at the start.
+two points though the sign of det M is the same (:meth:`contvines.bifurcation.detect.Detector.look`), another copy of the
+problem is asked (`closer`): its rows hold the NEAREST eigenvalues to zero of F_u relative to its value at the start.
 """
 
 from __future__ import annotations
