@@ -26,6 +26,7 @@ import contvines as cv
 from contvines.branches.ending import Reason
 
 LOW, HIGH, CLOSE = -2.0, 2.0, 3e-3
+WIDE = 1e-8  # an unresolved interval that counts
 X, P, Y, Z = sy.symbols("x p y z")
 
 
@@ -244,6 +245,7 @@ class System:
         )
         self.back = np.rint(np.linalg.inv(self.columns))
         self.f = sy.lambdify([hidden, P], rows, "numpy")
+        self.unresolved: list[Any] = []
         self.others = [sy.lambdify([hidden[: k + 1], P], q, "numpy") for k, q in enumerate(self.graphs)]
 
     def F(self, u: np.ndarray, p: Any) -> np.ndarray:
@@ -263,6 +265,7 @@ class System:
         p0, roots = self.curve.middles[k]
         problem = cv.AlgebraicProblem(self.F, self.unknowns(roots[i], p0), p0)
         graph = cv.diagram(problem, within=(LOW, HIGH), depth=12)
+        self.unresolved = [x for x in graph.unresolved if x.high - x.low > WIDE]
         arcs, specials = self.curve.connected(self.start)
         said = []
         found = [
@@ -316,7 +319,7 @@ def suitable(first: int) -> Any:
 
 def main(count: int, first: int) -> None:
     """Report on so many systems."""
-    began, bad = time.process_time(), 0
+    began, bad, unresolved = time.process_time(), 0, 0
     for done, (seed, system) in enumerate(suitable(first)):
         if done == count:
             break
@@ -324,6 +327,7 @@ def main(count: int, first: int) -> None:
             said = system.wrong()
         except (ValueError, ArithmeticError, AssertionError) as error:
             said = [f"{type(error).__name__}: {error}"]
+        unresolved += bool(system.unresolved)
         if said:
             bad += 1
             print(
@@ -336,7 +340,10 @@ def main(count: int, first: int) -> None:
                 sep="\n    ",
                 flush=True,
             )
-    print(f"{count} systems, {bad} wrong, {time.process_time() - began:.0f} s", flush=True)
+    print(
+        f"{count} systems, {bad} wrong, {unresolved} with unresolved intervals, {time.process_time() - began:.0f} s",
+        flush=True,
+    )
 
 
 if __name__ == "__main__":

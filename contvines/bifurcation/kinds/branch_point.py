@@ -130,7 +130,9 @@ def _exchange(segment: Segment) -> Located | None:
         return None
     if _complex(segment, rough.point) or not passes_for_certain(segment, rough.position):
         return None
-    return Located.at(locate_singular(segment, test, rough.position) or rough, "branch-point")
+    root = locate_singular(segment, test, rough.position) or rough
+    # both may be next to nothing, one on either side, without being zero
+    return Located.at(root, "branch-point") if singular(engine, root.point) else None
 
 
 def _kind(segment: Segment, root: Root) -> str:

@@ -83,3 +83,13 @@ def test_a_nearer_point_of_a_bent_branch_is_none_of_the_known_one():
 def test_a_rounded_zero_beside_terms_of_the_parameter_has_no_size():
     # y = -1e-16 in a row in which the other unknown is multiplied by y: 9 p + 3 alone is what it is small beside
     assert System(101437).wrong() == []
+
+
+def test_a_corner_that_unlike_sizes_hide():
+    # x (2 p + 3 x^2 + 3) = 0 behind unknowns hundreds of times as large
+    assert System(434).wrong() == []
+
+
+def test_two_eigenvalues_next_to_nothing_are_no_exchange():
+    # x = 1 / (p^2 (p - 1)): two eigenvalues of 1e-5 on either side of zero
+    assert System(101778).wrong() == []
