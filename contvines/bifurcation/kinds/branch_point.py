@@ -13,13 +13,13 @@ from functools import partial
 import numpy as np
 
 from ...continuation.aims import aim_at_multiplier
-from ...continuation.engine import Solved
+from ...continuation.engine import Engine, Solved
 from ..determinant import alone, by_elimination, by_sign, passes, passes_for_certain, singular, turned
 from ..kind import Kind
 from ..locate import Root, locate, locate_singular
 from ..located import Located, Role
 from ..location_error import blurred
-from ..multiplier_counts import balance, counts
+from ..multiplier_counts import balance, counts, sizes_by_sort
 from ..multiplier_tests import passing
 from ..segment import Segment
 
@@ -131,8 +131,18 @@ def _exchange(segment: Segment) -> Located | None:
     if _complex(segment, rough.point) or not passes_for_certain(segment, rough.position):
         return None
     root = locate_singular(segment, test, rough.position) or rough
+    ends = max(_nearest(engine, segment.a.row), _nearest(engine, segment.b.row))
     # both may be next to nothing, one on either side, without being zero
-    return Located.at(root, "branch-point") if singular(engine, root.point) else None
+    return (
+        Located.at(root, "branch-point")
+        if _nearest(engine, root.point.row) <= engine.settings.aside * ends
+        else None
+    )
+
+
+def _nearest(engine: Engine, row: np.ndarray) -> float:
+    """How far from the circle the nearest real multiplier is."""
+    return float(np.nanmin(np.abs(sizes_by_sort(engine, row)[0]), initial=np.inf))
 
 
 def _kind(segment: Segment, root: Root) -> str:

@@ -93,3 +93,8 @@ def test_a_corner_that_unlike_sizes_hide():
 def test_two_eigenvalues_next_to_nothing_are_no_exchange():
     # x = 1 / (p^2 (p - 1)): two eigenvalues of 1e-5 on either side of zero
     assert System(101778).wrong() == []
+
+
+def test_two_eigenvalues_next_to_nothing_in_units_of_a_distant_start_are_no_exchange():
+    # x = 5 / p, begun near p = 0.05, where the equations are a million times as large
+    assert System(201015).wrong() == []
