@@ -1,20 +1,32 @@
-"""The documentation as a site: `sphinx-build -W docs docs/_build` with the extra `docs` installed; it runs the notebooks."""
+"""The documentation as a site: `sphinx-build -W docs site` with the extra `docs` installed; it runs the notebooks."""
 
 import os
+import shutil
 import sys
+from pathlib import Path
+
+import contvines
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import gallery_pages  # noqa: E402
 
 project = "contvines"
 author = "The contvines developers"
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc"]
+project_copyright = author
+release = version = contvines.__version__
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc", "sphinx_copybutton"]
 exclude_patterns = ["_build"]
-html_theme = "alabaster"
-html_theme_options = {
-    "page_width": "1120px",
-    "sidebar_width": "230px",
-    "body_max_width": "860px",
-    "fixed_sidebar": True,
-}
+
+html_theme = "furo"
+html_title = f"contvines {release}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 html_extra_path = ["study.schema.json"]
+html_show_sourcelink = False
+copybutton_prompt_text = r"\$ |>>> "
+copybutton_prompt_is_regexp = True
+
 myst_heading_anchors = 3
 myst_enable_extensions = ["dollarmath"]
 
@@ -32,3 +44,24 @@ nb_merge_streams = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings have shapes and units
 numpydoc_show_class_members = False
+
+linkcheck_timeout = 20
+linkcheck_anchors = False  # of pages elsewhere; those of this site are checked by the build
+
+# pages of the examples, with their pictures beside them
+gallery_pages.write(HERE / "gallery")
+
+
+def setup(app):
+    """Pictures that the grid of the gallery shows by their place on the site."""
+
+    def copy(app, problem):
+        if problem is None and app.builder.format == "html":
+            shutil.copytree(
+                HERE / "gallery",
+                Path(app.outdir) / "_static" / "gallery",
+                ignore=shutil.ignore_patterns("*.md"),
+                dirs_exist_ok=True,
+            )
+
+    app.connect("build-finished", copy)

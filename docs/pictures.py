@@ -49,6 +49,28 @@ def machine():
     return figure
 
 
+def oscillator():
+    """A mass on a spring beside a wall, shaken."""
+    figure = new_figure((7.2, 1.7))
+    axes = figure.add_subplot()
+    bare(axes)
+    axes.fill([-3.4, -3.2, -3.2, -3.4], [0, 0, 1.2, 1.2], color=GREY, lw=0)
+    axes.fill([2.2, 2.5, 2.5, 2.2], [0, 0, 1.2, 1.2], color=GREY, lw=0)
+    axes.plot([-3.4, 2.5], [0, 0], color="0.3", lw=1)
+    turns = np.linspace(0, 1, 19)
+    axes.plot(-3.2 + 2.6 * turns, 0.45 + 0.16 * np.sin(np.pi * 9 * turns), color="0.3", lw=1.2)
+    axes.fill([-0.6, 0.6, 0.6, -0.6], [0.03, 0.03, 0.85, 0.85], color=BLUE, lw=0)
+    axes.text(0, 0.43, "mass", color="white", ha="center", va="center", fontsize=9)
+    axes.text(-1.9, 0.72, "spring", ha="center", va="bottom", fontsize=9)
+    axes.text(2.62, 0.6, "wall", ha="left", va="center", fontsize=9)
+    arrow(axes, (0.62, 0.45), (2.18, 0.45), "<|-|>")
+    axes.text(1.4, 0.53, "gap", ha="center", va="bottom", fontsize=9)
+    arrow(axes, (-0.55, 1.1), (0.55, 1.1), "<|-|>", RED)
+    axes.text(0.65, 1.1, "shaken at one frequency", color=RED, ha="left", va="center", fontsize=9)
+    axes.set(xlim=(-3.6, 3.3), ylim=(-0.1, 1.3))
+    return figure
+
+
 def words():
     """Three motions over a period, with the letters of their events."""
     from orbits import Absorber
@@ -227,7 +249,7 @@ def grazing():
     return figure
 
 
-PICTURES = (machine, words, margins, fold, symmetry_breaking, period_doubling, grazing)
+PICTURES = (machine, oscillator, words, margins, fold, symmetry_breaking, period_doubling, grazing)
 
 
 def draw_all(folder):

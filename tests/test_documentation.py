@@ -22,6 +22,7 @@ def test_the_site_builds_without_a_warning(tmp_path):
     done = subprocess.run(line, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
     assert (tmp_path / "site/concepts.html").exists()
+    assert (tmp_path / "site/_static/gallery/henon.png").exists()
 
 
 def test_every_page_is_in_the_contents():
@@ -35,7 +36,7 @@ def test_every_link_of_a_page_leads_somewhere_on_the_site():
     # a page of the site, or a file that the site copies; a folder, or a page of Markdown elsewhere, would be a dead link
     seen = 0
     for page in DOCS.glob("*.md"):
-        for target in re.findall(r"\]\((?!\w+:|#)([^)#]+)", page.read_text(encoding="utf-8")):
+        for target in re.findall(r"\]\((?!\w+:|#|gallery/index)([^)#]+)", page.read_text(encoding="utf-8")):
             seen += 1
             path = (page.parent / target).resolve()
             assert path.is_file(), f"{page.name}: {target}"
@@ -107,8 +108,25 @@ def test_the_sketches_are_those_that_the_code_draws(tmp_path):
     spec.loader.exec_module(pictures)
     drawn = pictures.draw_all(tmp_path)
     assert sorted(p.name for p in drawn) == sorted(p.name for p in (DOCS / "concepts").iterdir())
-    page = (DOCS / "concepts.md").read_text(encoding="utf-8")
-    assert {p.name for p in drawn} == set(re.findall(r"\(concepts/(\w+\.png)\)", page))
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in DOCS.glob("*.md"))
+    assert {p.name for p in drawn} == set(re.findall(r"\(concepts/(\w+\.png)\)", pages))
+
+
+def test_every_example_has_its_picture_in_the_gallery(monkeypatch):
+    monkeypatch.syspath_prepend(str(DOCS))
+    listed = importlib.import_module("gallery_pages").listed()
+    assert {one.name for one in listed} == {path.stem for path in (DOCS / "gallery").glob("*.png")}
+    shown = {one.path.stem for one in listed}
+    for path in (DOCS.parent / "examples").glob("*/*.toml"):
+        assert path.stem in shown, path
+
+
+def test_pages_are_short_and_code_is_not_cut():
+    for page in DOCS.glob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        assert text.count("\n") <= 210, page.name
+        for code in re.findall(r"```(?:\{code-cell\} ipython3|python|toml)\n(.*?)```", text, re.DOTALL):
+            assert max(map(len, code.splitlines())) <= 120, page.name
 
 
 @pytest.mark.parametrize("page", sorted(path.name for path in DOCS.glob("*.md")))

@@ -46,7 +46,7 @@ class Reaction(cv.ProblemDefaults):
 
 def compiled(folder):
     """The library, compiled into a folder."""
-    library = Path(folder) / "reaction.so"
+    library = Path(folder).resolve() / "reaction.so"
     subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", library, SOURCE, "-lm"], check=True)
     return library
 

@@ -1,0 +1,89 @@
+"""Pictures of the gallery: `python -m tools.gallery [NAME ...]` runs the examples and keeps a small picture of each in docs/gallery.
+
+`docs/gallery_pages.py` makes a page of every example of them when the site is built.
+"""
+
+from __future__ import annotations
+
+import runpy
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+TOP = Path(__file__).parents[1]
+EXAMPLES, PICTURES = TOP / "examples", TOP / "docs" / "gallery"
+WIDTH = 760  # pixels
+SIZE = (5.2, 3.4)  # inches, of pictures that have no size of their own
+
+PLAIN = {
+    "henon": lambda module: module["main"]().plot(y="x0", ylim=(-2.0, 4.0), figsize=SIZE),
+    "pitchfork": lambda module: module["perturbed"]().plot(y="u0", figsize=SIZE),
+    "neutral_saddle": lambda module: module["main"]().plot(y="u1", figsize=SIZE),
+    "absorber": lambda module: module["main"]().plot(y="B", figsize=SIZE),
+}
+"""Scripts that leave the picture to their user -> figure from the names of the script."""
+
+
+def _script(path: Path, *words: str) -> None:
+    subprocess.run([sys.executable, str(path), *words], check=True)
+
+
+def _study(path: Path) -> None:
+    contvines = [sys.executable, "-m", "contvines.command"]
+    size = ["--size", *map(str, SIZE), *(["-y", "phase"] if path.stem == "bouncing_ball" else [])]
+    subprocess.run([*contvines, "diagram", str(path), "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([*contvines, "plot", f"{path.stem}.vines", *size, "--trust", "-o", "a.png"], check=True)
+
+
+def draw(path: Path) -> None:
+    """Draw one example; its picture is the only .png in the working folder then."""
+    if path.suffix == ".toml":
+        _study(path)
+    elif path.parent.name == "machines":
+        _script(path.with_name("draw.py"), ".", path.stem)
+    elif path.parent.name == "gallery":
+        _script(path, ".")
+    elif path.stem in PLAIN and path.parent == EXAMPLES:
+        PLAIN[path.stem](runpy.run_path(str(path))).savefig("a.png")
+    else:
+        _script(path)
+
+
+def keep(path: Path, name: str) -> None:
+    """Shrink a picture, with few colours, into docs/gallery."""
+    from PIL import Image
+
+    with Image.open(path) as image:
+        height = round(image.height * WIDTH / image.width)
+        small = image.convert("RGB").resize((WIDTH, height), Image.Resampling.LANCZOS)
+    small.quantize(48, dither=Image.Dither.NONE).save(PICTURES / f"{name}.png", optimize=True)
+
+
+def main(names: list[str]) -> None:
+    """Draw the examples of these names, or all of them."""
+    import contextlib
+    import os
+    import time
+
+    sys.path.insert(0, str(TOP / "docs"))
+    from gallery_pages import listed
+
+    PICTURES.mkdir(exist_ok=True)
+    os.environ["PYTHONPATH"] = str(TOP)
+    for example in listed():
+        if names and example.name not in names:
+            continue
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+            begun = time.perf_counter()
+            draw(example.path)
+            keep(next(Path(folder).rglob("*.png")), example.name)
+        print(f"{example.name}: {time.perf_counter() - begun:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
