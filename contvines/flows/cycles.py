@@ -18,7 +18,7 @@ from .collocation import Rule, rule
 from .core import distance_to_rest
 from .events import FINER
 from .field import Field
-from .forms import LARGEST, cubic, neimark_sacker
+from .forms import LARGEST, cubic, neimark_sacker, quadratic
 from .kernels import KERNELS, SPARSE, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
 from .returns import ReturnMap
@@ -562,16 +562,23 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         return [Embedding(problem, doubled, direction, kind)]
 
     def normal_form(
-        self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0
+        self,
+        kind: str,
+        u: np.ndarray,
+        p: float,
+        multiplier: complex = -1.0,
+        along: np.ndarray | None = None,
     ) -> tuple[float, float] | None:
-        """The coefficient at a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms; None where
-        there is none. See :mod:`contvines.flows.forms`."""
+        """The coefficient at a fold (of the sign along a direction), a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of
+        its terms; None where there is none. See :mod:`contvines.flows.forms`."""
         if self.states > LARGEST or self.sparse is not None:
             return None
         try:
             with np.errstate(all="ignore"):
                 if kind == "neimark-sacker":
                     found = neimark_sacker(self, u, p, multiplier)
+                elif along is not None:
+                    found = quadratic(self, u, p, along)
                 else:
                     found = cubic(self, u, p, -1.0 if kind == "period-doubling" else 1.0)
         except (

@@ -1,9 +1,10 @@
-"""Normal forms of cycles: period doublings, pitchforks and Neimark-Sacker points, of the map from one return to the next.
+"""Normal forms of cycles: folds, period doublings, pitchforks and Neimark-Sacker points, of the map from one return to the next.
 
 The equations of one return are those at the Gauss points, with the values x_0 ... x_N at the mesh points, where x_N is the x_0 of the next
 return, and with a period of its own; of autonomous flows x_0 stays in the plane across the motion. With J(m) their Jacobian where x_N = m x_0, K
 its part that belongs to x_N, B and C their second and third derivatives,
 
+    fold            z + a z^2        a = -w.B(v, v) / (2 w.K v),                            J(1) v = 0
     m = -1 or 1     m z + c z^3       c = -w.[C(v, v, v) + 3 B(v, h)] / (6 w.K v),      J(m) v = 0,   J(1) h = -B(v, v)
     Neimark-Sacker  m z + c z^2 z*    c = -w.[C(q, q, q*) + 2 B(q, h11) + B(q*, h20)] / (2 w.K q),   J(m) q = 0,
                                       J(1) h11 = -B(q, q*),  J(m^2) h20 = -B(q, q);   d = Re(c / m)
@@ -15,6 +16,7 @@ for the return map; Kuznetsov, Govaerts, Doedel and Dhooge, SIAM J. Numer. Anal.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +25,7 @@ from scipy.sparse.linalg import splu
 
 from . import mesh
 
+NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
 LARGEST = 100_000  # unknowns of one return up to which there are normal forms
 STEP = 0.02  # of differences of Jacobians, in lengths over which the right-hand side bends
 FIRST = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
@@ -150,6 +153,23 @@ class Critical(NamedTuple):
 
 def _apply(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return np.einsum("nab,nb->na", matrices, vectors)
+
+
+def quadratic(problem: Any, u: np.ndarray, p: float, along: np.ndarray) -> tuple[float, float]:
+    """a at a fold, its sign that along a direction of the unknowns, and what it would be if B(v, v) pointed along w."""
+    system = Return(problem, u, p)
+    v, w, weight, _ = system.critical(1.0)
+    here = system.parts(v, 1.0)
+    one, two = system.bent(here[0])
+    side = system.second(one, here, here)
+    first, moved = slice(0, problem.node), along[: problem.node]
+    if system.free:
+        speed = problem.field(u[None, first], p)[0]
+        moved = moved - (speed @ moved) / (speed @ speed) * speed
+    third = system.rows(system.steps[:, None] * _apply(two, here[0]))
+    size = np.linalg.norm(w) * (np.linalg.norm(side) + NEAR * np.linalg.norm(third))
+    scale = math.copysign(0.5, -float(v[first] @ moved)) / np.real(weight)
+    return float(scale * (w @ side)), float(abs(scale) * size)
 
 
 def cubic(problem: Any, u: np.ndarray, p: float, factor: float) -> tuple[float, float]:

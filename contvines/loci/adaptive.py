@@ -62,7 +62,14 @@ class AdaptiveLocus(LocusProblem):
         """Loci end at no infinite period."""
         return 0.0
 
-    def normal_form(self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0) -> None:
+    def normal_form(
+        self,
+        kind: str,
+        u: np.ndarray,
+        p: float,
+        multiplier: complex = -1.0,
+        along: np.ndarray | None = None,
+    ) -> None:
         """Points of codimension two have forms of their own."""
         return None
 

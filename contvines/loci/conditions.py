@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ..bifurcation.normal_forms.coefficients import Coefficient, Forms
-from ..bifurcation.normal_forms.returned import ReturnForms, forms_at
 from ..problems.abilities import Adaptive
 from .kinds import Look
 from .layout import BRANCH, FLIP, FOLD, PAIR
@@ -114,8 +113,9 @@ def coefficient_of(look: Look, at: References, plane: Plane, rough: bool = False
 def _bend(plane: Plane, null: Null, rough: bool = False) -> Coefficient:
     """The quadratic coefficient of a fold, along the null vector that goes with the reference."""
     v, _ = plane.first.null(null.column, null.row)
-    forms = _forms(plane, rough)
-    found = forms.quadratic(forms.along(v) if isinstance(forms, ReturnForms) else v)
+    if isinstance(plane.problem, Adaptive):
+        return _of_cycle(plane, "fold", along=v)
+    found = _forms(plane, rough).quadratic(v)
     if found.error <= UNSURE * found.size or (rough and found.error < abs(found.value)):
         return found  # of a rough one the sign is enough
     return _bend(plane, null) if rough else UNKNOWN
@@ -123,7 +123,7 @@ def _bend(plane: Plane, null: Null, rough: bool = False) -> Coefficient:
 
 def _forms(plane: Plane, rough: bool = False) -> Forms:
     place = plane.place
-    return forms_at(plane.locus.at(place.q), place.u, place.p, rough)
+    return Forms(plane.locus.at(place.q), place.u, place.p, rough)
 
 
 def critical_eigenvalue(forms: Forms) -> complex | None:
@@ -148,9 +148,11 @@ def _lyapunov(plane: Plane, reference: float, rough: bool = False) -> Coefficien
     return _forms(plane, rough).lyapunov(multiplier)[0]
 
 
-def _of_cycle(plane: Plane, kind: str, multiplier: complex = -1.0) -> Coefficient:
+def _of_cycle(
+    plane: Plane, kind: str, multiplier: complex = -1.0, along: np.ndarray | None = None
+) -> Coefficient:
     """The form of a cycle from the equations on its mesh, which cost less than its return map."""
     place = plane.place
     own: Any = plane.locus.at(place.q)
-    found = own.normal_form(kind, place.u, place.p, multiplier)
+    found = own.normal_form(kind, place.u, place.p, multiplier, along)
     return UNKNOWN if found is None else Coefficient(found[0], 0.0, found[1])

@@ -27,6 +27,8 @@ native/loci.hpp has the same for compiled problems.
 
 import math
 
+import numpy as np
+
 from .layout import (
     APART,
     BASE,
@@ -101,23 +103,17 @@ def locus_linearise(data, U, q, work):
         largest = calls.linearise(second, u, q, base)
         if not largest < 1e300:
             return math.inf
-        for i in range(n):
-            columns[1, i] = Q[i]
+        columns[1] = Q
     calls.assign(first, second, q)
     largest = calls.linearise(first, u, p, base)
     if not largest < 1e300:
         return math.inf
-    for i in range(n):
-        residuals[i] = F[i]
-        if kind == BRANCH:
-            residuals[i] += U[n + 1] * borders[B, i]
+    residuals[:n] = F + U[n + 1] * borders[B, :n] if kind == BRANCH else F
     if not still:
-        for i in range(n):
-            columns[0, i] = data[UNIT] * Q[i]
+        columns[0] = data[UNIT] * Q
         span(data, work)
     state[SIGN] = particular(data, work)
-    for i in range(size):
-        point[i] = U[i] + directions[0, i]
+    point[:size] = U + directions[0, :size]
     point[size] = q + directions[0, size]
     tests(data, work, point[:n], data[UNIT] * point[n], point[size], values)
     for k in range(size - n):
@@ -125,8 +121,7 @@ def locus_linearise(data, U, q, work):
         if not abs(values[k]) < math.inf:
             return math.inf
         largest = max(largest, abs(values[k]))
-    for i in range(size):
-        kept[i] = residuals[i]
+    kept[:size] = residuals[:size]
     return largest
 
 
@@ -165,20 +160,13 @@ def locus_bordered(data, work, border, target, step, tangent):
     n, last = work[BASE_F].shape[0], work[POINT].shape[0] - 1
     count = last - n  # tests; there are as many directions, and the one along the locus
     total = count + 1
-    own = True  # the residuals are those of the point, for which the particular direction stands
-    for i in range(last):
-        if residuals[i] != kept[i]:
-            own = False
-    for k in range(count):
-        slopes[k] = 0.0
-    if not own:
+    slopes[:count] = 0.0
+    # else the residuals are those of the point, for which the particular direction stands
+    if (residuals[:last] != kept[:last]).any():
         state[SIGN] = particular(data, work)
         slopes_along(data, work, directions[0], slopes)
-        for i in range(last):
-            kept[i] = math.nan
-    across = 0.0
-    for i in range(last + 1):
-        across += border[i] * directions[0, i]
+        kept[:last] = math.nan
+    across = border @ directions[0]
     for k in range(count):
         small[k, 3] = -residuals[n + k] - slopes[k]
         small[k, 4] = 0.0
@@ -187,23 +175,15 @@ def locus_bordered(data, work, border, target, step, tangent):
     for column in range(total):
         if state[KNOWN] < 1.0:
             slopes_along(data, work, directions[1 + column], steep[column])
-        for k in range(count):
-            small[k, column] = steep[column, k]
-        along = 0.0
-        for i in range(last + 1):
-            along += border[i] * directions[1 + column, i]
-        small[count, column] = along
+        small[:count, column] = steep[column, :count]
+        small[count, column] = border @ directions[1 + column]
     state[KNOWN] = 1.0
-    for i in range(total):
-        for column in range(total, 3):
-            small[i, column] = 0.0
+    small[:total, total:3] = 0.0
     sign = state[SIGN] * close(small, total)
-    for i in range(last + 1):
-        step[i] = directions[0, i]
-        tangent[i] = 0.0
-        for column in range(total):
-            step[i] += small[column, 3] * directions[1 + column, i]
-            tangent[i] += small[column, 4] * directions[1 + column, i]
+    step[: last + 1], tangent[: last + 1] = directions[0], 0.0
+    for column in range(total):
+        step[: last + 1] += small[column, 3] * directions[1 + column]
+        tangent[: last + 1] += small[column, 4] * directions[1 + column]
     return sign
 
 
@@ -211,39 +191,26 @@ def renew(data, work, b, c, null):
     """Borders from the null vectors: c along `null`, b along the left one, in units of the scales; the linearisation is in BASE."""
     n = b.shape[0] - 1
     lines, left, scales, rows = work[LINES], work[SOLUTIONS][LEFT], work[SCALES], work[ROWS]
-    size = 0.0
-    for i in range(n):
-        size += (null[i] / scales[i]) ** 2
+    size = float(np.linalg.norm(null[:n] / scales[:n]))
     if not 0.0 < size < math.inf:
         return
-    size = math.sqrt(size)
-    for i in range(n):
-        c[i] = null[i] / scales[i] / scales[i] / size
-        lines[0, i] = b[i]
-    lines[0, n] = 0.0
+    c[:n] = null[:n] / scales[:n] / scales[:n] / size
+    lines[0, :n], lines[0, n] = b[:n], 0.0
     data[CALLS].transpose(data[FIRST], work[BASE], c[:n], work[TRIAL])
-    F = work[TRIAL_F]
-    for i in range(n):
-        F[i] = 0.0
+    work[TRIAL_F][:] = 0.0
     data[CALLS].bordered(data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
-    size = 0.0
-    for i in range(n):
-        size += (left[i] * rows[i]) ** 2
+    size = float(np.linalg.norm(left[:n] * rows[:n]))
     if not 0.0 < size < math.inf:
         return
-    size = math.sqrt(size)
-    for i in range(n):
-        b[i] = left[i] * rows[i] * rows[i] / size
+    b[:n] = left[:n] * rows[:n] * rows[:n] / size
 
 
 def worn(work, null):
     """Whether borders are due: the null vector has turned away from c, or they have served a few points."""
     state, scales = work[STATE], work[SCALES]
-    size = 0.0
-    for i in range(null.shape[0] - 1):
-        size += (null[i] / scales[i]) ** 2
+    n = null.shape[0] - 1
     state[SERVED] += 1.0
-    if state[SERVED] < LONGEST and size < TURNED * TURNED:
+    if state[SERVED] < LONGEST and np.linalg.norm(null[:n] / scales[:n]) < TURNED:
         return False
     state[SERVED] = 0.0
     return True

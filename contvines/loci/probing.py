@@ -5,6 +5,8 @@ native/loci.hpp has the same for compiled problems.
 
 import math
 
+import numpy as np
+
 from .layout import (
     BASE_F,
     BORDERS,
@@ -48,11 +50,7 @@ from .layout import (
 def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
     """Solve M (v, g) = (0, 1) with the linearisation at hand, into `tangent`; returns g."""
     n = F.shape[0]
-    for i in range(n):
-        F[i] = 0.0
-        Q[i] = b[i]
-        line[i] = c[i]
-    line[n] = 0.0
+    F[:], Q[:], line[:n], line[n] = 0.0, b[:n], c[:n], 0.0
     calls.bordered(data, linear, line, 0.0, step, tangent)
     return tangent[n]
 
@@ -117,11 +115,8 @@ def tests(data, work, u, p, q, values):
             calls, first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[TESTED]
         )
     elif kind == BRANCH:
-        for i in range(n):
-            F[i] = data[UNIT] * Q[i]
-            Q[i] = borders[B, i]
-            lines[0, i] = borders[C, i]
-        lines[0, n] = 0.0
+        F[:] = data[UNIT] * Q
+        Q[:], lines[0, :n], lines[0, n] = borders[B, :n], borders[C, :n], 0.0
         calls.bordered(first, trial, lines[0], 0.0, lines[1], solutions[TESTED])
         values[0] = solutions[TESTED, n]
         values[1] = lines[1, n]
@@ -143,20 +138,16 @@ def slopes_along(data, work, direction, slopes):
     point, scales, shifted, values = work[POINT], work[SCALES], work[SHIFTED], work[VALUES]
     n, last = work[BASE_F].shape[0], point.shape[0] - 1
     count = last - n
-    length = abs(direction[last]) / max(scales[last], abs(point[last]))
-    for i in range(n + 1):
-        length = max(length, abs(direction[i]) / max(scales[i], abs(point[i])))
+    parts = np.abs(direction) / np.maximum(scales[: last + 1], np.abs(point))
+    length = max(parts[last], parts[: n + 1].max())
     if not length > 1e-14:
-        for k in range(count):
-            slopes[k] = 0.0
+        slopes[:count] = 0.0
         return
     h = STEP / length
-    for i in range(n + 1):
-        shifted[i] = point[i] + h * direction[i]
+    shifted[: n + 1] = point[: n + 1] + h * direction[: n + 1]
     q = point[last] + h * direction[last]
     tests(data, work, shifted[:n], data[UNIT] * shifted[n], q, slopes)
-    for k in range(count):
-        slopes[k] = (slopes[k] - values[k]) / h
+    slopes[:count] = (slopes[:count] - values[:count]) / h
 
 
 def frozen(work, U, q):
@@ -166,13 +157,8 @@ def frozen(work, U, q):
     """
     kept, scales, state = work[FROZEN], work[SCALES], work[STATE]
     last = U.shape[0]
-    still = state[KNOWN] > 0.0 and abs(q - kept[last]) < STILL * max(scales[last], abs(q))
-    for i in range(last):
-        if still and not abs(U[i] - kept[i]) < STILL * max(scales[i], abs(U[i])):
-            still = False
-    if still:
+    near = state[KNOWN] > 0.0 and abs(q - kept[last]) < STILL * max(scales[last], abs(q))
+    if near and (np.abs(U - kept[:last]) < STILL * np.maximum(scales[:last], np.abs(U))).all():
         return True
-    for i in range(last):
-        kept[i] = U[i]
-    kept[last] = q
+    kept[:last], kept[last] = U, q
     return False

@@ -45,10 +45,7 @@ from .layout import (
 def rotate(columns, angle):
     """Turn C1 and C2 further."""
     c, s = math.cos(angle), math.sin(angle)
-    for i in range(columns.shape[1]):
-        first, second = columns[0, i], columns[1, i]
-        columns[0, i] = c * first + s * second
-        columns[1, i] = c * second - s * first
+    columns[0], columns[1] = c * columns[0] + s * columns[1], c * columns[1] - s * columns[0]
 
 
 def turn(work):
@@ -56,13 +53,11 @@ def turn(work):
     frame, scales, state, solutions = work[FRAME], work[SCALES], work[STATE], work[SOLUTIONS]
     n = frame.shape[0] - 1
     angle = -math.atan(solutions[ALONG, n])
-    size = solutions[NULL, n] ** 2
-    for i in range(n):
-        size += (solutions[NULL, i] / scales[i]) ** 2
+    scaled = solutions[NULL, :n] / scales[:n]
+    size = solutions[NULL, n] ** 2 + float(scaled @ scaled)
     if not (0.0 < size < math.inf and -2.0 < angle < 2.0):
         return 0.0
-    for i in range(n):
-        frame[i] = solutions[NULL, i] / scales[i] / scales[i] / size
+    frame[:n] = scaled / scales[:n] / size
     frame[n] = math.cos(angle) * solutions[NULL, n] / size
     state[ANGLE] += angle
     return angle
@@ -72,8 +67,7 @@ def parted(work, k, solution):
     """Direction k: unknowns of a solution, and what its part along C1 means for the parameters."""
     direction, scales, angle = work[DIRECTIONS][k], work[SCALES], work[STATE][ANGLE]
     n, last = solution.shape[0] - 1, direction.shape[0] - 1
-    for i in range(n):
-        direction[i] = solution[i]
+    direction[:n] = solution[:n]
     direction[n] = solution[n] * math.cos(angle) * scales[n]
     direction[last] = solution[n] * math.sin(angle) * scales[last]
 
@@ -81,17 +75,13 @@ def parted(work, k, solution):
 def plain_row(work):
     """(c, 0), into the first of LINES."""
     row, n = work[LINES][0], work[LINES].shape[1] - 1
-    for i in range(n):
-        row[i] = work[BORDERS][C, i]
-    row[n] = 0.0
+    row[:n], row[n] = work[BORDERS][C, :n], 0.0
 
 
 def solve(data, work, side, column, row, step, tangent):
     """[[F_u, column], [row]] x = (-side, 0) into `step`, (0, 1) into `tangent`; returns the determinant's sign."""
     F, Q = work[BASE_F], work[BASE_Q]
-    for i in range(F.shape[0]):
-        F[i] = side[i]
-        Q[i] = column[i]
+    F[:], Q[:] = side[: F.shape[0]], column[: F.shape[0]]
     return data[CALLS].bordered(data[FIRST], work[BASE], row, 0.0, step, tangent)
 
 
@@ -104,26 +94,22 @@ def span(data, work):
         plain_row(work)
         for k in range(2):
             solve(data, work, columns[k], borders[B], work[LINES][0], solutions[ALONG], solutions[NULL])
-            for i in range(n):
-                directions[1 + k, i] = solutions[ALONG, i]
+            directions[1 + k, :n] = solutions[ALONG, :n]
             directions[1 + k, n] = 1.0 - k
             directions[1 + k, n + 1] = solutions[ALONG, n]
             directions[1 + k, last] = 1.0 * k
-        for i in range(n):
-            directions[3, i] = solutions[NULL, i]
+        directions[3, :n] = solutions[NULL, :n]
         directions[3, n] = 0.0
         directions[3, n + 1] = solutions[NULL, n]
         directions[3, last] = 0.0
     else:
-        for i in range(n):
-            columns[0, i] *= scales[n]
-            columns[1, i] *= scales[last]
+        columns[0] *= scales[n]
+        columns[1] *= scales[last]
         if state[KNOWN] >= 0.0:
             turn(work)
             rotate(columns, state[ANGLE])
         else:  # any row, then the one that belongs to this place
-            for i in range(n):
-                frame[i] /= scales[i]
+            frame[:n] /= scales[:n]
             rotate(columns, state[ANGLE])
             solve(data, work, columns[1], columns[0], frame, solutions[ALONG], solutions[NULL])
             rotate(columns, turn(work))
@@ -143,8 +129,7 @@ def particular(data, work):
     if data[KIND] == BRANCH:
         plain_row(work)
         sign = solve(data, work, residuals, work[BORDERS][B], work[LINES][0], found, spare)
-        for i in range(n):
-            directions[0, i] = found[i]
+        directions[0, :n] = found[:n]
         directions[0, n] = 0.0
         directions[0, n + 1] = found[n]
         directions[0, last] = 0.0

@@ -177,7 +177,7 @@ class Adaptive(Protocol):
     """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
 
     ``adapted(u)`` returns how unknowns, and directions of unknowns (``image(v, direction=True)``), read on a better mesh, or None;
-    ``accuracy(u, p)`` is the relative accuracy of values on the mesh, ``remaining(u, tangent)`` of the parameter at the end of a branch whose period grows without bound, ``touch_error(point)`` that at a border which is met between the mesh points; ``normal_form`` is the coefficient at a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms;
+    ``accuracy(u, p)`` is the relative accuracy of values on the mesh, ``remaining(u, tangent)`` of the parameter at the end of a branch whose period grows without bound, ``touch_error(point)`` that at a border which is met between the mesh points; ``normal_form`` is the coefficient at a fold (of the sign ``along`` a direction), a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms;
     ``anchor(u, p)`` keeps the phase of a solution for those that follow, until ``anchor(None)``;
     ``too_coarse(u)`` tells whether more unknowns are needed, and ``refined()`` and ``halved(u, direction)`` have these.
     """
@@ -188,7 +188,12 @@ class Adaptive(Protocol):
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float: ...
     def touch_error(self, point: Any) -> float: ...
     def normal_form(
-        self, kind: str, u: np.ndarray, p: float, multiplier: complex = -1.0
+        self,
+        kind: str,
+        u: np.ndarray,
+        p: float,
+        multiplier: complex = -1.0,
+        along: np.ndarray | None = None,
     ) -> tuple[float, float] | None: ...
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None: ...
     def adapted(self, u: np.ndarray) -> Any: ...
