@@ -48,6 +48,7 @@ def study_schema() -> dict[str, Any]:
 
     kinds = [_titled(inlined(catalogue_model(name)), f"the machine {name}") for name in NAMES]
     kinds += [made for made in map(_physical, NAMES) if made is not None]
+    kinds = [_with_conditions(kind) for kind in kinds]
     own = [
         _own(inlined(PageSections), "a machine of a Python file"),
         _own(inlined(FlowSections), "a flow of a Python file"),
@@ -63,6 +64,32 @@ def study_schema() -> dict[str, Any]:
 def _titled(made: dict[str, Any], title: str) -> dict[str, Any]:
     sections = {"model": made["properties"].pop("model") | {"title": title}, **made["properties"]}
     return made | {"title": title, "properties": sections}
+
+
+def _with_conditions(made: dict[str, Any]) -> dict[str, Any]:
+    """A study whose parameters may be tables over a condition."""
+    row = {"type": "array", "items": {"type": ["number", "string"]}, "minItems": 2, "maxItems": 2}
+    table = {
+        "type": "object",
+        "description": "a table over one condition, for example { temperature = [[20, 0.7], [80, 0.6]] }",
+        "additionalProperties": {"type": "array", "items": row, "minItems": 2},
+        "minProperties": 1,
+        "maxProperties": 1,
+    }
+    model = made["properties"]["model"]
+    entries = {
+        name: kind
+        if name in ("name", "units", "unusual", "contact_time")
+        else {key: kind[key] for key in ("description", "default") if key in kind} | {"anyOf": [kind, table]}
+        for name, kind in model["properties"].items()
+    }
+    conditions = {
+        "type": "object",
+        "description": "values of conditions",
+        "additionalProperties": {"type": "number"},
+    }
+    sections = {**made["properties"], "model": model | {"properties": entries}, "conditions": conditions}
+    return made | {"properties": sections}
 
 
 def _physical(name: str) -> dict[str, Any] | None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from contvines.command.conditions import check_varied, without_tables
 from contvines.command.study_data import Study
 from contvines.command.study_errors import StudyError as StudyError
 from contvines.command.toml_text import TomlError, toml_data
@@ -59,6 +60,8 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     path, model = Path(path), data.get("model")
     about = model if isinstance(model, dict) else {}
     try:
+        data, conditions, tables = without_tables(data)
+        check_varied(data, tables)
         said = str(about.get("name", ""))
         if ".py" in said or said in PAGES:
             from contvines.command.own_study import read_own
@@ -72,6 +75,7 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
             from contvines.command.catalogue_study import read_catalogue
 
             study = read_catalogue(data, path)
+        study = replace(study, conditions=conditions, tables=tables)
         if study.kinds is not None:
             from contvines.command.own_code import load_kinds
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from contvines.command.schema import AtlasSection, ChartSection, SurveySection, SweepSection
+from orbits.machines.conditions import Table
 
 SHOWN = 60  # letters of a word that a refusal repeats
 
@@ -45,6 +46,7 @@ class Study:
     box : ranges of many starts of a flow.
     sweep, atlas, chart, survey : the sections of these names.
     text : the TOML text.
+    conditions : values of what parameters depend on; their tables : of parameters over them.
     """
 
     path: Path
@@ -71,6 +73,8 @@ class Study:
     chart: ChartSection | None = None
     survey: SurveySection = field(default_factory=SurveySection)
     text: str = ""
+    conditions: dict[str, float] = field(default_factory=dict)
+    tables: tuple[Table, ...] = ()
 
     @classmethod
     def of(
@@ -118,7 +122,8 @@ class Study:
             from contvines.command.own_code import load_kinds
 
             go["kinds"] = [self.kinds, load_kinds(self.path, self.kinds)[1]]
-        return {"model": self._model(), "start": start, "continue": go}
+        more = {"conditions": self.conditions} if self.conditions else {}
+        return {"model": self._model(), "start": start, "continue": go, **more}
 
     def kept(self, command: str, target: Path) -> dict[str, Any]:
         """What a file keeps of its study: `describe()`, and the text from which `contvines rerun` does the command again.

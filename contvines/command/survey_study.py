@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.command.conditions import check_range
 from contvines.command.own_code import own_code, run_file
 from contvines.command.study_data import Sort, Study
 from contvines.shared.near_names import did_you_mean
@@ -31,8 +32,13 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
 
     said = dict(study.survey.vary if vary is None else vary)
     model = machine(study)
-    known = list(names_of(study))
+    known = [*names_of(study), *study.conditions]
+    follows = {table.parameter: table.condition for table in study.tables}
     for name in said:
+        if name in follows:
+            raise ValueError(
+                f"{study.path}: [survey] vary.{name}: {name} depends on {follows[name]}; vary {follows[name]}, or give {name} one number in [model]."
+            )
         if name not in known:
             raise ValueError(
                 f"{study.path}: [survey] vary.{name}: the model {study.name!r} has no such parameter"
@@ -42,13 +48,16 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
             raise ValueError(
                 f"{study.path}: [survey] vary.{name}: every diagram runs over {name} already; vary something else."
             )
-        if study.sort is Sort.PHYSICAL:
+        if study.sort is Sort.PHYSICAL and name not in study.conditions:
             model = model.told_by(name)
             said[name] = _numbers(model, name, said[name], f"{study.path}: [survey] vary.{name}")
     try:
-        return planned(said, study.survey.sampling, study.survey.samples, study.survey.seed), model
+        plan = planned(said, study.survey.sampling, study.survey.samples, study.survey.seed)
+        for name, values in {**plan.axes, **plan.samples}.items():
+            check_range(study.tables, name, values.tolist(), f"[survey] vary.{name}")
+        return plan, model
     except ValueError as error:
-        raise ValueError(f"{study.path}: {error}.") from None
+        raise ValueError(f"{study.path}: {str(error).rstrip('.')}.") from None
 
 
 def names_of(study: Study) -> Iterable[str]:
@@ -66,7 +75,7 @@ def family_of(study: Study, model: Any) -> Any:
 
     return Family(
         model, study.word, study.periods, study.guess, study.loose, study.parameter, study.within,
-        study.state,
+        study.state, study.tables,
     )  # fmt: skip
 
 

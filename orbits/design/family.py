@@ -15,6 +15,7 @@ import numpy as np
 from orbits.attractors import find_attractor
 from orbits.attractors.search import described
 from orbits.flows.protocol import SimulationError
+from orbits.machines.conditions import Table, resolved
 from orbits.orbit import Orbit
 from orbits.starts.find import StartError, centred, find, polish
 
@@ -55,6 +56,8 @@ class Family:
         A parameter and its interval in which an orbit to begin with may lie elsewhere, where the machine itself has none.
     state : mapping, optional
         Where simulations begin that look for such an orbit: at rest by default.
+    tables : sequence of Table
+        Parameters that depend on a condition; values may then name the condition.
     """
 
     machine: Any
@@ -65,6 +68,7 @@ class Family:
     over: str | None = None
     within: tuple[float, float] | None = None
     state: Mapping[str, float] | None = None
+    tables: Sequence[Table] = ()
 
     @property
     def notation(self) -> dict[str, str]:
@@ -119,6 +123,7 @@ class Family:
 
     def machine_at(self, values: Mapping[str, float]) -> tuple[Any, dict[str, float]]:
         """The machine with these values, and the parameters left to its orbits."""
+        values = resolved(self.tables, values)
         # a physical machine counts in its units; the numbers of a page are all its orbits'
         change = getattr(self.machine, "with_", None) or getattr(self.machine, "changed", None)
         if change is None:

@@ -145,6 +145,20 @@ def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]
     return _finite(quantity, number, shown, would), unit
 
 
+def number_and_unit(value: str) -> tuple[float, str]:
+    """A text such as ``"15 mm"`` apart; the unit may be missing.
+
+    Raises
+    ------
+    QuantityError
+        If it is no number with a unit.
+    """
+    match = _NUMBER.fullmatch(value)
+    if match is None:
+        raise QuantityError(f"{value!r} is not a number with a unit")
+    return float(match[1]), match[2]
+
+
 def counted(name: str, value: str, own: str) -> float:
     """A measure given as text, ``"15 mm"``, counted in the unit in which it is shown.
 
