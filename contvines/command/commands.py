@@ -41,6 +41,10 @@ COMMANDS = {
         "Simulate over the parameter, carrying the state on; goes on with an unfinished sweep.",
     ),
     "survey": ("survey", "Survey many machines; goes on with an unfinished survey."),
+    "recommend": (
+        "recommend",
+        "A clearance for a study: theory first, then diagrams of all samples; goes on when interrupted.",
+    ),
     "calibrate": (
         "calibrate",
         "Estimate restitution, friction and the like from a measurement, with confidence intervals.",

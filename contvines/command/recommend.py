@@ -1,0 +1,134 @@
+"""`contvines recommend STUDY.toml`: a clearance, how tolerant it is, what it brings and costs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from contvines.command.frame import beside, check_plot, draw, held, interruptible, refuse_source, say, tell
+from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption
+from contvines.command.recommendation import Recommendation
+
+
+def recommend(
+    study: Annotated[
+        Path,
+        typer.Argument(
+            metavar="STUDY.toml", help="The study; [survey] vary says what is open and what is uncertain."
+        ),
+    ],
+    cost: Annotated[
+        float,
+        typer.Option("--cost", metavar="PERCENT", min=0.1, max=50.0, help="What the tolerance may cost."),
+    ] = 5.0,
+    target: Annotated[
+        str | None,
+        typer.Option(
+            "--target",
+            metavar="LENGTH",
+            help='The response that counts as quieted, "30 mm"; nine tenths of the bare machine\'s by default.',
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, help="Processes of this machine; all cores by default.")
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.json",
+            help="Where it is kept; by default STUDY-recommend.json here.",
+        ),
+    ] = None,
+    plot: PlotOption = None,
+    fresh: FreshOption = False,
+    json_: JsonOption = False,
+    quiet: QuietOption = False,
+) -> None:
+    """A clearance for a study: theory first, then diagrams of all samples; goes on when interrupted.
+
+    Chosen is the value of the one parameter that [survey] vary has on a grid
+    (half_width if there is none) with the lowest worst response over all that
+    coexists and all samples of what is uncertain.
+    """
+    from contvines.command.study import read_study
+
+    read = read_study(study)
+    place = output or beside(study, "-recommend.json")
+    refuse_source(place, study)
+    check_plot(plot)
+    goal = None if target is None else _target(target, read)
+    with held(place, quiet, fresh):
+        found = recommended(read, place, cost / 100.0, goal, workers, quiet)
+    if json_ or not quiet:
+        tell(found, found.to_dict() if json_ else None)
+    if plot is not None:
+        from contvines.command.recommend_picture import choice_picture
+
+        draw(plot, lambda: choice_picture(found), quiet)
+
+
+def recommended(
+    read: Any, place: Path, cost: float, target: float | None, workers: int | None, quiet: bool
+) -> Recommendation:
+    """The recommendation for a study: from its file if that is finished, else computed; rows of an unfinished one are kept beside it."""
+    from contvines.command.recommending import digest
+    from contvines.command.recommending import recommend as run
+
+    own = digest(read, cost, target)
+    if place.exists():
+        kept = _kept(place)
+        if kept.get("digest") != own:
+            raise ValueError(
+                f"{place}: this file holds another recommendation (or this one before the study was edited); --fresh sets it aside, "
+                "-o gives another name."
+            )
+        say(f"{place} holds the finished recommendation; nothing to compute.", quiet)
+        return Recommendation.from_dict(kept["recommendation"])
+    journals: list[Path] = []
+
+    def journal(count: int) -> Path:
+        journals.append(place.with_name(f"{place.name}.{count}.unfinished"))
+        return journals[-1]
+
+    with interruptible("all finished machines are kept; the same command goes on from there"):
+        found = run(
+            read,
+            cost=cost,
+            target=target,
+            workers=workers,
+            journal=journal,
+            tell=lambda text: say(text, quiet),
+            progress=not quiet,
+        )
+    from contvines.export import json_text
+
+    place.write_text(json_text({"digest": own, "recommendation": found.to_dict()}), encoding="utf-8")
+    for path in journals:
+        path.unlink(missing_ok=True)
+    say(f"kept in {place}", quiet)
+    return found
+
+
+def _kept(place: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(place.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        found = None
+    if not isinstance(found, dict) or "recommendation" not in found:
+        raise ValueError(f"{place}: this is not a file of contvines recommend; choose another name with -o.")
+    return found
+
+
+def _target(text: str, study: Any) -> float:
+    from contvines.command.amounts import amount
+
+    model = study.model
+    value = amount("--target", text, model.default_measure, model.units)
+    if value <= 0.0:
+        raise ValueError(f"--target {text}: give a response above 0.")
+    return value

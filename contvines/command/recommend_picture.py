@@ -1,0 +1,106 @@
+"""The picture of a recommendation: the worst response over what was chosen, and the responses at the choice."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contvines.command.compare import LOOKS
+from contvines.command.recommendation import Recommendation
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+BLUE, RED, GREY = "#0b3c6f", "#b5121b", "0.45"
+SIZE = (10.0, 4.0)  # inches
+ROOM = 1.12  # of the vertical axis above the largest number
+
+
+def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:
+    """Both panels; where nothing was chosen the first alone."""
+    from contvines.plots.figures import new_figure, settle, styled, thin_ticks
+
+    with styled():
+        figure = new_figure(figsize=size or SIZE)
+        panels = figure.subplots(1, 2 if found.curves else 1, squeeze=False)[0]
+        draw_places(panels[0], found)
+        if found.curves:
+            draw_responses(panels[1], found)
+        settle(figure)
+        thin_ticks(*panels)
+    return figure
+
+
+def _label(found: Recommendation, name: str, text: str) -> str:
+    unit = found.units.get(name, "")
+    return f"{text} [{unit}]" if unit else text
+
+
+def draw_places(axes: Axes, found: Recommendation) -> None:
+    """The worst response over the value that is chosen."""
+    first = [p for p in found.places if p.samples < found.most or found.most == 1]
+    later = [p for p in found.places if p.samples == found.most > 1]
+    for places, mark, label in (
+        (first, "o", "the study's machine"),
+        (later, "D", f"worst of {found.most} samples"),
+    ):
+        known = [(p.value, p.worst) for p in places if math.isfinite(p.worst)]
+        if known:
+            axes.plot(
+                *zip(*known),
+                mark,
+                color=BLUE,
+                markersize=4,
+                mfc="white" if mark == "o" else BLUE,
+                label=label,
+            )
+    hidden = [p.value for p in found.places if p.unknown]
+    if hidden:
+        axes.plot(hidden, np.zeros(len(hidden)), "x", color=GREY, label="not known")
+    for kind, (value, _) in found.compared.items():
+        color, dashes = LOOKS[kind]
+        axes.axhline(value, color=color, linestyle=dashes, linewidth=1.2, label=kind)
+    if found.value is not None and found.chosen is not None:
+        axes.axvspan(
+            *found.tolerance, color=RED, alpha=0.1, lw=0, label=f"costs less than {100 * found.cost:g} %"
+        )
+        axes.plot(
+            found.value, found.chosen.worst, "*", color=RED, markersize=13, mec="white", label="recommended"
+        )
+    if found.own is not None:
+        axes.axvline(found.own, color=GREY, lw=0.9, ls=(0, (3, 3)), label="in the study")
+    axes.set(
+        xlabel=_label(found, found.name, found.name.replace("_", "-")),
+        ylabel=_label(found, "peak", "largest response"),
+        ylim=(0.0, None),
+    )
+    axes.margins(y=ROOM - 1.0)
+    axes.legend(loc="best", fontsize="x-small")
+
+
+def draw_responses(axes: Axes, found: Recommendation) -> None:
+    """The responses at the choice beside those to compare with."""
+    from orbits.design.references import NAMES
+
+    for curve in found.curves:
+        if curve.name in LOOKS:
+            color, dashes = LOOKS[curve.name]
+            axes.plot(curve.x, curve.y, color=color, linestyle=dashes, linewidth=1.2, label=NAMES[curve.name])
+    for name, style in (
+        ("simulated", {"marker": ".", "ls": "", "ms": 2.5, "color": "0.35"}),
+        ("stable", {"color": BLUE, "lw": 1.8}),
+    ):
+        said = {"simulated": "simulation up and down", "stable": "recommended: stable motions"}[name]
+        for curve in (c for c in found.curves if c.name == name):
+            axes.plot(curve.x, curve.y, label=said, **style)
+            said = "_"
+    axes.set(
+        xlabel=_label(found, found.parameter, found.parameter.replace("_", " ")),
+        ylabel=_label(found, "peak", "largest displacement"),
+        ylim=(0.0, None),
+        xlim=found.within,
+    )
+    axes.legend(loc="best", fontsize="x-small")

@@ -1,0 +1,352 @@
+"""What `contvines recommend` found: numbers, the sentences that tell them, a picture."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from contvines.text_table import Table, fitted, terminal_width
+
+MOST = 4  # sentences about what is not known
+THOUSAND = 1000.0
+LARGER = {"mm": "m", "mm/s": "m/s", "mJ": "J", "mW": "W", "mN": "N"}
+"""Units in which a thousand and more of the unit are shown."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """One value of what is chosen, over the samples.
+
+    Attributes
+    ----------
+    value : float
+    worst, median : float
+        Of the largest response over all that coexists; no number where it is not known of every sample.
+    engaged : float
+        The worst if at each value of the parameter the lowest of the coexisting responses is met.
+    unknown, samples : int
+        Of how many samples the response is not known, and how many there are; one where nothing is uncertain, and in the first look.
+    why : str
+        Of the first one that is not known.
+    """
+
+    value: float
+    worst: float
+    median: float
+    engaged: float
+    unknown: int
+    samples: int
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A response over the parameter: `name` is ``stable``, ``simulated`` (up and down), or one of `orbits.design.references.KINDS`."""
+
+    name: str
+    x: list[float]
+    y: list[float]
+
+
+@dataclass(frozen=True)
+class Start:
+    """The start-up at the choice, in the study's units; see `orbits.design.start_up`."""
+
+    peak: float
+    bare_peak: float
+    settled: float
+    bare_settled: float
+    fastest_impact: float
+    worst_relative: float
+    series: dict[str, list[float]] = field(default_factory=dict, repr=False)
+
+
+@dataclass(frozen=True)
+class Recommendation:
+    """A value, what it costs and brings, and what is not known.
+
+    Attributes
+    ----------
+    study, title : str
+    name, parameter : str
+        What is chosen, and what the responses run over.
+    within : (float, float)
+        The parameter's interval.
+    units : dict
+        Of all names below.
+    value : float or None
+        The choice; None where nothing is known of any value with all samples.
+    own : float or None
+        What the study's `[model]` has.
+    tolerance : (float, float)
+        Between these values the worst response is at most `cost` above the best; they are values that were looked at, so that the true
+        interval is wider.
+    cost : float
+        As a share.
+    theory : dict
+        `orbits.design.first_clearance`; empty where there is none.
+    places : list of Place
+        All that was looked at, ascending; those of the first look are of the study's own machine.
+    compared : dict
+        Kind -> largest response and where, of the machines to compare with.
+    target : float
+        The response at which the machine counts as quieted; `works` is the share of samples in which the worst response is at most this.
+    works : float
+    met : dict
+        Shares of simulated starts (over samples, values, starts) by what they lead to: ``impacts``, ``modulated``, ``calm``, ``stuck``; the
+        largest responses of the motions without impacts and of the modulated ones, ``calm_peak``, ``modulated_peak``.
+    loads : dict
+        Largest over the stable motions and samples, by measure.
+    checked : (float, float) or None
+        Largest response of the study's machine at the choice by the diagram and by simulation up and down.
+    start_up : Start or None
+    curves : list of Curve
+        Responses of the study's machine at the choice, and those to compare with.
+    assumed, unknown : list of str
+    """
+
+    study: str
+    title: str
+    name: str
+    parameter: str
+    within: tuple[float, float]
+    units: dict[str, str]
+    value: float | None
+    own: float | None
+    tolerance: tuple[float, float]
+    cost: float
+    theory: dict[str, float]
+    places: list[Place]
+    compared: dict[str, tuple[float, float]]
+    target: float
+    works: float
+    met: dict[str, float]
+    loads: dict[str, float]
+    checked: tuple[float, float] | None
+    start_up: Start | None
+    curves: list[Curve] = field(default_factory=list, repr=False)
+    assumed: list[str] = field(default_factory=list)
+    unknown: list[str] = field(default_factory=list)
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON, at full precision."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, data: dict[str, Any]) -> Recommendation:
+        """From `to_dict`."""
+        places = [Place(**place) for place in data["places"]]
+        start = data["start_up"] and Start(**data["start_up"])
+        pairs = {name: tuple(pair) for name, pair in data["compared"].items()}
+        ends = {key: tuple(data[key]) for key in ("within", "tolerance")}
+        checked = data["checked"] and tuple(data["checked"])
+        curves = [Curve(**curve) for curve in data["curves"]]
+        made = {"places": places, "start_up": start, "compared": pairs, "checked": checked, "curves": curves}
+        return cls(**{**data, **ends, **made})
+
+    # ------------------------------------------------------------------ sentences
+    def shown(self, name: str, value: float | None) -> str:
+        """A value with its unit, for people."""
+        if value is None or not math.isfinite(value):
+            return "not known"
+        unit = self.units.get(name, "")
+        larger = LARGER.get(unit)
+        if larger is not None and abs(value) >= THOUSAND:
+            value, unit = value / THOUSAND, larger
+        return f"{value:.4g} {unit}".rstrip()
+
+    @property
+    def chosen(self) -> Place | None:
+        """The place of the choice."""
+        return next((p for p in self.places if p.value == self.value and p.samples == self.most), None)
+
+    @property
+    def most(self) -> int:
+        """How many samples the later looks have."""
+        return max(place.samples for place in self.places)
+
+    @property
+    def headline(self) -> str:
+        """The answer in one sentence."""
+        if self.value is None:
+            return f"No {self.name} can be recommended: {self.unknown[0] if self.unknown else 'nothing is known'}."
+        low, high = self.tolerance
+        said = f"{self.name} = {self.shown(self.name, self.value)}"
+        if low < high:
+            said += f"; from {low:.3g} to {self.shown(self.name, float(f'{high:.3g}'))} it costs less than {100 * self.cost:g} %"
+        return said + "."
+
+    @property
+    def sentences(self) -> list[str]:
+        """What there is to say beside the tables, the most important first."""
+        found = []
+        peak, place = "peak", self.chosen
+        own = self._own()
+        if own:
+            found.append(own)
+        if self.theory:
+            t = self.theory
+            found.append(
+                f"By theory (steady impacts, no friction): at most {self.shown(self.name, t['widest'])}, with {self.shown(peak, t['remaining'])} "
+                f"left at resonance; from every start only below {self.shown(self.name, t['entered'])}, the linear peak."
+            )
+        if place is not None and "tuned" in self.compared:
+            tuned = self.compared["tuned"][0]
+            better = tuned < place.worst
+            found.append(
+                f"A tuned absorber of the same mass would {'do better' if better else 'not do better'}: {self.shown(peak, tuned)}"
+                + (" while it stays in tune." if better else ".")
+            )
+        engaged = self.engaged
+        if place is not None and engaged is not None and engaged.engaged < (1.0 - self.cost) * place.worst:
+            found.append(
+                f"If the absorber is at work at every {self.parameter} (the lowest response of those that coexist), the best is about "
+                f"{self.name} = {self.shown(self.name, engaged.value)} with {self.shown(peak, engaged.engaged)}; nothing makes sure that it is."
+            )
+        return found
+
+    @property
+    def engaged(self) -> Place | None:
+        """The place with the lowest response if the lowest of those that coexist is met."""
+        known = [place for place in self.places if math.isfinite(place.engaged)]
+        return min(known, key=lambda place: place.engaged, default=None)
+
+    def _own(self) -> str:
+        """How the study's own value compares with the choice."""
+        if self.own is None or self.value is None:
+            return ""
+        place = next((place for place in self.places if place.value == self.own), None)
+        if self.tolerance[0] <= self.own <= self.tolerance[1]:
+            return f"The study's own {self.shown(self.name, self.own)} is as good."
+        ratio = self.value / self.own
+        small, factor = ratio > 1.0, max(ratio, 1.0 / ratio)
+        by = (
+            f"about {round(factor)} times"
+            if factor >= 1.5
+            else f"{100.0 * abs(self.own / self.value - 1.0):.2g} %"
+        )
+        worst = (
+            ""
+            if place is None or not math.isfinite(place.worst)
+            else f": {self.shown('peak', place.worst)} at worst"
+        )
+        return f"The study's {self.shown(self.name, self.own)} is {by} too {'small' if small else 'large'}{worst}."
+
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """The table of responses: what, how much, remark."""
+        from orbits.design.references import NAMES
+
+        place, found = self.chosen, []
+        if place is not None:
+            over = f"worst of {place.samples} samples" if place.samples > 1 else "worst of all that coexists"
+            found.append(("recommended", self.shown("peak", place.worst), over))
+            if place.samples > 1:
+                found.append(("recommended, median", self.shown("peak", place.median), ""))
+            found.append(
+                (
+                    "absorber at work",
+                    self.shown("peak", place.engaged),
+                    "lowest of what coexists, worst of the samples",
+                )
+            )
+        for kind, (value, at) in self.compared.items():
+            found.append((NAMES[kind], self.shown("peak", value), f"at {self.shown(self.parameter, at)}"))
+        return found
+
+    @property
+    def behaviour(self) -> list[tuple[str, str, str]]:
+        """Where it works, and what happens else."""
+        names = {
+            "impacts": "impacts every period or nearly",
+            "modulated": "modulated: impacts come and go",
+            "calm": "calm: slides without impacts",
+            "stuck": "stuck: moves with the oscillator",
+        }
+        works = self.works
+        found = [
+            (
+                "works",
+                "not known" if math.isnan(works) else f"{100 * works:.3g} %",
+                f"of the samples: at most {self.shown('peak', self.target)} whatever coexists",
+            )
+        ]
+        for kind, said in names.items():
+            if kind not in self.met:
+                continue
+            top = self.met.get(f"{kind}_peak", math.nan)
+            most = f", at most {self.shown('peak', top)}" if math.isfinite(top) else ""
+            found.append(
+                (f"  {said}", f"{100 * self.met[kind]:.3g} %", f"of simulated starts over the interval{most}")
+            )
+        return found
+
+    @property
+    def load_rows(self) -> list[tuple[str, str, str]]:
+        """Loads and noise."""
+        names = {
+            "impact_speed": ("fastest impact", "of periodic and modulated motions"),
+            "impulse": ("impulse of an impact", "largest; periodic motions"),
+            "mean_force": ("mean impact force", "over a period"),
+            "impact_rate": ("impacts per second", "noise: how often"),
+            "impact_energy": ("energy of an impact", "noise: how hard"),
+        }
+        return [
+            (said, self.shown(name, self.loads[name]), why)
+            for name, (said, why) in names.items()
+            if name in self.loads
+        ]
+
+    @property
+    def start_rows(self) -> list[tuple[str, str, str]]:
+        """The start-up."""
+        start = self.start_up
+        if start is None:
+            return []
+        return [
+            (
+                "largest displacement",
+                self.shown("peak", start.peak),
+                f"bare: {self.shown('peak', start.bare_peak)}",
+            ),
+            ("settles after", self._settled(start.settled), f"bare: {self._settled(start.bare_settled)}"),
+            ("fastest impact", self.shown("impact_speed", start.fastest_impact), ""),
+            ("largest relative displacement", self.shown("peak", start.worst_relative), ""),
+        ]
+
+    def _settled(self, value: float) -> str:
+        return self.shown("time", value) if math.isfinite(value) else "does not"
+
+    @property
+    def tables(self) -> list[tuple[str, list[tuple[str, str, str]]]]:
+        """All tables with their titles; those that have rows."""
+        low, high = self.within
+        over = f"Largest response, {self.parameter} {low:.4g} to {self.shown(self.parameter, high)}"
+        at = "" if self.value is None else f" at {self.name} = {self.shown(self.name, self.value)}"
+        found = [
+            (over, self.rows),
+            (f"Does it work?{at}", self.behaviour if self.met or self.value is not None else []),
+            ("Loads and noise, worst of the samples", self.load_rows),
+            ("Start-up from rest", self.start_rows),
+        ]
+        return [(title, rows) for title, rows in found if rows]
+
+    def __str__(self) -> str:
+        width = terminal_width()
+        lines = [fitted(f"{self.title}: {self.headline}"), *map(fitted, self.sentences)]
+        for title, rows in self.tables:
+            lines += ["", title, *Table(("", "value", ""), [*rows], (), ()).lines(width)[1:]]
+        if self.checked is not None:
+            by, simulated = self.checked
+            lines += [
+                "",
+                fitted(
+                    f"Checked by simulation up and down: {self.shown('peak', simulated)}, beside {self.shown('peak', by)} of the diagram."
+                ),
+            ]
+        more = len(self.unknown) - MOST
+        unknown = [*self.unknown[:MOST], *([f"{more} more, in --json"] if more > 0 else [])]
+        for head, said in (("assumed", self.assumed), ("not known", unknown)):
+            lines += [fitted(f"{head}: {sentence}") for sentence in said]
+        return "\n".join(lines)

@@ -1,0 +1,506 @@
+"""A clearance for a study: by theory, by a first look over its range, then by diagrams of all samples ever nearer to the best."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contvines.command.recommendation import Curve, Place, Recommendation, Start
+from contvines.command.study_data import Sort, Study
+
+if TYPE_CHECKING:
+    from contvines.survey import Survey
+    from contvines.survey.outcomes import Findings
+    from contvines.survey.plan import Plan
+
+PLACES, LATER = (
+    13,
+    (7, 5),
+)  # values of the first look, and of the later ones between the neighbours of the best
+SAMPLES = 16  # where the study does not say
+QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
+LOADS = ("impact_speed", "impulse", "mean_force", "impact_rate", "impact_energy")
+VALUES, STARTS = (
+    9,
+    6,
+)  # values of the parameter and starts at each, from which it is told what is met at the choice
+REPLAYED, LONGEST = (
+    400,
+    24,
+)  # forcing periods of a motion that is simulated from itself, and of the longest that may recur
+CHECK = 61  # values of the simulation up and down
+SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
+ABOUT, FINE = (
+    8,
+    321,
+)  # of its steps to either side of the largest response it looks closer, at so many values: a jump may end a motion
+DRAWN = 4000  # instants of the start-up that are kept
+
+
+def loads(found: Findings) -> dict[str, float]:
+    """The largest of each load over the stable motions; the speed of impacts over simulated ones, too."""
+    from contvines.survey.outcomes import stretches
+
+    largest: dict[str, float] = {}
+    parts = stretches(found.graph)
+    for name in LOADS:
+        known = [float(met.measures.get(name, math.nan)) for met in found.unbranched]
+        for part in parts:
+            if name in part.branch.measure_names:
+                known += np.asarray(part.branch.measure(name), dtype=float)[
+                    part.first : part.last + 1
+                ].tolist()
+        largest[name] = max((x for x in known if math.isfinite(x)), default=math.nan)
+    return largest
+
+
+def met(found: Findings) -> dict[str, float]:
+    """Shares of the simulated motions (with impacts and a period, modulated or chaotic, without impacts, stuck), and the largest responses of the
+    motions without impacts and of the modulated ones."""
+    from contvines.graph.measures import default_measure
+    from contvines.survey.outcomes import stretches
+
+    counts: dict[str, int] = dict.fromkeys(MET, 0)
+    for _, measures, text in found.simulated:
+        calm = measures.get("impacts_per_period", math.nan) == 0.0
+        counts[
+            "stuck"
+            if text == "stuck"
+            else "calm"
+            if calm
+            else "modulated"
+            if text in MODULATED
+            else "impacts"
+        ] += 1
+    total, name = sum(counts.values()), default_measure(found.graph)
+    calm = [
+        part.response.max() for part in stretches(found.graph) if not part.branch.description.get("impacts")
+    ]
+    modulated = [one.measures.get(name, math.nan) for one in found.unbranched]
+    modulated += [
+        measures[name] for _, measures, text in found.simulated if text in MODULATED and name in measures
+    ]
+    return {
+        **{f"met_{kind}": count / total if total else math.nan for kind, count in counts.items()},
+        "calm_peak": _largest(np.array(calm)),
+        "modulated_peak": _largest(np.array(modulated)),
+    }
+
+
+MET = ("impacts", "modulated", "calm", "stuck")
+MODULATED = ("chaotic", "quasi-periodic", "slow")
+
+
+def recommend(
+    study: Study | str | Path,
+    *,
+    cost: float = 0.05,
+    target: float | None = None,
+    workers: int | None = None,
+    journal: Callable[[int], Path | None] = lambda _: None,
+    tell: Callable[[str], None] = lambda _: None,
+    progress: bool = False,
+) -> Recommendation:
+    """The value of what a study leaves open, its clearance, with which the worst response is lowest.
+
+    1. Theory (`orbits.design.first_clearance`) gives a first value, and the range if the study has none.
+    2. A diagram of the study's own machine at each of some values over the range.
+    3. Diagrams of all samples between the neighbours of the best, twice.
+    4. At the choice: what simulated starts lead to, loads, start-up, a sweep by simulation up and down.
+
+    Parameters
+    ----------
+    study : Study or path
+        `[survey] vary` has at most one parameter on a grid or a range with ``count``, which is chosen (``half_width`` if there is none); the others are
+        uncertain.
+    cost : float
+        The share by which the worst response may be higher within the tolerance.
+    target : float, optional
+        The response that counts as quieted, in the study's unit; nine tenths of the bare machine's by default.
+    workers : int, optional
+        Processes; all cores by default.
+    journal : callable, optional
+        Round -> the file in which its rows are kept, so that interrupted work goes on.
+    tell : callable, optional
+        Takes a sentence at the beginning of each round.
+    progress : bool
+
+    Raises
+    ------
+    ValueError
+        If nothing can be chosen; the sentence names the field and what would do.
+    """
+    from contvines.command.study import read_study
+
+    if not isinstance(study, Study):
+        study = read_study(study)
+    work = _Work(study, workers, journal, tell, progress)
+    places: list[Place] = []
+    first = work.look(work.range(), False)
+    places += first
+    best = _best(places)
+    for count in LATER if best is not None else ():
+        assert best is not None
+        low, high = _neighbours(places, best.value)
+        values = np.linspace(low, high, count)
+        done = {place.value for place in places if place.samples == work.samples}
+        places = _merged(places, work.look([v for v in map(_tidy, values) if v not in done], True))
+        best = _best([place for place in places if place.samples == work.samples])
+        if best is None:
+            break
+    return work.told(places, best, cost, target)
+
+
+class _Work:
+    """The machines of a recommendation, and what is asked of them."""
+
+    def __init__(
+        self,
+        study: Study,
+        workers: int | None,
+        journal: Callable[[int], Path | None],
+        tell: Callable[[str], None],
+        progress: bool,
+    ) -> None:
+        from contvines.command.compose import check_shaken, machine
+        from contvines.command.survey_study import family_of, plan_and_machine, units_of
+        from contvines.survey.plan import Plan
+
+        if "samples" not in study.survey.model_fields_set:
+            survey = study.survey.model_copy(update={"samples": SAMPLES})
+            study = dataclasses.replace(study, survey=survey)
+        self.study, self.workers, self.journal, self.tell, self.progress = (
+            study,
+            workers,
+            journal,
+            tell,
+            progress,
+        )
+        check_shaken(study, study.survey.vary)
+        self.assumed: list[str] = []
+        if study.survey.vary:
+            plan, model = plan_and_machine(study)
+        else:
+            plan, model = Plan({}, {}), machine(study)
+            self.assumed.append(
+                "nothing is uncertain, as [survey] vary names nothing: the choice is for the study's own numbers"
+            )
+        if len(plan.axes) > 1:
+            raise ValueError(
+                f"{study.path}: [survey] vary has {' and '.join(plan.axes)} on a grid: contvines recommend chooses one; "
+                "make the others uncertain (uniform = [from, to]), or leave them out. contvines survey --best chooses two."
+            )
+        self.name = next(iter(plan.axes), "half_width")
+        names = list(model.amount_names)
+        if not plan.axes:
+            if study.sort is not Sort.PHYSICAL or self.name not in names:
+                raise ValueError(
+                    f"{study.path}: what is to be chosen? [survey] vary needs one parameter with a range, for example "
+                    f"vary.{names[0]} = {{ within = [from, to], count = {PLACES} }}."
+                )
+            model = model.told_by(self.name)
+        self.plan, self.model = plan, model
+        self.family, self.units = family_of(study, model), units_of(study, model)
+        self.drawn = plan.samples
+        self.samples = plan.shape[-1] if plan.samples else 1
+        self.params = model.vector(study.loose)
+        self.theory = self._theory()
+        self.pace: float | None = None
+        self.round = 0
+
+    def _theory(self) -> Any:
+        from orbits.design.first_clearance import first_clearance
+
+        if self.name != "half_width" or "damping" not in self.model.parameter_names:
+            return None
+        return first_clearance(self.model, self.params)
+
+    def own(self) -> float | None:
+        """The study's own value of what is chosen."""
+        known = getattr(self.model, "quantities", None) or self.study.parameters
+        return float(known[self.name]) if self.name in known else None
+
+    def range(self) -> list[float]:
+        """The values of the first look, the study's own among them where it lies in the range."""
+        if self.plan.axes:
+            given = self.plan.axes[self.name]
+            low, high = float(given.min()), float(given.max())
+            values = given.tolist() if len(given) >= LATER[1] else np.linspace(low, high, PLACES).tolist()
+        else:
+            if self.theory is None:
+                raise ValueError(
+                    f"{self.study.path}: [survey] gives no range of {self.name}, and theory none for this machine; for example "
+                    f'vary.{self.name} = {{ within = ["5 mm", "50 mm"], count = {PLACES} }} would do.'
+                )
+            low, high = (share * self.theory.widest for share in SPREAD)
+            values = np.geomspace(low, high, PLACES).tolist()
+            unit = self.units.get(self.name, "")
+            self.assumed.append(
+                f"[survey] gives no range of {self.name}: looked at from {low:.3g} to {high:.3g} {unit}".rstrip()
+                + f", {SPREAD[0]:g} to {SPREAD[1]:g} times the widest by theory"
+            )
+        own = self.own()
+        if own is not None and not low <= own <= high:
+            own = None
+        return sorted({*map(_tidy, values), *([] if own is None else [own])})
+
+    def look(self, values: Sequence[float], all_: bool) -> list[Place]:
+        """Diagrams at these values, of all samples or of the study's own machine."""
+        from contvines.survey.plan import Plan
+
+        if not len(values):
+            return []
+        plan = Plan({self.name: np.array(values)}, self.drawn if all_ else {})
+        found = self.surveyed(plan, ("peak", "lower_peak"))
+        return [_place(found, i, float(value)) for i, value in enumerate(values)]
+
+    def surveyed(self, plan: Plan, outcomes: Sequence[Any], **ways: Any) -> Survey:
+        """The rows of a plan, kept in the journal of the round."""
+        from contvines.command.survey_study import asked_of, options_of
+        from contvines.command.surveying import without_main
+        from contvines.survey.survey import survey
+
+        self.round += 1
+        rest = "" if self.pace is None else f", about {_duration(self.pace * len(plan))}"
+        self.tell(f"round {self.round} of {len(LATER) + 2}: {len(plan)} machines{rest}")
+        begun = monotonic()
+        options = {**options_of(self.study), "depth": 0}  # what leaves a branch is met by simulation, too
+        with without_main():
+            found = survey(
+                self.family, plan, over=self.study.parameter, within=self.study.within, outcomes=outcomes, workers=self.workers,
+                journal=self.journal(self.round), units=self.units, about={"recommend": self.round, **asked_of(self.study)},
+                progress=self.progress, gaps=self.study.survey.gaps, **ways, **options,
+            )  # fmt: skip
+        self.pace = (monotonic() - begun) / len(plan)
+        return found
+
+    # ------------------------------------------------------------------ at the choice
+    def told(
+        self, places: list[Place], best: Place | None, cost: float, target: float | None
+    ) -> Recommendation:
+        """All that is told of the choice."""
+        study = self.study
+        unknown = [
+            f"the response at {self.name} = {place.value:.4g}"
+            + (f" of {place.unknown} of {place.samples} samples" if place.samples > 1 else "")
+            + (f" ({place.why})" if place.why else "")
+            for place in places
+            if place.unknown
+        ]
+        has_bare = self.model.flow != "page" and "damping" in self.model.parameter_names
+        compared = (
+            {} if not has_bare else self._compared(self.model if best is None else self._at(best.value))
+        )
+        if not has_bare:
+            unknown.append(
+                "the response of a bare, a tuned and a friction-damped machine, start-up: they are told of the machine 'coupled' alone"
+            )
+        bare = compared.get("bare", (math.nan, 0.0))[0]
+        goal = QUIETED * bare if target is None else target
+        given = {
+            "study": str(study.path), "title": study.path.stem, "name": self.name, "parameter": study.parameter,
+            "within": study.within, "units": {**self.units, "time": "s" if self.model.units else ""},
+            "own": self.own(), "cost": cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
+            "places": places, "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
+        }  # fmt: skip
+        if best is None:
+            return Recommendation(
+                **given, value=None, tolerance=(math.nan, math.nan), works=math.nan, met={}, loads={}, checked=None, start_up=None,
+            )  # fmt: skip
+        from contvines.survey.plan import Plan
+
+        plan = Plan({self.name: np.array([best.value])}, self.drawn)
+        rows = self.surveyed(plan, ("peak", loads, met), values=VALUES, starts=STARTS)
+        peaks = rows.known("peak").ravel()
+        works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
+        shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MET}
+        tops = {name: _largest(rows[name]) for name in ("calm_peak", "modulated_peak")}
+        shares |= {name: top for name, top in tops.items() if math.isfinite(top)}
+        most = {name: _largest(rows[name]) for name in LOADS}
+        unknown += [
+            f"{name}: no motion that was met has it" for name, value in most.items() if math.isnan(value)
+        ]
+        model = self._at(best.value)
+        checked, curves = self._checked(best.value, model)
+        return Recommendation(
+            **given, value=best.value, tolerance=_tolerance(places, best, cost), works=works, met=shares,
+            loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked,
+            start_up=self._start_up(model) if has_bare else None, curves=curves + (self._lines(model) if has_bare else []),
+        )  # fmt: skip
+
+    def _at(self, value: float) -> Any:
+        change = getattr(self.model, "with_", None) or self.model.changed
+        return change(**{self.name: value})
+
+    def _compared(self, model: Any) -> dict[str, tuple[float, float]]:
+        from contvines.command.compare import peaks_compared
+        from orbits.design.references import KINDS
+
+        return peaks_compared(model, self.study.parameter, self.study.within, KINDS)
+
+    def _checked(self, value: float, model: Any) -> tuple[tuple[float, float] | None, list[Curve]]:
+        """The largest response of the study's own machine at the choice, by its diagram and by simulation up and down; its responses."""
+        from contvines.command.survey_study import options_of
+        from contvines.survey.outcomes import peak
+        from contvines.survey.stretches import highest, stretches
+        from contvines.survey.work import Job, work
+        from orbits.attractors.sweep import sweep
+
+        over, (low, high) = self.study.parameter, self.study.within
+        seen: list[Curve] = []
+        simulated: list[float] = []
+        measure = model.default_measure
+
+        def keep(found: Findings) -> dict[str, float]:
+            parts = stretches(found.graph)
+            seen.extend(Curve("stable", part.values.tolist(), part.response.tolist()) for part in parts)
+            if parts:  # from itself: other starts may miss a motion that few of them lead to
+                (_, _, index), part = max(((highest(one), one) for one in parts), key=lambda top: top[0][0])
+                inner = min(
+                    max(index, part.first + 1), max(part.last - 1, part.first)
+                )  # at an end it is about to be left
+                simulated.append(_simulated(part.branch.orbit(inner), measure))
+            return peak(found)
+
+        job = Job(self.family, over, (low, high), (keep,), options={**options_of(self.study), "depth": 0})
+        row = work(job, 0, {self.name: value})
+        if not row.columns:
+            return None, seen
+        step, top = (high - low) / (CHECK - 1), row.columns["peak_at"]
+        near = np.linspace(max(low, top - ABOUT * step), min(high, top + ABOUT * step), FINE)
+        grid = np.union1d(np.linspace(low, high, CHECK), near)
+        loose: dict[str, Any] = {k: v for k, v in self.study.loose.items() if k != over}
+        for run in (grid, grid[::-1]):
+            rows = sweep(model, over, run, nudge=0.0, **loose)
+            seen.append(Curve("simulated", [r.value for r in rows], [r.measures[measure] for r in rows]))
+        return (row.columns["peak"], max([*simulated, *seen[-2].y, *seen[-1].y])), seen
+
+    def _lines(self, model: Any) -> list[Curve]:
+        """Responses of the machines to compare with."""
+        from contvines.command.compare import POINTS
+        from orbits.design.references import KINDS, reference
+
+        values = np.linspace(*self.study.within, POINTS)
+        params = np.array([model.vector_at(self.study.parameter, float(x), self.study.loose) for x in values])
+        length = model.gauge("length", params)
+        return [
+            Curve(kind, values.tolist(), (reference(kind, model, params) * length).tolist()) for kind in KINDS
+        ]
+
+    def _start_up(self, model: Any) -> Start:
+        from contvines.command.measured import scales
+        from orbits.design.start_up import start_up
+
+        at = self._compared(model)["bare"][1]
+        params = model.vector_at(self.study.parameter, at, self.study.loose)
+        length, _, seconds, _ = scales(model, params)
+        seen = start_up(model, params)
+        self.assumed.append(
+            f"start-up from rest at {self.study.parameter} = {at:.4g} {self.units.get(self.study.parameter, '')}".rstrip()
+            + ", where the bare machine moves most"
+        )
+        thin = slice(None, None, max(1, len(seen.times) // DRAWN))
+        return Start(
+            peak=float(np.abs(seen.oscillator).max()) * length,
+            bare_peak=float(np.abs(seen.bare).max()) * length,
+            settled=seen.settled * seconds,
+            bare_settled=seen.bare_settled * seconds,
+            fastest_impact=float(seen.impact_speeds.max(initial=0.0))
+            * float(model.gauge("velocity", params)),
+            worst_relative=float(np.abs(seen.relative).max()) * length,
+            series={
+                "time": (seen.times[thin] * seconds).tolist(),
+                "oscillator": (seen.oscillator[thin] * length).tolist(),
+                "bare": (seen.bare[thin] * length).tolist(),
+            },
+        )
+
+
+def _simulated(orbit: Any, measure: str) -> float:
+    """A measure of what the simulation settles on that begins with a motion; -inf for one without events."""
+    from orbits.attractors.search import described, goes_on
+    from orbits.simulation.runs import simulator_of
+
+    if not len(orbit.nodes):
+        return -math.inf
+    simulator = simulator_of(orbit.model, orbit.params)
+    simulator.begin(orbit.word, orbit.nodes[0])
+    return float(described(goes_on(simulator, REPLAYED, LONGEST))[1][measure])
+
+
+def _place(found: Survey, i: int, value: float) -> Place:
+    known = np.atleast_1d(found.known("peak")[i])
+    engaged = np.atleast_1d(found.known("lower_peak")[i])
+    notes = np.atleast_1d(found.notes[i])
+    unknown = int(np.count_nonzero(~np.isfinite(known)))
+    why = next((str(note) for note, peak in zip(notes, known) if not math.isfinite(peak)), "")
+    return Place(
+        value, float(known.max()), float(np.nanmedian(known)) if unknown < known.size else math.nan, float(engaged.max()), unknown,
+        known.size, why,
+    )  # fmt: skip
+
+
+def _best(places: Sequence[Place]) -> Place | None:
+    """The place with the lowest worst response; None where none is known."""
+    known = [place for place in places if math.isfinite(place.worst)]
+    return min(known, key=lambda place: place.worst, default=None)
+
+
+def _neighbours(places: Sequence[Place], value: float) -> tuple[float, float]:
+    values = sorted(place.value for place in places)
+    at = values.index(value)
+    return values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)]
+
+
+def _merged(places: Sequence[Place], more: Sequence[Place]) -> list[Place]:
+    """All places, those of more samples in place of those of the first look."""
+    by_value = {place.value: place for place in places} | {place.value: place for place in more}
+    return sorted(by_value.values(), key=lambda place: place.value)
+
+
+def _tolerance(places: Sequence[Place], best: Place, cost: float) -> tuple[float, float]:
+    """The farthest values about the best, without a gap, at which the worst response costs at most so much; of places with all samples."""
+    all_ = [place for place in places if place.samples == best.samples]
+    at, limit = all_.index(best), (1.0 + cost) * best.worst
+    low = high = at
+    while low > 0 and all_[low - 1].worst <= limit:
+        low -= 1
+    while high < len(all_) - 1 and all_[high + 1].worst <= limit:
+        high += 1
+    return all_[low].value, all_[high].value
+
+
+def _tidy(value: float) -> float:
+    """A value of four digits: nobody builds more."""
+    return float(f"{value:.4g}")
+
+
+def _largest(values: np.ndarray) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.max()) if known.size else math.nan
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 90.0 else f"{seconds / 60.0:.0f} minutes"
+
+
+def digest(study: Study, cost: float, target: float | None) -> str:
+    """What decides a recommendation."""
+    from contvines.command.survey_study import asked_of
+
+    said = {
+        "of": asked_of(study),
+        "vary": study.survey.vary,
+        "cost": cost,
+        "target": target,
+        "places": [PLACES, *LATER],
+    }
+    return hashlib.sha256(json.dumps(said, sort_keys=True, default=str).encode()).hexdigest()

@@ -1,0 +1,116 @@
+"""`contvines recommend`: refusals, theory against closed forms, the choice against brute force."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from contvines.command.cli import main
+from contvines.command.recommendation import Recommendation
+from contvines.command.recommending import recommend
+from contvines.command.study import read_study
+from orbits.attractors.sweep import sweep
+from orbits.design.first_clearance import first_clearance
+
+MODEL = """
+units = "si"
+[model]
+name = "coupled"
+oscillator_mass = "3.2 kg"
+natural_frequency = "8 Hz"
+damping_ratio = 0.01
+absorber_mass = "32 g"
+half_width = "20 mm"
+restitution = 0.7
+friction = 0.155
+base_amplitude = "2 mm"
+[continue]
+parameter = "frequency"
+within = ["7.5 Hz", "8.5 Hz"]
+"""
+SURVEY = """
+[survey]
+vary.half_width = { within = ["60 mm", "100 mm"], count = 5 }
+vary.restitution = { uniform = [0.6, 0.8] }
+samples = 2
+"""
+
+
+def run(*words):
+    with pytest.raises(SystemExit) as ended:
+        main(list(words))
+    return ended.value.code
+
+
+def written(tmp_path, text):
+    path = tmp_path / "machine.toml"
+    path.write_text(text)
+    return path
+
+
+def test_theory_begins_with_the_linear_peak(tmp_path):
+    """At resonance the base moves the oscillator by base_amplitude/(2 D), the absorber held fast: 2 mm/0.02."""
+    model = read_study(written(tmp_path, MODEL)).model
+    first = first_clearance(model, model.vector())
+    assert first.linear_peak == pytest.approx(100.0, rel=0.01)
+    assert first.entered == first.linear_peak and first.safe <= first.widest
+    assert 0.0 < first.remaining < first.linear_peak
+    wider = model.with_(half_width=40.0)  # no statement about the oscillator depends on the cavity it has
+    assert first_clearance(wider, wider.vector()).widest == pytest.approx(first.widest, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("survey", "says"),
+    [
+        ('[survey]\nvary.half_width = ["60 mm", "80 mm"]\nvary.friction = [0.1, 0.2]', "half_width and friction on a grid: contvines recommend chooses one"),
+        ('[survey]\nvary.half_width = { within = [60, 80], count = 3 }', "vary.half_width.within[0] = 60 has no unit"),
+    ],
+)  # fmt: skip
+def test_refusals(tmp_path, survey, says, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("recommend", str(written(tmp_path, MODEL + survey))) == 1
+    assert says in capsys.readouterr().err
+    (tmp_path / "machine-recommend.json").write_text("{}")
+    assert run("recommend", str(written(tmp_path, MODEL + SURVEY))) == 1
+    assert "this is not a file of contvines recommend" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    path = written(tmp_path, MODEL + SURVEY)
+    kept = [tmp_path / f"{k}.rows" for k in range(5)]
+
+    def interrupted(text):
+        if "round 2" in text:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        recommend(path, workers=1, journal=lambda k: kept[k], tell=interrupted)
+    assert len(kept[1].read_text().splitlines()) == 6  # a head and five machines
+    before = kept[1].read_bytes()
+    found = recommend(path, workers=1, journal=lambda k: kept[k])
+    assert kept[1].read_bytes() == before
+    assert found.value is not None and found.chosen is not None
+    assert Recommendation.from_dict(json.loads(json.dumps(found.to_dict()))) == found
+    low, high = found.tolerance
+    assert low <= found.value <= high
+    # brute force: from the motions that simulations up and down meet, and from themselves
+    assert found.checked is not None
+    by, simulated = found.checked
+    assert simulated == pytest.approx(by, rel=0.01)
+    model = read_study(path).model
+    for place in (p for p in found.places if p.samples == 1):
+        grid = np.linspace(7.8, 8.2, 81)
+        rows = sweep(model.with_(half_width=place.value), "frequency", grid)
+        met = max(row.measures["max_abs_q1"] for row in rows)
+        assert met <= 1.01 * place.worst or math.isnan(place.worst)
+    assert run("recommend", str(path), "-q") == 0
+    assert run("recommend", str(path), "--plot", "choice.png") == 0
+    told = capsys.readouterr().out
+    assert (
+        "half_width = " in told
+        and "tuned absorber of the same mass" in told
+        and (tmp_path / "choice.png").exists()
+    )
