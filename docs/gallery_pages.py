@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 from typing import NamedTuple
 
@@ -60,7 +61,7 @@ def _title(path: Path) -> str:
         text = "\n".join(line.lstrip("# ") for line in lines) or path.stem
     first = " ".join(text.split("\n\n")[0].split())
     title = first.split(". ")[0].split(": ")[0].rstrip(".")
-    return title if len(title) < LONG else title.replace(";", ",").split(",")[0]
+    return title if len(title) < LONG else re.split(r"[;,] (?![^(]*\))", title)[0]
 
 
 def write(target: Path) -> None:

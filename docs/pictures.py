@@ -66,7 +66,7 @@ def oscillator():
     arrow(axes, (0.62, 0.45), (2.18, 0.45), "<|-|>")
     axes.text(1.4, 0.53, "gap", ha="center", va="bottom", fontsize=9)
     arrow(axes, (-0.55, 1.1), (0.55, 1.1), "<|-|>", RED)
-    axes.text(0.65, 1.1, "shaken at one frequency", color=RED, ha="left", va="center", fontsize=9)
+    axes.text(-0.65, 1.1, "shaken at one frequency", color=RED, ha="right", va="center", fontsize=9)
     axes.set(xlim=(-3.6, 3.3), ylim=(-0.1, 1.3))
     return figure
 
