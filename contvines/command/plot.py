@@ -55,6 +55,14 @@ def plot(
     ] = None,
     size: SizeOption = None,
     color: Annotated[Colors | None, typer.Option("--color", help="What a colour stands for.")] = None,
+    marks: Annotated[
+        str | None,
+        typer.Option(
+            "--marks",
+            metavar="LP,SB,...",
+            help="Kinds of special points that get marks, or none; by default all.",
+        ),
+    ] = None,
     words: Annotated[bool, typer.Option("--words", help="Write words along the branches.")] = False,
     legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Explain lines and marks.")] = True,
     inset: Annotated[
@@ -65,14 +73,26 @@ def plot(
         ),
     ] = None,
     style: Annotated[
-        str | None, typer.Option("--style", help="A style or style sheet of matplotlib's, before ours.")
+        str | None,
+        typer.Option(
+            "--style",
+            help="aps, elsevier, springer (one column), grey, slides, a style or style sheet of matplotlib's, or several: aps,grey.",
+        ),
     ] = None,
     trust: TrustOption = False,
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
     from contvines.plots.figures import check_style, save_figure
 
-    asked = {"-x": x, "-y": y, "--xlim": xlim, "--ylim": ylim, "--color": color, "--words": words or None}
+    asked = {
+        "-x": x,
+        "-y": y,
+        "--xlim": xlim,
+        "--ylim": ylim,
+        "--color": color,
+        "--marks": marks,
+        "--words": words or None,
+    }
     asked |= {"--compare": compare[0] if compare else None}
     check_compared(compare, True)
     asked |= {"--no-inset" if inset is False else "--inset": None if inset is None else ""}
@@ -105,6 +125,7 @@ def plot(
             y,
             words=words,
             color=(color or Colors.branch).value,
+            marks=True if marks is None else [] if marks == "none" else marks.split(","),
             legend=legend,
             xlim=xlim,
             ylim=ylim,
@@ -146,6 +167,7 @@ def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
         "--xlim",
         "--ylim",
         "--color",
+        "--marks",
         "--words",
         "--no-legend",
         "--compare",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from contvines.shared.near_names import did_you_mean
 
+from ..bifurcation.kinds import BY_NAME
 from ..continuation.hints import hinting
 from ..graph.measures import default_measure
 from .figures import freeze, lay_out, new_axes, settle, styled, thin_ticks
@@ -35,6 +36,7 @@ def plot_diagram(
     axes: Axes | None = None,
     labels: bool | Sequence[str] = True,
     ends: bool = False,
+    marks: bool | Sequence[str] = True,
     words: bool = False,
     color: str = "branch",
     legend: bool | str = True,
@@ -59,6 +61,8 @@ def plot_diagram(
         Write the labels of branches and special points: all for which there is room, none, or exactly these.
     ends : bool
         Mark the ends of the interval, too.
+    marks : bool or sequence of str
+        Mark the special points: all, none, or those of these kinds, by name or label: ``["fold", "SB"]``.
     words : bool
         Write the words of the motions along the branches instead of the branches' labels.
     color : {"branch", "word", "stability"}
@@ -76,7 +80,8 @@ def plot_diagram(
     figsize : (float, float), optional
         Inches, of a new figure.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        "aps", "elsevier", "springer" (one column), "grey", "slides", a style of matplotlib's, several of them ("aps,grey"), or
+        rcParams; they come before the house's.
 
     Returns
     -------
@@ -103,6 +108,7 @@ def plot_diagram(
             own=own,
             labels=labels,
             ends=ends,
+            marks=marks,
             words=words,
             color=color,
             legend=legend,
@@ -122,6 +128,7 @@ def draw_diagram(
     own: bool,
     labels: bool | Sequence[str] = True,
     ends: bool = False,
+    marks: bool | Sequence[str] = True,
     words: bool = False,
     color: str = "branch",
     legend: bool | str = True,
@@ -134,7 +141,7 @@ def draw_diagram(
     Parameters
     ----------
     limits : the limits across and upright, or None.
-    axes, graph, x, y, own, labels, ends, words, color, legend, name, inset
+    axes, graph, x, y, own, labels, ends, marks, words, color, legend, name, inset
         As for :func:`plot_diagram`.
     """
     figure = axes.get_figure(root=True)
@@ -142,7 +149,7 @@ def draw_diagram(
     x, y = x or graph.parameter, y or default_measure(graph)
     picture = Picture(axes, graph, x, y, color, name)
     picture.draw_branches()
-    picture.draw_points(ends)
+    picture.draw_points(ends, _marked(graph, marks))
     picture.draw_unresolved()
     frame(axes, graph, picture.curves, x, y, *limits)
     if not axes.get_xlabel():
@@ -180,3 +187,18 @@ def _check_labels(graph: Graph, labels: bool | Sequence[str]) -> None:
     if unknown:
         known = ", ".join([*graph.branches, *graph.special])
         raise ValueError(f"labels: the graph has no {unknown[0]!r}; it has {known}")
+
+
+def _marked(graph: Graph, marks: bool | Sequence[str]) -> list[str] | None:
+    """Names of the kinds that get marks; None for all."""
+    if isinstance(marks, bool):
+        return None if marks else []
+    kinds = {**BY_NAME, **graph.own_kinds}
+    by_label = {kind.label: name for name, kind in kinds.items()}
+    wanted = [marks] if isinstance(marks, str) else list(marks)
+    for name in wanted:
+        if name not in kinds and name not in by_label:
+            raise ValueError(
+                f"marks: there is no kind {name!r}{did_you_mean(name, [*kinds, *by_label])}; give names or labels, for example ['fold', 'SB']"
+            )
+    return [by_label.get(name, name) for name in wanted]

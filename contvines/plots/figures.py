@@ -6,7 +6,7 @@ import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contvines.shared.figures import new_figure, shrinking, styled, windows
+from contvines.shared.figures import STYLES, new_figure, shrinking, styled, windows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -114,7 +114,7 @@ def save_figure(figure: Figure, path: str | Path) -> None:
 
 
 def check_style(style: str | None) -> None:
-    """Refuse, before any work, a style that matplotlib does not know.
+    """Refuse, before any work, a style that neither we nor matplotlib know.
 
     Raises
     ------
@@ -125,12 +125,13 @@ def check_style(style: str | None) -> None:
         return
     import matplotlib.style
 
-    known = ["default", *matplotlib.style.available]
-    if style not in known and not Path(style).is_file():
-        shown = ", ".join(name for name in known if not name.startswith("_"))
-        raise ValueError(
-            f"--style {style}: matplotlib has no such style and there is no such file; it has {shown}."
-        )
+    known = [*sorted(STYLES), "default", *matplotlib.style.available]
+    for name in style.split(","):
+        if name not in known and not Path(name).is_file():
+            shown = ", ".join(each for each in known if not each.startswith("_"))
+            raise ValueError(
+                f"--style {style}: there is no such style and no such file{' ' + name if name != style else ''}; there are {shown}."
+            )
 
 
 def check_size(size: tuple[float, float] | None) -> None:

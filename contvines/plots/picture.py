@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -55,6 +55,7 @@ class Picture:
         self.key = Key()
         self.curves: list[Curve] = []
         self.tint: dict[str, str] = {}
+        self.kinds: Collection[str] | None = None  # that have marks; None: all
         self.spots: list[tuple[str, str, float, float]] = []  # label, kind, x, y
         self.written: list[Any] = []
         self.options: tuple[Any, bool, Any] = (False, False, [])  # no labels yet
@@ -105,13 +106,17 @@ class Picture:
             self.axes.plot(px[points], py[points], **PROVED, **style)
             self.key.proved = True
 
-    def draw_points(self, ends: bool) -> None:
+    def draw_points(self, ends: bool, kinds: Collection[str] | None = None) -> None:
+        """Marks of the special points, all or those of some kinds."""
         import matplotlib as mpl
 
+        self.kinds = kinds
         size = mpl.rcParams["lines.markersize"]
         for point in self.graph.special.values():
             branch = self.graph.branches.get(point.branch)
             if branch is None or (point.kind == "end" and not ends):
+                continue
+            if kinds is not None and point.kind not in kinds:
                 continue
             px, py = measure_at(branch, point, self.x), measure_at(branch, point, self.y)
             if not (np.isfinite(px) and np.isfinite(py)):
@@ -238,7 +243,7 @@ class Picture:
         )
         self.inset.rc = self.rc
         self.inset.draw_branches()
-        self.inset.draw_points(False)
+        self.inset.draw_points(False, self.kinds)
         axes.set(xlim=region[0], ylim=region[1])
         self.inset.refine()
         self.inset.write_labels(True, words, [])

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 HOUSE = Path(__file__).with_name("house.mplstyle")
+STYLES = {path.stem: path for path in Path(__file__).with_name("styles").glob("*.mplstyle")}
+"""Styles of ours, by name: journals, print without colours, slides."""
 FULL_WIDTH = 6.5  # inches; in narrower figures texts, marks and lines shrink
 SMALLEST = 0.72  # but not below this share
 WINDOWLESS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")  # backends
@@ -25,7 +27,8 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     Parameters
     ----------
     style : str, mapping or None
-        The name of a matplotlib style, the path of a style sheet, or rcParams.
+        A name of :data:`STYLES` ("aps", "elsevier", "springer", "grey", "slides") or of matplotlib's styles, the path of a
+        style sheet, or several of these joined by commas, "aps,grey"; or rcParams.
     """
     import matplotlib as mpl
     from matplotlib.style import context
@@ -36,8 +39,10 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     names = [name for name in settings if not name.startswith("backend") and name in default]
     own = {name: settings[name] for name in names if settings[name] != default[name]}
     chosen: list[Any] = ["default", HOUSE, own]
-    if style is not None:
-        chosen.append(dict(style) if isinstance(style, Mapping) else style)
+    if isinstance(style, str):
+        chosen += [STYLES.get(name, name) for name in style.split(",")]
+    elif style is not None:
+        chosen.append(dict(style))
     with context(chosen):
         yield
 
