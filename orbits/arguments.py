@@ -5,11 +5,14 @@ The native core (native/cycles.hpp) sees the same memory as the reference.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from contvines.core.records import block
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
 
 
 class CycleData(NamedTuple):
@@ -38,13 +41,13 @@ class CycleData(NamedTuple):
     memory: np.ndarray
     """All of it, as a struct."""
 
-    def __reduce__(self) -> Any:
+    def __reduce__(self) -> tuple[Callable, tuple]:
         return cycle_data, tuple(self)[:-1]  # the struct holds addresses
 
 
 def cycle_data(
-    events: Any,
-    modes: Any,
+    events: Sequence[int] | np.ndarray,
+    modes: Sequence[int] | np.ndarray,
     params: np.ndarray,
     path: np.ndarray,
     twist: float,
@@ -104,7 +107,7 @@ class Workspace(NamedTuple):
     memory: np.ndarray
     """All of it, and what the native core needs besides, as a struct."""
 
-    def __reduce__(self) -> Any:
+    def __reduce__(self) -> tuple[Callable, tuple]:
         return workspace, (self.F.shape[0], self.F.shape[1], len(self.numbers) // 2)
 
 

@@ -151,7 +151,7 @@ class Orbit(Cycle):
 
     # ------------------------------------------------------------------ towards continuation
     @hinting
-    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
+    def problem(self, parameter: str | None = None, symmetric: bool | None = None):
         """The orbit's word as a continuation problem against `parameter`.
 
         Parameters
@@ -179,7 +179,7 @@ class Orbit(Cycle):
         return problem.reduce(self.nodes), problem.value(self.params)
 
     # ------------------------------------------------------------------ seeing and proving
-    def prove(self, bits: int | None = None, **parameters: Any) -> Any:
+    def prove(self, bits: int | None = None, **parameters: Any):
         """Prove that the orbit exists, is real or virtual, stable or unstable; see `orbits.proofs.subjects.of_orbit`."""
         from orbits.proofs.subjects import of_orbit
 
@@ -190,13 +190,13 @@ class Orbit(Cycle):
 
         return page(self)
 
-    def plot(self, **options: Any) -> Any:
+    def plot(self, **options: Any):
         """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""
         from orbits.plots.portrait import portrait
 
         return portrait(self, **options)
 
-    def animate(self, path: Any = None, **options: Any) -> Any:
+    def animate(self, path: Any = None, **options: Any):
         """The orbit in motion, written to a gif, mp4 or html file if a path is given; see `orbits.plots.animation.animate`."""
         from orbits.plots.animation import animate
 

@@ -8,10 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from typing import NoReturn, TypeAlias
+
+    Plain: TypeAlias = "Symbol | float | np.ndarray"
 
 LARGEST_PRODUCT = 64  # whole powers up to this are written as products
 
@@ -20,7 +25,7 @@ class NotAnalytic(TypeError):
     """A page asks of a symbol what has no single analytic formula."""
 
 
-def _refuse(what: str) -> Any:
+def _refuse(what: str) -> NoReturn:
     raise NotAnalytic(
         f"{what} of a symbol has no single formula, and a flight must be analytic; where a law changes at a surface, "
         "declare a Switch with that surface and use its contact.<name>, which is +1 or -1"
@@ -46,7 +51,7 @@ class Symbol:
     operation: str
     operands: tuple[Any, ...]
 
-    def __new__(cls, operation: str, *operands: Any) -> Symbol:
+    def __new__(cls, operation: str, *operands: Symbol | str | float) -> Symbol:
         key = (operation, *(id(x) if isinstance(x, Symbol) else repr(x) for x in operands))
         made = _MADE.get(key)
         if made is None:
@@ -55,7 +60,7 @@ class Symbol:
             _MADE[key] = made
         return made
 
-    def __reduce__(self) -> Any:
+    def __reduce__(self) -> tuple[type[Symbol], tuple]:
         return Symbol, (self.operation, *self.operands)
 
     @property
@@ -63,7 +68,7 @@ class Symbol:
         """Its value, where it is a number."""
         return self.operands[0] if self.operation == "number" else None
 
-    def _with(self, combine: Callable, other: Any, turned: bool = False) -> Any:
+    def _with(self, combine: Callable, other: Plain, turned: bool = False) -> Symbol:
         if isinstance(other, Symbol):
             right = other
         elif isinstance(other, Real) or (isinstance(other, np.ndarray) and other.ndim == 0):
@@ -72,31 +77,31 @@ class Symbol:
             return NotImplemented
         return combine(right, self) if turned else combine(self, right)
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: Plain) -> Symbol:
         return self._with(_sum, other)
 
-    def __radd__(self, other: Any) -> Any:
+    def __radd__(self, other: Plain) -> Symbol:
         return self._with(_sum, other, turned=True)
 
-    def __sub__(self, other: Any) -> Any:
+    def __sub__(self, other: Plain) -> Symbol:
         return self._with(_difference, other)
 
-    def __rsub__(self, other: Any) -> Any:
+    def __rsub__(self, other: Plain) -> Symbol:
         return self._with(_difference, other, turned=True)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: Plain) -> Symbol:
         return self._with(_product, other)
 
-    def __rmul__(self, other: Any) -> Any:
+    def __rmul__(self, other: Plain) -> Symbol:
         return self._with(_product, other, turned=True)
 
-    def __truediv__(self, other: Any) -> Any:
+    def __truediv__(self, other: Plain) -> Symbol:
         return self._with(_quotient, other)
 
-    def __rtruediv__(self, other: Any) -> Any:
+    def __rtruediv__(self, other: Plain) -> Symbol:
         return self._with(_quotient, other, turned=True)
 
-    def __pow__(self, other: Any) -> Any:
+    def __pow__(self, other: Plain) -> Symbol:
         # products: the Taylor recursion of a general power divides by its base, which may be zero
         if isinstance(other, Real) and float(other).is_integer() and 1 <= float(other) <= LARGEST_PRODUCT:  # type: ignore[arg-type]
             half, odd = divmod(int(other), 2)  # type: ignore[call-overload]
@@ -105,7 +110,7 @@ class Symbol:
             return square * self if odd and root is not None else square
         return self._with(_power, other)
 
-    def __rpow__(self, other: Any) -> Any:
+    def __rpow__(self, other: float) -> Symbol:
         return exp(self * float(np.log(other)))
 
     def __neg__(self) -> Symbol:
@@ -117,7 +122,7 @@ class Symbol:
     def __bool__(self) -> bool:
         return _refuse("the truth value")
 
-    def __abs__(self) -> Any:
+    def __abs__(self) -> NoReturn:
         return _refuse("the absolute value")
 
     def __float__(self) -> float:
@@ -125,28 +130,28 @@ class Symbol:
             "a function that wants a number was given a symbol; take cos, sin, sqrt, exp ... from orbits.symbols"
         )
 
-    def __eq__(self, other: object) -> Any:
+    def __eq__(self, other: object) -> NoReturn:
         return _refuse("a comparison (==)")
 
-    def __ne__(self, other: object) -> Any:
+    def __ne__(self, other: object) -> NoReturn:
         return _refuse("a comparison (!=)")
 
-    def __lt__(self, other: Any) -> Any:
+    def __lt__(self, other: object) -> NoReturn:
         return _refuse("a comparison (<)")
 
-    def __le__(self, other: Any) -> Any:
+    def __le__(self, other: object) -> NoReturn:
         return _refuse("a comparison (<=)")
 
-    def __gt__(self, other: Any) -> Any:
+    def __gt__(self, other: object) -> NoReturn:
         return _refuse("a comparison (>)")
 
-    def __ge__(self, other: Any) -> Any:
+    def __ge__(self, other: object) -> NoReturn:
         return _refuse("a comparison (>=)")
 
-    def __mod__(self, other: Any) -> Any:
+    def __mod__(self, other: object) -> NoReturn:
         return _refuse("a remainder (%)")
 
-    def __floordiv__(self, other: Any) -> Any:
+    def __floordiv__(self, other: object) -> NoReturn:
         return _refuse("a whole quotient (//)")
 
     def __repr__(self) -> str:

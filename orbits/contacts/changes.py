@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
 
 Mode = Any
 """What the contacts do between two events; read and written by the alphabet (`orbits.words.alphabet`)."""
@@ -113,7 +116,7 @@ class Site(NamedTuple):
 
     word: Any
     place: int
-    lengths: Any
+    lengths: np.ndarray
     unit: int
     at: int = -1
     sign: int = 0

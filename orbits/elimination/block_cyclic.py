@@ -8,15 +8,18 @@ inner nodes by orthogonal factorisations (Wright's structured orthogonal factori
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from orbits.arguments import CycleData, Workspace
 
 TINY = 1e-300
 
 
 def bordered(
-    data: Any, work: Any, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+    data: CycleData, work: Workspace, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[J, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`.
 

@@ -5,12 +5,15 @@ Both are block-cyclic again, so that the elimination of `orbits.elimination.bloc
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from orbits.arguments import CycleData, Workspace
 
-def flip(data: Any, work: Any, sign: float) -> None:
+
+def flip(data: CycleData, work: Workspace, sign: float) -> None:
     """Turn the closure x_L = T x_0 of the linearisation into x_L = -T x_0 (sign = -1), and back (sign = 1).
 
     T is the closure's own twist. The shift of an impact-free motion has to be put back before (`unpin` of its machine): turned round, the
@@ -19,7 +22,7 @@ def flip(data: Any, work: Any, sign: float) -> None:
     np.negative(work.D[-1], out=work.D[-1])
 
 
-def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
+def transpose(data: CycleData, work: Workspace, column: np.ndarray, other: Workspace) -> None:
     """Write the transposed system into another workspace, with `column` (L n,) as its last column.
 
     Row k of J ties nodes k and k + 1 by A_k and D_k. Column k + 1 therefore ties the left unknowns of rows k and k + 1 by
@@ -33,7 +36,7 @@ def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
     other.Q[:] = np.roll(column.reshape(other.Q.shape), -1, axis=0)
 
 
-def matrix(data: Any, work: Any) -> np.ndarray:
+def matrix(data: CycleData, work: Workspace) -> np.ndarray:
     """The whole Jacobian, shape (L n, L n), of the linearisation in a workspace."""
     A, D, twist = work.A, work.D, data.twist
     length, n = A.shape[0], A.shape[1]

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from orbits.symbols import ELEMENTARY, Symbol, cos, cosh, log, sin, sinh
+
+if TYPE_CHECKING:
+    from types import ModuleType
 
 NUMPY_NAMES = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 SLOPES: dict[str, Callable[[Symbol, Symbol], Any]] = {  # of f(x), by x and f
@@ -72,7 +75,7 @@ def _slopes(order: Sequence[Symbol], by: Symbol) -> dict[int, Symbol]:
     zero = constant(0.0)
     slope: dict[int, Symbol] = {}
     for node in order:
-        d: Any = zero
+        d: Symbol | float = zero
         if node is by:
             d = constant(1.0)
         elif node.operation not in ("variable", "number"):
@@ -83,7 +86,7 @@ def _slopes(order: Sequence[Symbol], by: Symbol) -> dict[int, Symbol]:
     return slope
 
 
-def _rule(node: Symbol, d: Sequence[Symbol]) -> Any:
+def _rule(node: Symbol, d: Sequence[Symbol]) -> Symbol | float:
     """The derivative of an expression, from those of its operands."""
     operation, operands = node.operation, node.operands
     if operation in SLOPES:
@@ -124,7 +127,7 @@ OPERATORS: dict[str, Callable[[Any, Any], Any]] = {
 }
 
 
-def rebuilt(node: Symbol, operands: Sequence[Any]) -> Any:
+def rebuilt(node: Symbol, operands: Sequence[Any]) -> Symbol:
     """The same expression of other symbols."""
     if node.operation in OPERATORS:
         return OPERATORS[node.operation](*operands)
@@ -149,7 +152,7 @@ class Layout:
     numbers: tuple[str, ...]
 
 
-def written(layout: Layout, values: Sequence[Symbol], tools: Any) -> Callable:
+def written(layout: Layout, values: Sequence[Symbol], tools: ModuleType) -> Callable:
     """``f(x, clock, numbers)`` -> list of the values, as Python code on what `tools` (math or numpy) works on.
 
     Every expression is one line of the code, whatever contains it.

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,13 +18,16 @@ from orbits.integrators import expressions
 from orbits.integrators.expressions import Layout, in_order, rebuilt, variables_of
 from orbits.symbols import Symbol
 
+if TYPE_CHECKING:
+    from types import ModuleType
+
 LANES = 4  # flights that are integrated side by side
 FEW = 2  # points up to which plain Python works formulas out faster than a call of compiled code
 
 
 @cache
-def _heyoka() -> Any:
-    heyoka: Any = import_module("heyoka")
+def _heyoka() -> ModuleType:
+    heyoka = import_module("heyoka")
     heyoka.set_logger_level_error()  # a flow that runs away is reported by what it returns
     return heyoka
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.integrate import DOP853
@@ -15,6 +15,9 @@ from scipy.optimize import brentq, minimize_scalar
 
 from orbits.integrators.expressions import Layout, Values, constant, derivatives, variable, written
 from orbits.symbols import Symbol
+
+if TYPE_CHECKING:
+    pass
 
 RELATIVE, ABSOLUTE = 1e-13, 1e-14  # error of a step
 BETWEEN = np.linspace(0.0, 1.0, 13)[1:]  # parts of a step at which functions are sampled
@@ -35,7 +38,7 @@ class _Path:
         """The solver after each of its steps; it ends short of `end` where the flow blows up."""
         p, nowhere = numbers.tolist(), self.nowhere
 
-        def rates(clock: float, x: np.ndarray) -> Any:
+        def rates(clock: float, x: np.ndarray) -> list[float] | np.ndarray:
             try:
                 return self._rates(x.tolist(), clock, p)
             except (ArithmeticError, ValueError):
@@ -56,12 +59,12 @@ class _Path:
             self.final = nowhere
 
     def crossings(
-        self, state: Any, begin: float, end: float, numbers: Any, rising: bool
+        self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, rising: bool
     ) -> Iterator[Crossing]:
         """(clock, which function, state) of every rise (or fall) through zero, step by step."""
         sign = 1.0 if rising else -1.0
 
-        def at(clock: Any, states: np.ndarray) -> np.ndarray:
+        def at(clock: float | np.ndarray, states: np.ndarray) -> np.ndarray:
             rows = np.repeat(numbers[None], len(states), axis=0)
             return sign * self._functions(states, np.atleast_1d(clock), rows)
 
@@ -113,7 +116,9 @@ class Flight:
         self._path = _Path(Layout((*layout.states, *names), layout.clock, layout.numbers), [*rates, *moved])
         self._begin = np.eye(n, m).ravel()
 
-    def __call__(self, state: np.ndarray, begin: float, end: float, numbers: Any, out: np.ndarray) -> bool:
+    def __call__(
+        self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, out: np.ndarray
+    ) -> bool:
         """Write the final state and its derivatives, row by row; False if the flow blows up."""
         for _ in self._path.steps(np.concatenate([state, self._begin]), begin, end, numbers):
             pass
@@ -148,7 +153,9 @@ class Watch(_Path):
 class Run(_Path):
     """A flow that ends at the first fall through zero of one of its functions."""
 
-    def __call__(self, state: np.ndarray, begin: float, end: float, numbers: Any) -> tuple[float, int | None]:
+    def __call__(
+        self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray
+    ) -> tuple[float, int | None]:
         """Move `state` on, in place; returns the clock and which function ended the flight (None: `end` was reached; -1: the flow blew up)."""
         for clock, place, there in self.crossings(state, begin, end, numbers, rising=False):
             state[:] = there

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -68,7 +68,7 @@ class Absorber(Model):
         return closed_forms.start_nodes(word, periods, params)
 
     @hinting
-    def symmetric_orbit(self, amplitude: float, stable: bool = True) -> Any:
+    def symmetric_orbit(self, amplitude: float, stable: bool = True):
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters

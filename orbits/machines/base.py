@@ -66,7 +66,7 @@ class Model(Mechanics):
             cls.node = len(cls.node_names)
             cls.rest = rest_of(cls.name)
 
-    def __new__(cls, *values: Any, **options: Any) -> Self:
+    def __new__(cls, *values: object, **options: object) -> Self:
         """A machine; a name that it does not have is refused with those that it has, one that is missing with its meaning."""
         if values:
             raise TypeError(
@@ -163,7 +163,7 @@ class Model(Mechanics):
         own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         return {"name": self.name} | {key: own[key] for key in own if key != "contact_time" or own[key]}
 
-    def changed(self, **values: Any) -> Self:
+    def changed(self, **values: object) -> Self:
         """The same machine with other values."""
         own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         return type(self)(**(own | values))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copyreg
 import importlib
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
@@ -13,6 +13,10 @@ from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.parameters import ParameterError
 from orbits.machines.reference.machine import reference
 from orbits.machines.stepping import Machine
+
+if TYPE_CHECKING:
+    from orbits.machines.native_stepper import NativeStepper
+    from orbits.machines.reference.machine import Reference
 
 PLACES = {
     "absorber": ("orbits.machines.absorber", "Absorber"),
@@ -66,7 +70,7 @@ def reference_stepper(name: str) -> Machine:
     return _machine(name, reference(name))
 
 
-def _machine(name: str, functions: Any) -> Machine:
+def _machine(name: str, functions: NativeStepper | Reference) -> Machine:
     chosen = model_class(name)
     moving = chosen.moving_cavity
     return Machine(

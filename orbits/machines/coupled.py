@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from orbits.machines.parameters import (
     ParameterError,
 )
 from orbits.words import Word
+
+if TYPE_CHECKING:
+    from orbits.theory.multiple_scales import Equilibrium
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,7 +145,7 @@ class Coupled(Model):
         return params
 
     # ------------------------------------------------------------------ orbits
-    def symmetric_orbit(self, fast: bool = True, **parameters: float) -> Any:
+    def symmetric_orbit(self, fast: bool = True, **parameters: float):
         """The symmetric orbit `LR` with two impacts per period, in closed form.
 
         Parameters
@@ -166,7 +169,7 @@ class Coupled(Model):
             )
         return self._closed("LR", found[0 if fast else -1], params)
 
-    def sliding_orbit(self, **parameters: float) -> Any:
+    def sliding_orbit(self, **parameters: float):
         """The symmetric sliding orbit `tt` about the middle of the cavity, in closed form.
 
         Raises
@@ -183,7 +186,7 @@ class Coupled(Model):
             )
         return self._closed("tt", nodes, params)
 
-    def orbit_near(self, equilibrium: Any, **parameters: float) -> Any:
+    def orbit_near(self, equilibrium: Equilibrium, **parameters: float):
         """The exact orbit, `LR` or `tt`, that belongs to a steady state of the slow flow.
 
         Parameters
@@ -200,7 +203,7 @@ class Coupled(Model):
         guess = self._closed(word, closed_forms.nodes_from_equilibrium(params, equilibrium), params)
         return self.orbit(word, 1, guess.nodes, **values)
 
-    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray) -> Any:
+    def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray):
         from orbits.orbit import Orbit
 
         reading = Word.parse(word, frictionless=self.frictionless(params))

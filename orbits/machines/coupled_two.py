@@ -9,12 +9,16 @@ Letters: L1, R1, L2, R2 for impacts on the left and right walls; t1, s1, u1 and 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
 from orbits.machines.page.machine import Machine
 from orbits.symbols import cos, sin
+
+if TYPE_CHECKING:
+    from orbits.machines.page.formulas import Named, States
+    from orbits.symbols import Symbol
 
 TURN = 6.283185307179586  # radians
 
@@ -39,7 +43,7 @@ PARAMETERS = {  # name: (usual value, unit, meaning)
 STATES = {"q": "mm", "x1": "mm", "x2": "mm", "q_rate": "m/s", "x1_rate": "m/s", "x2_rate": "m/s"}
 
 
-def _motion(state: Any, phase: Any, p: Any, contact: Any) -> tuple[Any, ...]:
+def _motion(state: States, phase: Symbol, p: Named, contact: Named) -> tuple[Symbol, ...]:
     q, _, _, v, v1, v2 = state
     rate = TURN * p.natural_frequency
     ahead = p.base_amplitude * sin(phase) - q
@@ -60,10 +64,10 @@ def _energy(state: Any, phase: Any, p: Any) -> Any:
 def _wall(absorber: int, side: int) -> Wall:
     """The left (side = 1) or the right wall of an absorber's cavity."""
 
-    def gap(state: Any, phase: Any, p: Any) -> Any:
+    def gap(state: States, phase: Symbol, p: Named) -> Symbol:
         return getattr(p, f"clearance_{absorber}") - side * (state.q - getattr(state, f"x{absorber}"))
 
-    def back(state: Any, phase: Any, p: Any) -> Any:
+    def back(state: States, phase: Symbol, p: Named) -> Symbol:
         return -side * getattr(p, f"absorber_mass_{absorber}") / p.oscillator_mass
 
     letter = f"{'L' if side > 0 else 'R'}{absorber}"
@@ -71,10 +75,10 @@ def _wall(absorber: int, side: int) -> Wall:
 
 
 def _floor(absorber: int) -> DryFriction:
-    def speed(state: Any, phase: Any, p: Any) -> Any:
+    def speed(state: States, phase: Symbol, p: Named) -> Symbol:
         return state.q_rate - getattr(state, f"x{absorber}_rate")
 
-    def limit(state: Any, phase: Any, p: Any) -> Any:
+    def limit(state: States, phase: Symbol, p: Named) -> Symbol:
         return getattr(p, f"friction_{absorber}") * p.gravity
 
     return DryFriction(

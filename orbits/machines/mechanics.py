@@ -16,6 +16,10 @@ from orbits.machines.varying import Varying
 from orbits.words import Word
 from orbits.words.alphabet import shaken
 
+if TYPE_CHECKING:
+    from orbits.machines.parameters import Parameter
+    from orbits.numbers import Reals
+
 ONE = np.float64(1.0)
 
 
@@ -33,7 +37,7 @@ class Mechanics(Varying):
         parameter_names: ClassVar[tuple[str, ...]]
 
         @classmethod
-        def parameter(cls, name: str) -> Any: ...
+        def parameter(cls, name: str) -> Parameter: ...
 
     @classmethod
     def column(cls, params: np.ndarray, name: str) -> Any:
@@ -114,12 +118,12 @@ class Mechanics(Varying):
         return speed * math.cos(phase), np.array([-speed * math.sin(phase), 0.0])
 
     @classmethod
-    def walls(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def walls(cls, params: np.ndarray) -> tuple[Any, Any]:
         """w at the left and at the right wall; shapes follow `params` (..., P)."""
         if "distance_left" in cls.parameter_names:
             left, right = cls.sides(params, "distance")
             return left, -right
-        one: Any = np.ones(params.shape[:-1]) if params.ndim > 1 else ONE
+        one = np.ones(params.shape[:-1]) if params.ndim > 1 else ONE
         return one, -one
 
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
@@ -133,7 +137,7 @@ class Mechanics(Varying):
         return length if 0.0 < length < math.inf else 1.0, rate if 0.0 < rate < math.inf else 1.0
 
     @classmethod
-    def middle(cls, params: np.ndarray) -> Any:
+    def middle(cls, params: np.ndarray) -> Reals:
         """w in the middle between the walls, about which mirror images are taken; shapes follow `params` (..., P)."""
         left, right = cls.walls(params)
         return 0.5 * (left + right)
@@ -154,7 +158,7 @@ class Mechanics(Varying):
         return cls.sides(params, "restitution")
 
     @classmethod
-    def bodies(cls, w: Any, v: Any, params: np.ndarray) -> tuple[Any, Any]:
+    def bodies(cls, w: Reals, v: Reals, params: np.ndarray) -> tuple[Any, Any]:
         """Displacements q1 of the cavity and q2 of the absorber from w = q1 - q2 and v = q1 + eps q2; velocities likewise.
 
         Shapes follow `w` and `v`, against which `params` (..., P) is broadcast.
@@ -163,7 +167,7 @@ class Mechanics(Varying):
         return (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps)
 
     @classmethod
-    def relative(cls, cavity: Any, absorber: Any, params: np.ndarray) -> tuple[Any, Any]:
+    def relative(cls, cavity: Reals, absorber: Reals, params: np.ndarray) -> tuple[Any, Any]:
         """w and v from the displacements of cavity and absorber, the inverse of `bodies`."""
         return cavity - absorber, cavity + cls.column(params, "mass_ratio") * absorber
 
@@ -180,7 +184,7 @@ class Mechanics(Varying):
         return moved
 
     @classmethod
-    def impact_loss(cls, restitution: Any, speed: Any, params: np.ndarray) -> Any:
+    def impact_loss(cls, restitution: np.ndarray, speed: np.ndarray, params: np.ndarray) -> np.ndarray:
         """Energy that impacts of these relative speeds (m, L) take, (1 - r^2) w'^2 / (2 (1 + eps)), per unit of the absorber's mass."""
         eps = cls.column(params, "mass_ratio")[..., np.newaxis]
         return (1.0 - restitution**2) * speed**2 / (2.0 * (1.0 + eps))

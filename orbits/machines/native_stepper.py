@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
 from orbits.machines.stepping import PAUSED, TURNS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from orbits.machines.reference.machine import Reference
 
 NUMBERS = {"absorber": 0, "cavity": 1, "coupled": 2}
 """Numbers of the machines in the native core."""
@@ -108,12 +113,12 @@ class NativeStepper:
         self._energies(self.number, len(states), address(states), address(params), written(out))
 
     def _each(
-        self, work: Any, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray
+        self, work: Callable, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray
     ) -> None:
         states, params, ahead = floats(states), floats(params), floats(ahead)
         work(self.number, len(states), address(states), address(params), address(ahead), written(out))
 
 
-def stepper_functions(name: str, reference: Any) -> Any:
+def stepper_functions(name: str, reference: Reference) -> NativeStepper | Reference:
     """The functions of the contract for the machine called `name`: the native core's, or those of its reference in plain Python."""
     return NativeStepper(name) if native() else reference

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 LARGEST = 1e6
 """Of a number in a study, in the machine's own units, where all numbers are of order one; squares stay far from overflow."""
@@ -93,7 +92,7 @@ class Parameter:
     example: float = 1.0
     words: Mapping[str, float] = field(default_factory=dict)
 
-    def number(self, value: Any) -> float:
+    def number(self, value: object) -> float:
         """The number that a value stands for.
 
         Raises
@@ -108,7 +107,7 @@ class Parameter:
                 raise ParameterError(f"{name} = {value!r} is unknown; give {known} or a number {says}")
             return self.words[value]
         try:
-            number = float(value)
+            number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
             raise ParameterError(f"{name} = {value!r} is not a number; give a number {says}") from None
         if not math.isfinite(number):
@@ -117,7 +116,7 @@ class Parameter:
             raise ParameterError(f"{name} = {number:g} is out of range; give a number {says}")
         return number
 
-    def named(self, value: Any) -> Any:
+    def named(self, value: object) -> str | float:
         """The word for a value where there is one, else the number."""
         number = self.number(value)
         return next((word for word, code in self.words.items() if code == number), number)

@@ -7,9 +7,12 @@ forcing together. While one parameter p varies, number j is ``path[0, j] * p**pa
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    pass
 
 
 def place(params, path, p, out):
@@ -66,7 +69,7 @@ def single(count: int, index: int) -> np.ndarray:
 
 def along(path: np.ndarray, params: np.ndarray, p: np.ndarray | float) -> np.ndarray:
     """The numbers at each p: (P,) for one, (m, P) for an array (m,)."""
-    value: Any
+    value: float | np.ndarray
     if isinstance(p, float) or np.ndim(p) == 0:
         found, value = params.copy(), float(p)
     else:

@@ -17,6 +17,7 @@ from orbits.machines.parameters import Parameter, ParameterError
 from orbits.machines.path import single
 
 if TYPE_CHECKING:
+    from orbits.numbers import Reals
     from orbits.words import Word
 
 
@@ -111,7 +112,7 @@ class Varying:
         """What one of these coordinates (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; none here."""
         return {}
 
-    def middle(self, params: np.ndarray) -> Any:
+    def middle(self, params: np.ndarray) -> Reals:
         """The position about which mirror images are taken."""
         return 0.0
 
@@ -153,25 +154,25 @@ class Varying:
         time: float | None = None,
         events: int | None = None,
         **parameters: float,
-    ) -> Any:
+    ):
         """Simulate from event to event; see `orbits.simulation.simulate`."""
         from orbits.simulation.runs import simulate
 
         return simulate(self, start, periods=periods, time=time, events=events, **parameters)
 
-    def attractor(self, start: Mapping[str, float] | np.ndarray | None = None, **parameters: Any) -> Any:
+    def attractor(self, start: Mapping[str, float] | np.ndarray | None = None, **parameters: Any):
         """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
         from orbits.attractors.search import find_attractor
 
         return find_attractor(self, start, **parameters)
 
-    def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: Any) -> list[Any]:
+    def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: Any):
         """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
         from orbits.attractors.search import different_attractors
 
         return different_attractors(self, count, seed, size, **parameters)
 
-    def population(self, over: str | None = None, **parameters: float) -> Any:
+    def population(self, over: str | None = None, **parameters: float):
         """Many starts and what they settle on; see `orbits.population.Population`."""
         from orbits.population.population import Population
 
@@ -183,7 +184,7 @@ class Varying:
         periods: int = 1,
         guess: Sequence[Sequence[float]] | np.ndarray | None = None,
         **parameters: Any,
-    ) -> Any:
+    ):
         """Solve for the orbit with this word; see `orbits.starts.find.find`."""
         from orbits.starts.find import find
 

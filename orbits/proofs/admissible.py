@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.balls import interval, library
 from orbits.proofs.equations import Motif
-from orbits.proofs.flights import WALLS, Coupled, Flight, Shaken
+from orbits.proofs.flights import WALLS, Coupled, Flight, Motion, Shaken
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 
-Rates = tuple[Any, Any, Any, Any]
+if TYPE_CHECKING:
+    from flint import arb
+
+Rates = tuple["arb", "arb", "arb", Any]
 """A function and its first three rates in time, at an instant or over an interval."""
 
 EVALUATIONS = 6000
@@ -27,7 +30,7 @@ class Zero:
 
     name: str
     event: int
-    phase: Any = None
+    phase: arb | None = None
     side: int = 0
 
 
@@ -43,14 +46,14 @@ class Condition:
 
     name: str
     event: int
-    value: Any = None
+    value: arb | None = None
     side: int = 0
-    function: Callable[[Any], Rates] | None = field(default=None, repr=False)
-    phases: tuple[Any, Any] | None = None
-    pace: Any = None
+    function: Callable[[arb], Rates] | None = field(default=None, repr=False)
+    phases: tuple[arb, arb] | None = None
+    pace: arb | int = 1
     start: int = 0
     end: int = 0
-    touch: Any = None
+    touch: arb | None = None
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class Reality:
 
 
 def examine(
-    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], zero: Zero = NOTHING
+    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], zero: Zero = NOTHING
 ) -> Reality:
     """Decide every condition for all solutions with nodes in these balls.
 
@@ -110,7 +113,7 @@ def well_formed(motif: Motif) -> bool:
 
 
 def conditions(
-    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], zero: Zero = NOTHING
+    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], zero: Zero = NOTHING
 ) -> Iterator[Condition]:
     """All inequalities of the orbit, the one that vanishes at a border left out or marked."""
     flights = motif.flights(p)
@@ -134,7 +137,7 @@ def _vanishes(condition: Condition, zero: Zero) -> bool:
 
 
 def _at_event(
-    motif: Motif, i: int, here: Any, node: Sequence[Any], machine: Shaken | Coupled
+    motif: Motif, i: int, here: Motion, node: Sequence[arb], machine: Shaken | Coupled
 ) -> Iterator[Condition]:
     letter = motif.events[i]
     if letter in WALLS:
@@ -154,7 +157,7 @@ def _at_event(
 
 
 def _in_flight(
-    motif: Motif, i: int, flight: Flight, phases: tuple[Any, Any], machine: Shaken | Coupled, zero: Zero
+    motif: Motif, i: int, flight: Flight, phases: tuple[arb, arb], machine: Shaken | Coupled, zero: Zero
 ) -> Iterator[Condition]:
     pace = 1 / machine.omega
     letter, mode = motif.events[i], motif.modes[i]
@@ -164,7 +167,7 @@ def _in_flight(
     if motif.frictionless:
         for side, wall in ((1, "L"), (-1, "R")):
 
-            def room(phase: Any, side: int = side) -> Rates:
+            def room(phase: arb, side: int = side) -> Rates:
                 m = flight(phase)
                 return machine.room[side] - side * m.w, -side * m.w1, -side * m.w2, -side * m.w3
 
@@ -176,7 +179,7 @@ def _in_flight(
     elif mode == 0:
         for side in (after, -after):
 
-            def hold(phase: Any, side: int = side) -> Rates:
+            def hold(phase: arb, side: int = side) -> Rates:
                 m = flight(phase)
                 return machine.limit[side] - side * m.push, -side * m.push1, -side * m.push2, None
 
@@ -187,7 +190,7 @@ def _in_flight(
             )
     else:
 
-        def slide(phase: Any) -> Rates:
+        def slide(phase: arb) -> Rates:
             m = flight(phase)
             return mode * m.w1, mode * m.w2, mode * m.w3, None
 
@@ -206,6 +209,7 @@ def _decide(condition: Condition) -> bool | None:
     """True: proved; False: proved broken somewhere; None: neither."""
     if condition.function is None:
         value = condition.value
+        assert value is not None
         return True if value > 0 else False if value < 0 else None
     return _positive(condition)
 
@@ -243,7 +247,7 @@ def _positive(c: Condition) -> bool | None:
     return None
 
 
-def _holds(rates: Rates, value: Any, at: Any, over: Any, c: Condition, low: Any, high: Any) -> bool:
+def _holds(rates: Rates, value: arb, at: arb, over: arb, c: Condition, low: arb, high: arb) -> bool:
     if rates[0] > 0 or value + rates[1] * (over - at) * c.pace > 0:
         return True
     if low == 0 and c.start and rates[c.start] is not None and rates[c.start] > 0:

@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from decimal import Decimal, InvalidOperation
-from typing import Any
+from typing import TYPE_CHECKING
 
 from orbits.proofs.obstacles import ProofError
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from flint import arb
 
 #: a parameter as a proof takes it: a float (its shortest decimal is meant), an exact decimal as text, or middle and radius
 Given = float | int | str | tuple[str, str]
 
 
-def library() -> Any:
+def library() -> ModuleType:
     """The module `flint`.
 
     Raises
@@ -73,19 +78,19 @@ def _finite(text: str) -> Decimal | None:
     return number if number.is_finite() else None
 
 
-def ball(value: Given) -> Any:
+def ball(value: Given) -> arb:
     """The ball that certainly holds a given value, at the precision in force."""
     arb = library().arb
     text = decimal(value)
     return arb(*text) if isinstance(text, tuple) else arb(text)
 
 
-def interval(low: Any, high: Any) -> Any:
+def interval(low: arb, high: arb) -> arb:
     """The ball from the smallest value of one ball to the largest of another."""
     return low.union(high)
 
 
-def texts(value: Any, digits: int = 40) -> list[str]:
+def texts(value: arb, digits: int = 40) -> list[str]:
     """Middle and radius of a ball as decimals; the decimal ball holds the given one."""
     middle, radius, exponent = (int(part) for part in value.mid_rad_10exp(digits))
     drop = max(0, len(str(radius)) - 3)
@@ -93,7 +98,7 @@ def texts(value: Any, digits: int = 40) -> list[str]:
     return [_text(middle, exponent), f"{radius}e{exponent + drop}" if radius else "0"]
 
 
-def upper_text(radius: Any) -> str:
+def upper_text(radius: arb) -> str:
     """A short decimal that is at least this radius."""
     middle, slack, exponent = (int(part) for part in radius.abs_upper().mid_rad_10exp(1))
     drop = max(0, len(str(middle)) - 3)

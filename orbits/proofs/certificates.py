@@ -45,7 +45,11 @@ def resting_box(motif: Motif, value: str = "1", half: str = "0") -> Entry:
 
 
 def _entry(
-    motif: Motif, nodes: Any, parameter: list[str], half: str, basis: Sequence[Sequence[str]]
+    motif: Motif,
+    nodes: Sequence[Sequence[Sequence[str]]],
+    parameter: list[str],
+    half: str,
+    basis: Sequence[Sequence[str]],
 ) -> Entry:
     n = motif.node
     unit = [["1" if i == j else "0" for j in range(n)] for i in range(n)]
@@ -59,7 +63,7 @@ def _entry(
     }
 
 
-def conditions(motif: Motif, vanishing: Vanishing) -> list[list[Any]]:
+def conditions(motif: Motif, vanishing: Vanishing) -> list[list[str | int]]:
     """The inequality that a border is about, as the checker calls it."""
     if vanishing.name in ("flight", "turn", "slip"):
         return [["flight", vanishing.event, motif.modes[vanishing.event]]]

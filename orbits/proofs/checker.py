@@ -23,12 +23,12 @@ def number(text):
     need(re.fullmatch(r"-?[0-9]+(\.[0-9]+)?(e[+-]?[0-9]{1,4})?", text), f"{text!r} is no decimal number")
     return iv.mpf(text)
 class Jet(dict):  # {0: value, unknown: derivative}, unknowns are 1, 2 ..., all entries intervals
-    def of(self, value, slope) -> Any: return Jet({u: slope * a for u, a in self.items()} | {0: value})
-    def __add__(self, other) -> Any: return Jet({u: self.get(u, 0) + jet(other).get(u, 0) for u in self | jet(other)})
-    def __sub__(self, other) -> Any: return self + jet(other) * -1
-    def __pow__(self, k) -> Any: return self.of(self[0] ** k, self[0] ** (k - 1) * k)
-    def __truediv__(self, other) -> Any: return self * jet(other) ** -1
-    def __mul__(self, other) -> Any:
+    def of(self, value, slope): return Jet({u: slope * a for u, a in self.items()} | {0: value})
+    def __add__(self, other): return Jet({u: self.get(u, 0) + jet(other).get(u, 0) for u in self | jet(other)})
+    def __sub__(self, other): return self + jet(other) * -1
+    def __pow__(self, k): return self.of(self[0] ** k, self[0] ** (k - 1) * k)
+    def __truediv__(self, other): return self * jet(other) ** -1
+    def __mul__(self, other):
         a, b = self, jet(other)
         return Jet({u: a.get(u, 0) * b[0] + (a[0] * b[u] if u in b else 0) for u in a | b} | {0: a[0] * b[0]})
 def jet(x): return x if isinstance(x, Jet) else Jet({0: iv.mpf(x)})
@@ -132,7 +132,7 @@ def conditions(c, hull, wanted):
         sides = [s for s in SIDES if (c["frictionless"] or mode in (0, s)) and wanted(["flight", i, s])]
         found += [positive(c, p, s, letter, mode, wall, after, node, y) for s in sides]
     return found
-def det(M) -> Any:
+def det(M):
     minors = (det([[*row[:j], *row[j + 1:]] for row in M[1:]]) * (-1) ** j for j in range(len(M)))
     return sum((a * minor for a, minor in zip(M[0], minors)), iv.zero) if M else iv.one
 def solved(M, B):  # Cramer's rule: no pivots, so nothing is compared

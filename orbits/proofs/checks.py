@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from orbits.proofs.equations import MIRRORED, Motif
 from orbits.proofs.flights import MACHINES, parameter_names
 from orbits.proofs.obstacles import ProofError
 from orbits.proofs.varying import Varying
+
+if TYPE_CHECKING:
+    from flint import arb
 
 SIDED = ("restitution", "friction")
 NEAR = 1e-6  # nodes of an orbit and of its mirror image
@@ -83,7 +86,7 @@ def check_symmetry(motif: Motif, given: Mapping[str, Given], varying: Varying | 
         )
 
 
-def check_parameters(motif: Motif, p: Mapping[str, Any]) -> None:
+def check_parameters(motif: Motif, p: Mapping[str, arb]) -> None:
     """Refuse parameters outside their range, and friction where the word has none.
 
     Raises

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal, localcontext
-from typing import Any
+from typing import TYPE_CHECKING
 
 from orbits.proofs.balls import ball, texts
 from orbits.proofs.certificates import Entry, orbit_box, resting_box, tile_box
@@ -20,6 +20,9 @@ from orbits.proofs.special import Normal
 from orbits.proofs.stability import away_from_one, basis_texts
 from orbits.proofs.tiles import DIGITS, Along, Tile, lay
 from orbits.proofs.varying import Varying
+
+if TYPE_CHECKING:
+    from flint import arb
 
 APART = ("2e-11", "2e-14", "2e-17", "2e-20", "2e-26", "2e-32", "2e-38")
 """Of either orbit from the special point; nearer where the branch bends sharply or a long word's map is known too roughly in the tile."""
@@ -37,10 +40,10 @@ WIDTH = 1.25  # of the tile
 
 def crossing(
     motif: Motif,
-    p: Mapping[str, Any],
+    p: Mapping[str, arb],
     varying: Varying,
-    z: Sequence[Sequence[Any]],
-    value: Any,
+    z: Sequence[Sequence[arb]],
+    value: arb,
     bits: int,
     turn: Normal | None = None,
     pair: bool = False,
@@ -75,10 +78,10 @@ def crossing(
 
 def _chain(
     motif: Motif,
-    p: Mapping[str, Any],
+    p: Mapping[str, arb],
     varying: Varying,
-    z: Sequence[Sequence[Any]],
-    value: Any,
+    z: Sequence[Sequence[arb]],
+    value: arb,
     bits: int,
     turn: Normal | None,
     apart: str,
@@ -116,10 +119,10 @@ def _chain(
 
 def orbit_at(
     motif: Motif,
-    p: Mapping[str, Any],
+    p: Mapping[str, arb],
     varying: Varying,
     value: str,
-    start: Sequence[Sequence[Any]],
+    start: Sequence[Sequence[arb]],
     bits: int,
 ) -> Box:
     """The orbit near `start` at a value of the parameter.
@@ -133,13 +136,13 @@ def orbit_at(
     return enclose(system, z, [], bits)
 
 
-def orbit_entry(motif: Motif, p: Mapping[str, Any], varying: Varying, value: str, box: Box) -> Entry:
+def orbit_entry(motif: Motif, p: Mapping[str, arb], varying: Varying, value: str, box: Box) -> Entry:
     """The orbit for a certificate, with a basis that shows its multipliers plainly."""
     system = System(motif, {**p, **varying.at(ball(value))})
     return orbit_box(motif, box, value, basis_texts(system, box.balls()[0]))
 
 
-def _with_basis(motif: Motif, p: Mapping[str, Any], varying: Varying, tile: Tile) -> Tile:
+def _with_basis(motif: Motif, p: Mapping[str, arb], varying: Varying, tile: Tile) -> Tile:
     system = System(motif, {**p, **varying.at(tile.values())})
     return replace(tile, basis=basis_texts(system, tile.balls()))
 

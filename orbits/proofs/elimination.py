@@ -10,7 +10,16 @@ one after another between two block rows (and the border rows met so far), with 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import arb
+
+    Nodes = Sequence[Sequence[arb]]
+    Solution = tuple[list[list[arb]], list[arb]]
+    """The unknowns block by block, and the further ones."""
 
 
 class Singular(ArithmeticError):
@@ -127,5 +136,5 @@ def _back(pivots: list[list[Any]], count: int, known: list[Any]) -> list[Any]:
     return result
 
 
-def _zero(value: Any) -> bool:
+def _zero(value: object) -> bool:
     return isinstance(value, int)

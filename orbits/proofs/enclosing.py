@@ -13,14 +13,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, TypeVar
 
 from orbits.proofs.balls import ball, library, texts, upper_text
 from orbits.proofs.elimination import Singular, solve
 from orbits.proofs.equations import System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 
+if TYPE_CHECKING:
+    from flint import arb
+
+    from orbits.proofs.elimination import Nodes, Solution
+
 ROUNDS = 8
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -37,7 +43,7 @@ class Box:
     nodes: list[list[list[str]]]
     extras: list[list[str]]
 
-    def balls(self) -> tuple[list[list[Any]], list[Any]]:
+    def balls(self) -> Solution:
         """The box as balls, at the precision in force."""
         arb = library().arb
         nodes = [[arb(mid, rad) for mid, rad in node] for node in self.nodes]
@@ -50,9 +56,7 @@ class Box:
         return max((float(rad) for _, rad in every), default=0.0)
 
 
-def refine(
-    system: System, nodes: Sequence[Sequence[Any]], extras: Sequence[Any], bits: int
-) -> tuple[Any, Any]:
+def refine(system: System, nodes: Sequence[Sequence[arb]], extras: Sequence[arb], bits: int) -> Solution:
     """Newton's method on the middles (of parameters as well) until it stands still.
 
     Raises
@@ -68,9 +72,7 @@ def refine(
         system.p = balls
 
 
-def _newton(
-    system: System, nodes: Sequence[Sequence[Any]], extras: Sequence[Any], bits: int
-) -> tuple[Any, Any]:
+def _newton(system: System, nodes: Sequence[Sequence[arb]], extras: Sequence[arb], bits: int) -> Solution:
     z = [[value.mid() for value in node] for node in nodes]
     e = [value.mid() for value in extras]
     goal = library().arb(2) ** (-(3 * bits) // 4)
@@ -91,14 +93,14 @@ def _newton(
     raise Obstacle(Step.REFINEMENT, Remedy.BITS)
 
 
-def _step(system: System, z: Any, e: Any, Z: Any, E: Any) -> tuple[list[list[Any]], list[Any]]:
+def _step(system: System, z: Nodes, e: Sequence[arb], Z: Nodes, E: Sequence[arb]) -> Solution:
     """DF(Z, E)^{-1} F(z, e)."""
     blocks = system.linearise(Z, E)
     blocks.b, blocks.c = system.residuals(z, e)
     return solve(blocks)
 
 
-def enclose(system: System, z: Any, e: Any, bits: int) -> Box:
+def enclose(system: System, z: Nodes, e: Sequence[arb], bits: int) -> Box:
     """A box about (z, e) with exactly one solution in it.
 
     Raises
@@ -135,11 +137,11 @@ def enclose(system: System, z: Any, e: Any, bits: int) -> Box:
     raise Obstacle(Step.EXISTENCE, Remedy.BITS)
 
 
-def _shape(flat: list[Any], system: System) -> tuple[list[list[Any]], list[Any]]:
+def _shape(flat: list[T], system: System) -> tuple[list[list[T]], list[T]]:
     k, length = system.k, system.length
     return [flat[k * i : k * i + k] for i in range(length)], flat[k * length :]
 
 
-def _scale(value: Any) -> Any:
+def _scale(value: arb) -> arb:
     size = value.abs_upper()
     return size if size > 1 else library().arb(1)

@@ -7,12 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.balls import library
 from orbits.proofs.elimination import Blocks
 from orbits.proofs.flights import MACHINES, WALLS, Coupled, Shaken, wall
 from orbits.proofs.jets import partial, variables
+
+if TYPE_CHECKING:
+    from flint import arb
+
+    from orbits.proofs.jets import Number
 
 MIRRORED = {"L": "R", "R": "L"}
 
@@ -62,7 +67,7 @@ class Motif:
         """Whether no wall is hit."""
         return not any(letter in WALLS for letter in self.events)
 
-    def flights(self, p: Mapping[str, Any]) -> Shaken | Coupled:
+    def flights(self, p: Mapping[str, Number]) -> Shaken | Coupled:
         """The machine's flights with parameters `p`."""
         return MACHINES[self.machine](p)
 
@@ -77,7 +82,7 @@ class Motif:
         """The mode before event i."""
         return self.modes[i - 1] if i > 0 else self.twist * self.modes[-1]
 
-    def closing(self, node: Sequence[Any], p: Mapping[str, Any]) -> list[Any]:
+    def closing(self, node: Sequence[Number], p: Mapping[str, Number]) -> list[Any]:
         """The first node again, at the end of the part; a position is mirrored about the middle between the walls."""
         shift = library().arb.pi() * (self.periods if self.half else 2 * self.periods)
         found = [node[0] + shift, *(self.twist * value for value in node[1:])]
@@ -85,12 +90,12 @@ class Motif:
             found[1] = found[1] + (p["distance_left"] - p["distance_right"])
         return found
 
-    def after(self, i: int, nodes: Sequence[Sequence[Any]], p: Mapping[str, Any]) -> Sequence[Any]:
+    def after(self, i: int, nodes: Sequence[Sequence[Number]], p: Mapping[str, Number]) -> Sequence[Any]:
         """The node at which flight i ends."""
         return nodes[i + 1] if i + 1 < len(nodes) else self.closing(nodes[0], p)
 
     def residual(
-        self, i: int, flights: Shaken | Coupled, x: Sequence[Any], following: Sequence[Any]
+        self, i: int, flights: Shaken | Coupled, x: Sequence[Number], following: Sequence[Number]
     ) -> list[Any]:
         """The elementary map of flight i, zero where `following` is the node that `x` leads to.
 
@@ -110,7 +115,7 @@ class Motif:
         return rows
 
 
-Border = tuple[int, Callable[[Sequence[Any], Sequence[Any]], Any]]
+Border = tuple[int, "Callable[[Sequence[Number], Sequence[Number]], Number]"]
 """A border row: the block it reads, and its value from that block's unknowns and the further ones."""
 
 
@@ -124,33 +129,38 @@ class System:
         Parameters.
     """
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any]) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, arb]) -> None:
         self.motif, self.p = motif, dict(p)
         self.k, self.m, self.length = motif.node, 0, len(motif)
         self.borders: tuple[Border, ...] = ()
 
-    def numbers(self, extras: Sequence[Any]) -> Mapping[str, Any]:
+    def numbers(self, extras: Sequence[Number]) -> Mapping[str, Number]:
         """The parameters, at these further unknowns."""
         return self.p
 
-    def prepare(self, extras: Sequence[Any]) -> Any:
+    def prepare(self, extras: Sequence[Number]) -> Shaken | Coupled:
         """What all blocks share."""
         return self.motif.flights(self.numbers(extras))
 
     def block(
-        self, i: int, shared: Any, z: Sequence[Any], following: Sequence[Any], extras: Sequence[Any]
+        self,
+        i: int,
+        shared: Shaken | Coupled,
+        z: Sequence[Number],
+        following: Sequence[Number],
+        extras: Sequence[Number],
     ) -> list[Any]:
         """Residuals of block i."""
         return self.motif.residual(i, shared, z, following)
 
-    def closing(self, z: Sequence[Any], extras: Sequence[Any]) -> list[Any]:
+    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
         """The unknowns that follow the last block, from those of the first."""
         return self.motif.closing(z, self.numbers(extras))
 
     # ------------------------------------------------------------------ evaluation
     def residuals(
-        self, nodes: Sequence[Sequence[Any]], extras: Sequence[Any]
-    ) -> tuple[list[list[Any]], list[Any]]:
+        self, nodes: Sequence[Sequence[Number]], extras: Sequence[Number]
+    ) -> tuple[list[list[Number]], list[Number]]:
         """Values of all equations."""
         shared = self.prepare(extras)
         values = []
@@ -159,7 +169,7 @@ class System:
             values.append(self.block(i, shared, nodes[i], following, extras))
         return values, [row(nodes[i], extras) for i, row in self.borders]
 
-    def linearise(self, nodes: Sequence[Sequence[Any]], extras: Sequence[Any]) -> Blocks:
+    def linearise(self, nodes: Sequence[Sequence[Number]], extras: Sequence[Number]) -> Blocks:
         """All derivatives over a box; right sides are zero."""
         k, m = self.k, self.m
         e = variables(extras, 2 * k)

@@ -20,10 +20,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from orbits.proofs.jets import exp, sin_cos, sqrt
 from orbits.proofs.obstacles import ProofError
+
+if TYPE_CHECKING:
+    from orbits.proofs.jets import Number
 
 WALLS = {"L": 1, "R": -1}
 
@@ -43,7 +46,7 @@ class Motion:
     v1: Any
 
 
-Flight = Callable[[Any], Motion]
+Flight = Callable[["Number"], Motion]
 
 
 class Flights(Protocol):
@@ -53,16 +56,16 @@ class Flights(Protocol):
     room: Mapping[int, Any]  # distance of the left (+1) and the right wall (-1) from w = 0
     omega: Any
 
-    def restitution(self, letter: str) -> Any:
+    def restitution(self, letter: str) -> Number:
         """Newton's coefficient of the wall."""
         ...
 
-    def launch(self, letter: str, mode: int, node: Sequence[Any]) -> Flight:
+    def launch(self, letter: str, mode: int, node: Sequence[Number]) -> Flight:
         """The flight in `mode` that begins with event `letter` at `node`."""
         ...
 
 
-def wall(flights: Flights, letter: str) -> Any:
+def wall(flights: Flights, letter: str) -> Number:
     """Where the absorber hits at an impact."""
     side = WALLS[letter]
     return side * flights.room[side]
@@ -91,11 +94,11 @@ class Shaken:
             self.limit, self.room, self.bias = {1: a, -1: a, 0: 0}, {1: 1, -1: 1}, 0
             self.left = self.right = p["restitution"]
 
-    def restitution(self, letter: str) -> Any:
+    def restitution(self, letter: str) -> Number:
         """Newton's coefficient of the wall."""
         return self.left if letter == "L" else self.right
 
-    def launch(self, letter: str, mode: int, node: Sequence[Any]) -> Flight:
+    def launch(self, letter: str, mode: int, node: Sequence[Number]) -> Flight:
         """See `Flights.launch`."""
         phase0, y = node
         C, omega = self.amplitude, self.omega
@@ -105,7 +108,7 @@ class Shaken:
         w0, beta = (wall(self, letter), y) if letter in WALLS else (y, speed * c0)
         pull = self.bias - mode * self.limit[mode]
 
-        def flight(phase: Any) -> Motion:
+        def flight(phase: Number) -> Motion:
             s, c = sin_cos(phase)
             shake, shake1 = -peak * s, -peak * omega * c
             shake2 = -omega * omega * shake
@@ -119,7 +122,7 @@ class Shaken:
 
         return flight
 
-    def resting(self, phase: Any) -> tuple[Any, Any]:
+    def resting(self, phase: Number) -> tuple[Any, Any]:
         """The push on the stuck absorber in steady state, and its rate."""
         s, c = sin_cos(phase)
         peak = self.amplitude * self.omega * self.omega
@@ -146,13 +149,13 @@ class Coupled:
         self.r = p["restitution"]
         self.rate = self.eps * p["damping"]
         self._force, self._chi = self.eps * p["forcing"], p["excitation"]
-        self._responses: dict[int, tuple[Any, Any, Any, Any]] = {}
+        self._responses: dict[int, tuple[Number, Number, Number, Number]] = {}
 
-    def restitution(self, letter: str) -> Any:
+    def restitution(self, letter: str) -> Number:
         """Newton's coefficient of the walls."""
         return self.r
 
-    def _response(self, stuck: bool) -> tuple[Any, Any, Any, Any]:
+    def _response(self, stuck: bool) -> tuple[Number, Number, Number, Number]:
         """X, Y of the forced response X sin Psi + Y cos Psi, and decay alpha and angular frequency beta of the free one."""
         if stuck not in self._responses:
             mass = self.whole if stuck else 1
@@ -165,7 +168,7 @@ class Coupled:
             self._responses[stuck] = X, Y, alpha, sqrt(one / mass - alpha * alpha)
         return self._responses[stuck]
 
-    def launch(self, letter: str, mode: int, node: Sequence[Any]) -> Flight:
+    def launch(self, letter: str, mode: int, node: Sequence[Number]) -> Flight:
         """See `Flights.launch`."""
         phase0, y, v0, v1 = node
         eps, omega, whole = self.eps, self.omega, self.whole
@@ -183,7 +186,7 @@ class Coupled:
         z1 = q1r - omega * (X * c0 - Y * s0)
         kappa = alpha * alpha + beta * beta
 
-        def flight(phase: Any) -> Motion:
+        def flight(phase: Number) -> Motion:
             t = (phase - phase0) / omega
             s, c = sin_cos(phase)
             sine, cosine = sin_cos(beta * t)
@@ -209,7 +212,7 @@ class Coupled:
 
         return flight
 
-    def resting(self, phase: Any) -> tuple[Any, Any]:
+    def resting(self, phase: Number) -> tuple[Any, Any]:
         """The push on the stuck absorber in steady state, and its rate."""
         s, c = sin_cos(phase)
         X, Y, _, _ = self._response(True)

@@ -6,7 +6,15 @@ derivative over the whole box (the chain rule holds for sets). Nested, they give
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from flint import arb
+
+    Number: TypeAlias = "arb | Jet"
+    """A ball, or a jet over balls."""
 
 
 class Jet:
@@ -21,15 +29,15 @@ class Jet:
 
     __slots__ = ("partials", "value")
 
-    def __init__(self, value: Any, partials: dict[int, Any]) -> None:
+    def __init__(self, value: Number, partials: dict[int, Number]) -> None:
         self.value = value
         self.partials = partials
 
-    def chain(self, value: Any, slope: Any) -> Jet:
+    def chain(self, value: Number, slope: Number) -> Jet:
         """f(self) from f and f' at the value."""
         return Jet(value, {i: slope * part for i, part in self.partials.items()})
 
-    def __add__(self, other: Any) -> Jet:
+    def __add__(self, other: Number | float) -> Jet:
         if not isinstance(other, Jet):
             return Jet(self.value + other, self.partials)
         parts = dict(self.partials)
@@ -42,13 +50,13 @@ class Jet:
     def __neg__(self) -> Jet:
         return Jet(-self.value, {i: -part for i, part in self.partials.items()})
 
-    def __sub__(self, other: Any) -> Jet:
+    def __sub__(self, other: Number | float) -> Jet:
         return self + (-other)
 
-    def __rsub__(self, other: Any) -> Jet:
+    def __rsub__(self, other: Number | float) -> Jet:
         return -self + other
 
-    def __mul__(self, other: Any) -> Jet:
+    def __mul__(self, other: Number | float) -> Jet:
         if not isinstance(other, Jet):
             return Jet(self.value * other, {i: part * other for i, part in self.partials.items()})
         a, b = self.value, other.value
@@ -60,12 +68,12 @@ class Jet:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Any) -> Jet:
+    def __truediv__(self, other: Number | float) -> Jet:
         if not isinstance(other, Jet):
             return Jet(self.value / other, {i: part / other for i, part in self.partials.items()})
         return self * other.inverse()
 
-    def __rtruediv__(self, other: Any) -> Jet:
+    def __rtruediv__(self, other: Number | float) -> Jet:
         return self.inverse() * other
 
     def inverse(self) -> Jet:
@@ -74,7 +82,7 @@ class Jet:
         return self.chain(value, -value * value)
 
 
-def sin_cos(x: Any) -> tuple[Any, Any]:
+def sin_cos(x: Number) -> tuple[Number, Number]:
     """Sine and cosine of a ball or a jet."""
     if not isinstance(x, Jet):
         return x.sin_cos()
@@ -82,7 +90,7 @@ def sin_cos(x: Any) -> tuple[Any, Any]:
     return x.chain(s, c), x.chain(c, -s)
 
 
-def exp(x: Any) -> Any:
+def exp(x: Number) -> Number:
     """Exponential function of a ball or a jet."""
     if not isinstance(x, Jet):
         return x.exp()
@@ -90,7 +98,7 @@ def exp(x: Any) -> Any:
     return x.chain(value, value)
 
 
-def sqrt(x: Any) -> Any:
+def sqrt(x: Number) -> Number:
     """Square root of a ball or a jet."""
     if not isinstance(x, Jet):
         return x.sqrt()
@@ -98,7 +106,7 @@ def sqrt(x: Any) -> Any:
     return x.chain(value, 1 / (2 * value))
 
 
-def power(x: Any, exponent: int | float) -> Any:
+def power(x: Number, exponent: int | float) -> Number:
     """A power of a ball or a jet; for exponents that are no whole numbers of a positive one."""
     if exponent == 1:
         return x
@@ -107,23 +115,23 @@ def power(x: Any, exponent: int | float) -> Any:
     return x.chain(power(x.value, exponent), exponent * power(x.value, exponent - 1))
 
 
-def base(x: Any) -> Any:
+def base(x: Number) -> arb:
     """The ball at the bottom of a jet of any depth."""
     while isinstance(x, Jet):
         x = x.value
     return x
 
 
-def variables(values: Any, first: int = 0) -> list[Jet]:
+def variables(values: Iterable[Number], first: int = 0) -> list[Jet]:
     """Independent variables numbered from `first`, at the given values."""
     return [Jet(value, {first + i: one(value)}) for i, value in enumerate(values)]
 
 
-def one(like: Any) -> Any:
+def one(like: Number) -> arb:
     """The number 1 of the same kind of balls."""
     return type(base(like))(1)
 
 
-def partial(x: Any, index: int) -> Any:
+def partial(x: Number, index: int) -> Number | int:
     """Derivative with respect to one variable; 0 where there is no dependence."""
     return x.partials.get(index, 0) if isinstance(x, Jet) else 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,11 @@ from orbits.proofs.proof import Proof
 from orbits.proofs.stability import stable_in_basis
 from orbits.proofs.tiles import Along, Tile, lay
 from orbits.proofs.varying import Varying
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from flint import arb
 
 BITS = 192
 FIRST = 1 / 16  # first tile's share of the piece
@@ -188,7 +193,7 @@ def _chain(end: Proof, guess: Callable[[float], np.ndarray], inside: float) -> l
 class _Cover:
     """Tiles laid one after another from the left to the right end, and the orbits that join them."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying) -> None:
         self.motif, self.p, self.varying = motif, p, varying
         self.tiles: list[Tile] = []
         self.boxes: list[Entry] = []
@@ -245,7 +250,7 @@ class _Cover:
             self.arrived = True
         return None
 
-    def _orbit(self, value: str, start: Any) -> Box:
+    def _orbit(self, value: str, start: Sequence[Sequence[float]] | np.ndarray) -> Box:
         nodes = [[ball(float(v)) for v in node] for node in start]
         return orbit_at(self.motif, self.p, self.varying, value, nodes, BITS)
 
@@ -308,5 +313,5 @@ def _box_of(entry: Entry) -> Box:
     return Box([[[mid, rad] for mid, _, rad in node] for node in entry["nodes"]], [])
 
 
-def _wider(value: Any) -> Any:
+def _wider(value: arb) -> arb:
     return value + library().arb(0, value.rad() * ROOM)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,13 @@ from orbits.proofs.stability import basis_texts, stable
 from orbits.proofs.starting import chain as maps_of
 from orbits.proofs.starting import eigenpair, eigenvector, touching_phase, vanishing_margin
 from orbits.proofs.varying import Varying
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from flint import arb
+
+    from orbits.proofs.elimination import Solution
 
 NEAR = 1e-6  # a proved orbit is the computed one when it is nearer than this
 MOST_BITS = 6144
@@ -182,7 +189,7 @@ def prove_special(
     return _with_bits(attempt, proof, bits or 192 + 8 * len(motif), given)
 
 
-def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: float, bits: int) -> Proof:
+def _slip(proof: Proof, p: Mapping[str, arb], here: Mapping[str, arb], value: float, bits: int) -> Proof:
     """Where the stuck absorber slips: the push just reaches friction."""
     flights = proof.motif.flights(here)
     one, other = (float(flights.resting(phase)[0].mid()) for phase in (ball(0), ball(float(np.pi / 2))))
@@ -204,13 +211,13 @@ def _slip(proof: Proof, p: Mapping[str, Any], here: Mapping[str, Any], value: fl
 def _defining(
     kind: str,
     motif: Motif,
-    p: Mapping[str, Any],
-    here: Mapping[str, Any],
-    x: list[list[Any]],
+    p: Mapping[str, arb],
+    here: Mapping[str, arb],
+    x: list[list[arb]],
     varying: Varying,
     value: float,
     vanishing: Vanishing | None,
-) -> tuple[System, list[list[Any]], list[Any], Normal | None]:
+) -> tuple[System, list[list[arb]], list[arb], Normal | None]:
     """The defining system, where to start, and the largest component of the eigenvector."""
     if vanishing is not None:
         extras = [ball(value)]
@@ -230,8 +237,8 @@ def _defining(
 
 
 def _refined(
-    system: System, nodes: np.ndarray, extras: Sequence[Any], bits: int, start: list[list[Any]] | None = None
-) -> tuple[Any, Any]:
+    system: System, nodes: np.ndarray, extras: Sequence[arb], bits: int, start: list[list[arb]] | None = None
+) -> Solution:
     """Newton's method; the result must be the computed orbit, not one somewhere else."""
     z = start or [[ball(float(v)) for v in node] for node in nodes]
     z, e = refine(system, z, extras, bits)
@@ -250,7 +257,7 @@ def _refined(
     return z, e
 
 
-def _with_bits(attempt: Any, proof: Proof, bits: int, given: Mapping[str, Any]) -> Proof:
+def _with_bits(attempt: Callable[[int], Proof], proof: Proof, bits: int, given: Mapping[str, Given]) -> Proof:
     """Attempts with more and more bits until all is decided, or more bits change nothing."""
     best, tries = replace(proof, bits=bits), 0
     wide = any(isinstance(value, tuple) for value in given.values())

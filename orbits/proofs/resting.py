@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.balls import Given, ball, decimal, precision
 from orbits.proofs.enclosing import Box
@@ -18,27 +18,38 @@ from orbits.proofs.proof import Proof
 from orbits.proofs.special import AtParameter
 from orbits.proofs.varying import Varying
 
+if TYPE_CHECKING:
+    from flint import arb
+
+    from orbits.proofs.flights import Coupled, Shaken
+    from orbits.proofs.jets import Number
+
 
 class AtSlip(AtParameter):
     """Where friction just holds the stuck absorber; unknowns the phase at which the push is largest, and the parameter."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, side: int) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, side: int) -> None:
         super().__init__(motif, p, varying)
         self.k = self.length = 1
 
-        def row(z: Sequence[Any], extras: Sequence[Any]) -> Any:
+        def row(z: Sequence[Number], extras: Sequence[Number]) -> Number:
             flights = self.prepare(extras)
             return flights.limit[side] - side * flights.resting(z[0])[0]
 
         self.borders = ((0, row),)
 
     def block(
-        self, i: int, shared: Any, z: Sequence[Any], following: Sequence[Any], extras: Sequence[Any]
+        self,
+        i: int,
+        shared: Shaken | Coupled,
+        z: Sequence[Number],
+        following: Sequence[Number],
+        extras: Sequence[Number],
     ) -> list[Any]:
         """The push is at its extremum."""
         return [shared.resting(z[0])[1]]
 
-    def closing(self, z: Sequence[Any], extras: Sequence[Any]) -> list[Any]:
+    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
         """There is no map to close."""
         return list(z)
 
@@ -61,7 +72,7 @@ def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) 
     return replace(proof, broken=("stick", 0)) if real is False else proof
 
 
-def push_amplitude(flights: Any) -> Any:
+def push_amplitude(flights: Shaken | Coupled) -> Number:
     """Amplitude of the push on the stuck absorber, from two phases a quarter apart."""
     quarter = ball(1).atan() * 2
     one, other = (flights.resting(phase)[0] - flights.bias for phase in (ball(0), quarter))

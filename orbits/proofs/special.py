@@ -17,11 +17,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.jets import Jet, partial, sin_cos
 from orbits.proofs.varying import Varying
+
+if TYPE_CHECKING:
+    from flint import arb
+
+    from orbits.proofs.flights import Coupled, Shaken
+    from orbits.proofs.jets import Number
 
 
 @dataclass(frozen=True)
@@ -35,11 +41,11 @@ class Normal:
 class AtParameter(System):
     """Base of the systems in which the parameter that varies is an unknown, the first of the further ones."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying) -> None:
         super().__init__(motif, p)
         self.varying, self.m = varying, 1
 
-    def numbers(self, extras: Sequence[Any]) -> Mapping[str, Any]:
+    def numbers(self, extras: Sequence[Number]) -> Mapping[str, Number]:
         """The parameters, at the unknown one."""
         return self.p | self.varying.at(extras[0])
 
@@ -49,7 +55,7 @@ class AtMultiplier(AtParameter):
 
     directions = 1
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, mu: int, normal: Normal) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, mu: int, normal: Normal) -> None:
         super().__init__(motif, p, varying)
         self.mu, self.normal = mu, normal
         self.n = motif.node
@@ -57,30 +63,35 @@ class AtMultiplier(AtParameter):
         place = self.n + normal.component
         self.borders = ((normal.block, lambda z, e: z[place] - 1),)
 
-    def prepare(self, extras: Sequence[Any]) -> Any:
+    def prepare(self, extras: Sequence[Number]) -> Shaken | Coupled:
         """The flights over numbers with one direction; what does not move along it is lifted."""
         lifted = {name: Jet(value, {}) for name, value in self.p.items()}
         return self.motif.flights(lifted | self.varying.at(Jet(extras[0], {})))
 
     def block(
-        self, i: int, shared: Any, z: Sequence[Any], following: Sequence[Any], extras: Sequence[Any]
+        self,
+        i: int,
+        shared: Shaken | Coupled,
+        z: Sequence[Number],
+        following: Sequence[Number],
+        extras: Sequence[Number],
     ) -> list[Any]:
         """The map, then its derivative along each direction."""
         rows = self.motif.residual(i, shared, self._along(z), self._along(following))
         return [row.value for row in rows] + [partial(row, d) for d in range(self.directions) for row in rows]
 
-    def _along(self, z: Sequence[Any]) -> list[Jet]:
+    def _along(self, z: Sequence[Number]) -> list[Jet]:
         n = self.n
         return [Jet(z[j], {d: z[n * (1 + d) + j] for d in range(self.directions)}) for j in range(n)]
 
-    def closing(self, z: Sequence[Any], extras: Sequence[Any]) -> list[Any]:
+    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
         """x_l and phi_l = mu phi_0, seen through the mirror on half a word."""
         n = self.n
         return self.motif.closing(z[:n], self.numbers(extras)) + self._mirrored(
             [self.mu * value for value in z[n:]]
         )
 
-    def _mirrored(self, phi: list[Any]) -> list[Any]:
+    def _mirrored(self, phi: list[Number]) -> list[Number]:
         return [phi[0], *(self.motif.twist * value for value in phi[1:])]
 
 
@@ -89,13 +100,13 @@ class AtPair(AtMultiplier):
 
     directions = 2
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, normal: Normal) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, normal: Normal) -> None:
         super().__init__(motif, p, varying, 1, normal)
         self.m = 2
         imaginary = 2 * self.n + normal.component
         self.borders = (*self.borders, (normal.block, lambda z, e: z[imaginary]))
 
-    def closing(self, z: Sequence[Any], extras: Sequence[Any]) -> list[Any]:
+    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
         """x_l and phi_l = exp(i theta) phi_0."""
         n = self.n
         s, c = sin_cos(extras[1])
@@ -138,7 +149,7 @@ class Vanishing:
 class AtBorder(AtParameter):
     """Orbits at a border; further unknowns p and, for a margin inside a flight, the phase at which it vanishes."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, Any], varying: Varying, vanishing: Vanishing) -> None:
+    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, vanishing: Vanishing) -> None:
         super().__init__(motif, p, varying)
         self.vanishing = vanishing
         i = vanishing.event
@@ -148,13 +159,13 @@ class AtBorder(AtParameter):
         else:
             self.borders = ((i, self._row(0)),)
 
-    def _row(self, which: int) -> Callable[[Sequence[Any], Sequence[Any]], Any]:
-        def row(x: Sequence[Any], extras: Sequence[Any]) -> Any:
+    def _row(self, which: int) -> Callable[[Sequence[Number], Sequence[Number]], Any]:
+        def row(x: Sequence[Number], extras: Sequence[Number]) -> Number | None:
             return self._margin(x, extras)[which]
 
         return row
 
-    def _margin(self, x: Sequence[Any], extras: Sequence[Any]) -> tuple[Any, Any]:
+    def _margin(self, x: Sequence[Number], extras: Sequence[Number]) -> tuple[Number, Number | None]:
         """The margin's equation, and that of the phase where it vanishes."""
         motif, v = self.motif, self.vanishing
         flights = self.prepare(extras)

@@ -12,13 +12,19 @@ approximate product carries along, in which it is nearly diagonal, so that error
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from functools import reduce
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.proofs.balls import library
 from orbits.proofs.equations import System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from flint import arb, arb_mat
 
 SQUARINGS = 26
 LARGE = 1e12
@@ -29,7 +35,7 @@ ROUNDING = 1e-20  # share of a multiplier's imaginary part that is none
 MIXED = 1e3  # condition from which on eigenvectors are nearly parallel
 
 
-def stable(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None, Obstacle | None]:
+def stable(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[bool | None, Obstacle | None]:
     """True: all multipliers proved inside the unit circle; False: one proved outside; None, and why: neither.
 
     The trivial multiplier of an impact-free motion, which may be shifted as a whole, is left out.
@@ -46,7 +52,7 @@ def stable(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None,
     return verdict, None if verdict is not None else Obstacle(Step.STABILITY, Remedy.CIRCLE)
 
 
-def _verdict(product: Any, squarings: int = SQUARINGS) -> bool | None:
+def _verdict(product: arb_mat, squarings: int = SQUARINGS) -> bool | None:
     """By the signs of det(1 - A), det(1 + A) and prod(1 - mu_i mu_j), and by norms of the powers."""
     size = product.nrows()
     one = library().arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
@@ -59,7 +65,7 @@ def _verdict(product: Any, squarings: int = SQUARINGS) -> bool | None:
     return None
 
 
-def away_from_one(system: System, nodes: Sequence[Sequence[Any]]) -> bool:
+def away_from_one(system: System, nodes: Sequence[Sequence[arb]]) -> bool:
     """Whether the plain product of the maps, as a checker forms it, shows that no multiplier is 1 or -1, with room to spare."""
     try:
         factors = factor_matrices(system, nodes)
@@ -73,13 +79,13 @@ def away_from_one(system: System, nodes: Sequence[Sequence[Any]]) -> bool:
     return all(float(det.rad()) < ROUGH * abs(float(det.mid())) for det in both)
 
 
-def _definite(matrix: Any) -> bool:
+def _definite(matrix: arb_mat) -> bool:
     """Whether a symmetric matrix is positive definite: all leading minors are positive (Sylvester)."""
     rows = matrix.tolist()
     return all(library().arb_mat([row[:k] for row in rows[:k]]).det() > 0 for k in range(1, len(rows) + 1))
 
 
-def _pairs(product: Any) -> Any:
+def _pairs(product: arb_mat) -> arb:
     """The product of 1 - mu_i mu_j over all pairs of multipliers, which is positive if all lie inside: det(1 - second compound)."""
     size = product.nrows()
     pairs = [(i, j) for j in range(size) for i in range(j)]
@@ -93,7 +99,7 @@ def _pairs(product: Any) -> Any:
     return library().arb_mat(minors).det() if pairs else library().arb(1)
 
 
-def factor_matrices(system: System, nodes: Sequence[Sequence[Any]]) -> list[Any]:
+def factor_matrices(system: System, nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
     """The linearised maps -D_i^{-1} A_i, reduced by the free shift of impact-free motions."""
     arb_mat = library().arb_mat
     blocks = system.linearise(nodes, [])
@@ -103,7 +109,7 @@ def factor_matrices(system: System, nodes: Sequence[Sequence[Any]]) -> list[Any]
     return factors
 
 
-def _without_shift(factor: Any, p: Any) -> Any:
+def _without_shift(factor: arb_mat, p: Mapping[str, arb]) -> arb_mat:
     """The map of what is left when w (and v + eps w kept) may be shifted: w's row and column fall away."""
     rows = factor.tolist()
     if len(rows) == 4:
@@ -116,7 +122,7 @@ def _without_shift(factor: Any, p: Any) -> Any:
     return library().arb_mat([[rows[i][j] for j in keep] for i in keep])
 
 
-def stable_in_basis(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[bool | None, list[list[str]]]:
+def stable_in_basis(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[bool | None, list[list[str]]]:
     """The same for pieces of branches, with the basis (rows of decimals) in which a checker sees it from the plain product.
 
     The basis is empty where none helps.
@@ -140,7 +146,7 @@ def stable_in_basis(system: System, nodes: Sequence[Sequence[Any]]) -> tuple[boo
     return None, []
 
 
-def basis_texts(system: System, nodes: Sequence[Sequence[Any]]) -> list[list[str]]:
+def basis_texts(system: System, nodes: Sequence[Sequence[arb]]) -> list[list[str]]:
     """That basis alone; of eigenvectors with many digits where multipliers hardly lie on one side of the circle."""
     try:
         product = _middle(factor_matrices(system, nodes))
@@ -154,14 +160,14 @@ def basis_texts(system: System, nodes: Sequence[Sequence[Any]]) -> list[list[str
     return basis
 
 
-def _middle(factors: Sequence[Any]) -> Any:
+def _middle(factors: Sequence[arb_mat]) -> arb_mat:
     product = factors[0].mid()
     for factor in factors[1:]:
         product = (factor.mid() * product).mid()
     return product
 
 
-def _eigenvectors(product: Any) -> list[list[str]]:
+def _eigenvectors(product: arb_mat) -> list[list[str]]:
     """Eigenvectors, real and imaginary parts of complex ones, at the precision in force; empty if none is near the circle."""
     flint = library()
     try:
@@ -183,11 +189,11 @@ def _eigenvectors(product: Any) -> list[list[str]]:
     return [[entry.mid().str(DIGITS, radius=False) for entry in row] for row in zip(*columns)]
 
 
-def _written(basis: Any) -> list[list[str]]:
+def _written(basis: arb_mat) -> list[list[str]]:
     return [[repr(float(value)) for value in row] for row in basis.tolist()]
 
 
-def _in_frames(factors: list[Any]) -> Any:
+def _in_frames(factors: list[arb_mat]) -> arb_mat:
     """A matrix similar to the product of the factors, the first of which acts first."""
     plain = factors[0]
     for factor in factors[1:]:
@@ -196,19 +202,18 @@ def _in_frames(factors: list[Any]) -> Any:
     if not bases:
         return plain
     frame = bases[0]
-    first, result = frame, None
+    first, parts = frame, []
     for i, factor in enumerate(factors):
         carried = factor * frame
         following = first if i + 1 == len(factors) else _columns(carried)
         if following is None:
             return first.solve(plain * first)
-        part = following.solve(carried)
-        result = part if result is None else part * result
+        parts.append(following.solve(carried))
         frame = following
-    return result
+    return reduce(lambda product, part: part * product, parts)
 
 
-def _bases(product: Any) -> list[Any]:
+def _bases(product: arb_mat) -> list[arb_mat]:
     """Exact bases that may show stability plainly, the better ones first.
 
     One of eigenvectors, real and imaginary parts of complex ones, where it is well-conditioned; of a stable matrix A one in which it
@@ -242,7 +247,7 @@ def _bases(product: Any) -> list[Any]:
     return [basis for basis in found if basis is not None]
 
 
-def _columns(carried: Any) -> Any:
+def _columns(carried: arb_mat) -> arb_mat | None:
     """The carried frame's middle with columns of length one, made exact; None if it degenerates."""
     numbers = np.array([[float(value.mid()) for value in row] for row in carried.tolist()])
     lengths = np.linalg.norm(numbers, axis=0)
@@ -251,7 +256,7 @@ def _columns(carried: Any) -> Any:
     return _exact(numbers / lengths)
 
 
-def _exact(basis: np.ndarray) -> Any:
+def _exact(basis: np.ndarray) -> arb_mat | None:
     if basis.shape[0] != basis.shape[1] or not np.all(np.isfinite(basis)) or np.linalg.cond(basis) > LARGE:
         return None
     return library().arb_mat(basis.tolist())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,13 @@ from orbits.proofs.flights import Coupled, Flight, Shaken
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.special import Normal, Vanishing
 
+if TYPE_CHECKING:
+    from flint import arb, arb_mat
+
 SAMPLES = 400
 
 
-def chain(motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]]) -> list[Any]:
+def chain(motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
     """The linearised maps at the middles, each a matrix of exact numbers."""
     blocks = System(motif, p).linearise(nodes, [])
     arb_mat = library().arb_mat
@@ -26,7 +29,7 @@ def chain(motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]]) ->
         raise Obstacle(Step.REFINEMENT, Remedy.DEGENERATE) from None
 
 
-def eigenvector(factors: Sequence[Any], mu: int) -> tuple[list[list[Any]], Normal]:
+def eigenvector(factors: Sequence[arb_mat], mu: int) -> tuple[list[list[arb]], Normal]:
     """phi at every node for the real multiplier nearest to mu, its largest component 1, and where that is."""
     arb, arb_mat = library().arb, library().arb_mat
     size = factors[0].nrows()
@@ -46,7 +49,7 @@ def eigenvector(factors: Sequence[Any], mu: int) -> tuple[list[list[Any]], Norma
     return _scaled(_carried(factors, vector))
 
 
-def eigenpair(factors: Sequence[Any]) -> tuple[list[list[Any]], Normal, float]:
+def eigenpair(factors: Sequence[arb_mat]) -> tuple[list[list[arb]], Normal, float]:
     """Re phi and Im phi at every node for the complex multiplier nearest to the unit circle, and its angle."""
     numbers = np.array([[float(value) for value in row] for row in _product(factors).tolist()])
     values, vectors = np.linalg.eig(numbers)
@@ -63,7 +66,7 @@ def eigenpair(factors: Sequence[Any]) -> tuple[list[list[Any]], Normal, float]:
 
 
 def vanishing_margin(
-    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], name: str, event: int
+    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], name: str, event: int
 ) -> Vanishing:
     """The margin of this name, with the side on which it vanishes (of the two walls, or of the push's two directions)."""
     flights = motif.flights(p)
@@ -84,8 +87,8 @@ def vanishing_margin(
 
 
 def touching_phase(
-    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], vanishing: Vanishing
-) -> Any:
+    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], vanishing: Vanishing
+) -> arb:
     """The phase inside the flight at which the margin is smallest, roughly."""
     least = _least(motif, p, nodes, vanishing)
     if least is None:
@@ -96,8 +99,8 @@ def touching_phase(
 
 
 def _least(
-    motif: Motif, p: Mapping[str, Any], nodes: Sequence[Sequence[Any]], vanishing: Vanishing
-) -> tuple[float, Any] | None:
+    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], vanishing: Vanishing
+) -> tuple[float, arb] | None:
     """The smallest value of a margin at a minimum inside its flight, and where."""
     i = vanishing.event
     flights = motif.flights(p)
@@ -115,7 +118,7 @@ def _least(
     return min(inner, key=lambda pair: pair[0]) if inner else None
 
 
-def _size(flight: Flight, phase: Any, mode: int, vanishing: Vanishing, machine: Shaken | Coupled) -> float:
+def _size(flight: Flight, phase: arb, mode: int, vanishing: Vanishing, machine: Shaken | Coupled) -> float:
     m = flight(phase)
     if vanishing.name == "flight":
         return float((mode * m.w1).mid())
@@ -124,14 +127,14 @@ def _size(flight: Flight, phase: Any, mode: int, vanishing: Vanishing, machine: 
     return float((machine.room[vanishing.side] - vanishing.side * m.w).mid())
 
 
-def _product(factors: Sequence[Any]) -> Any:
+def _product(factors: Sequence[arb_mat]) -> arb_mat:
     product = factors[0]
     for factor in factors[1:]:
         product = (factor * product).mid()
     return product
 
 
-def _carried(factors: Sequence[Any], vector: Any) -> list[list[Any]]:
+def _carried(factors: Sequence[arb_mat], vector: arb_mat) -> list[list[arb]]:
     result = []
     for factor in factors:
         result.append([vector[i, 0] for i in range(vector.nrows())])
@@ -139,7 +142,7 @@ def _carried(factors: Sequence[Any], vector: Any) -> list[list[Any]]:
     return result
 
 
-def _scaled(phi: list[list[Any]]) -> tuple[list[list[Any]], Normal]:
+def _scaled(phi: list[list[arb]]) -> tuple[list[list[arb]], Normal]:
     """The vectors with their largest component made 1."""
     places = [(i, j) for i in range(len(phi)) for j in range(len(phi[i]))]
     i, j = max(places, key=lambda place: float(abs(phi[place[0]][place[1]])))

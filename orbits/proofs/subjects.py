@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -24,12 +24,43 @@ from orbits.proofs.varying import Varying
 from orbits.words import Word
 from orbits.words.margins import margin_name
 
+if TYPE_CHECKING:
+    from orbits.cycles.cycle import Cycle
+    from orbits.machines.base import Model
+
+
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
 NARROW = 1e-12  # half a tile about a special point, from which floats can go on
 PLAIN = ("end", "user")  # kinds of special points where nothing happens
 
 
-def of_orbit(orbit: Any, bits: int | None = None, **parameters: Given) -> Proof:
+class Motions(Protocol):
+    """What a proof asks of the problem of a word's cycles (`orbits.problem.OrbitProblem`)."""
+
+    model: Model
+    word: Word
+    periods: int
+    symmetric: bool
+    parameter: str
+
+    @property
+    def dimension(self) -> int: ...
+    @property
+    def path(self) -> tuple[np.ndarray, np.ndarray]: ...
+    def orbit(self, u: np.ndarray, p: float) -> Cycle: ...
+    def expand(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+class Special(Protocol):
+    """What a proof asks of a special point."""
+
+    kind: str
+    u: np.ndarray
+    value: float
+    margin_index: int | None
+
+
+def of_orbit(orbit: Cycle, bits: int | None = None, **parameters: Given) -> Proof:
     """Prove an `Orbit`.
 
     Parameters
@@ -64,7 +95,7 @@ def of_orbit(orbit: Any, bits: int | None = None, **parameters: Given) -> Proof:
 
 
 def of_point(
-    problem: Any, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
+    problem: Motions, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
 ) -> Proof:
     """Prove a special point of an `OrbitProblem`.
 
@@ -105,12 +136,12 @@ def of_point(
 
 
 def of_branch(
-    problem: Any,
+    problem: Motions,
     points: np.ndarray,
     values: np.ndarray,
     marks: Sequence[int] = (),
     within: tuple[float, float] | None = None,
-    special: Mapping[int, Any] | None = None,
+    special: Mapping[int, Special] | None = None,
 ) -> Pieces:
     """Prove a branch of an `OrbitProblem`, or its part within an interval of the parameter.
 
@@ -187,7 +218,7 @@ def of_branch(
     return Pieces(tuple(pieces), tuple(between))
 
 
-def _joinable(problem: Any, motif: Motif, found: Any) -> Proof | None:
+def _joinable(problem: Motions, motif: Motif, found: Special | None) -> Proof | None:
     """A special point proved with the branch's own word, so that a stretch can go up to it; None where that cannot be."""
     if found is None or found.kind in PLAIN or np.size(found.u) != problem.dimension:
         return None
@@ -211,7 +242,7 @@ def _critical(
     return ("fold" if kind == "branch-point" else kind), word, periods, nodes, half
 
 
-def _refuse_pages(model: Any) -> None:
+def _refuse_pages(model: Model) -> None:
     if model.flow == "page":
         raise ProofError(
             f"the machine {model.name!r} offers no proofs, for flights on a page have no closed form; "
@@ -224,12 +255,12 @@ def _margin(word: Word, index: int) -> str:
     return "reversal" if word.frictionless and index % len(word.alphabet.columns) == 0 else name
 
 
-def _numbers(orbit: Any) -> dict[str, float]:
+def _numbers(orbit: Cycle) -> dict[str, float]:
     """The machine's own numbers; of a machine in physical units those behind its quantities."""
     return dict(zip(orbit.model.parameter_names, (float(value) for value in orbit.params)))
 
 
-def _mirrored(orbit: Any, given: Mapping[str, Given]) -> bool:
+def _mirrored(orbit: Cycle, given: Mapping[str, Given]) -> bool:
     """Whether mirror images are motions of the machine with exactly these parameters."""
     word = orbit.word
     try:
@@ -250,7 +281,7 @@ def _parameters(machine: str, own: Mapping[str, float], changed: Mapping[str, Gi
     return {name: changed.get(name, own[name]) for name in names}
 
 
-def _moved(problem: Any) -> Varying:
+def _moved(problem: Motions) -> Varying:
     """The machine's numbers that follow the problem's parameter."""
     names = parameter_names(problem.model.name)
     moved = {

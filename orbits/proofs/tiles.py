@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.balls import ball, library, texts, upper_text
 from orbits.proofs.elimination import Singular, solve
@@ -22,6 +22,12 @@ from orbits.proofs.equations import Motif
 from orbits.proofs.jets import Jet, partial
 from orbits.proofs.special import AtParameter
 from orbits.proofs.varying import Varying
+
+if TYPE_CHECKING:
+    from flint import arb
+
+    from orbits.proofs.elimination import Nodes, Solution
+    from orbits.proofs.jets import Number
 
 ROUNDS = 6
 DIGITS = 60  # of middles: tiles of long words may be narrower than 1e-30
@@ -35,7 +41,7 @@ class Along(AtParameter):
     """A branch along one of its unknowns, the parameter where `place` is None; the coordinate's value is `at`."""
 
     def __init__(
-        self, motif: Motif, p: Mapping[str, Any], varying: Varying, place: Place | None, at: Any
+        self, motif: Motif, p: Mapping[str, arb], varying: Varying, place: Place | None, at: Number
     ) -> None:
         super().__init__(motif, p, varying)
         self.place, self.at = place, at
@@ -65,11 +71,11 @@ class Tile:
     place: Place | None
     basis: list[list[str]]
 
-    def values(self) -> Any:
+    def values(self) -> arb:
         """The ball of the parameter."""
         return _hull(self.parameter, library().arb(0, self.half))
 
-    def balls(self) -> list[list[Any]]:
+    def balls(self) -> list[list[arb]]:
         """The whole tile as balls."""
         q = library().arb(0, self.half)
         return [[_hull(triple, q) for triple in node] for node in self.nodes]
@@ -99,12 +105,12 @@ class Tile:
         return max((float(r) for node in self.nodes for _, _, r in node), default=0.0)
 
 
-def _hull(triple: Sequence[str], q: Any) -> Any:
+def _hull(triple: Sequence[str], q: arb) -> arb:
     m, s, r = triple
     return library().arb(m, r) + library().arb(s) * q
 
 
-def lay(along: Along, center: str, half: str, z: Sequence[Sequence[Any]], value: Any) -> Tile | None:
+def lay(along: Along, center: str, half: str, z: Sequence[Sequence[arb]], value: arb) -> Tile | None:
     """The tile about the refined nodes z and parameter where the coordinate is `center`, None if none is proved."""
     arb = library().arb
     span = arb(0, half)
@@ -145,22 +151,22 @@ def lay(along: Along, center: str, half: str, z: Sequence[Sequence[Any]], value:
     return None
 
 
-def _levelled(radii: list[Any]) -> list[Any]:
+def _levelled(radii: list[arb]) -> list[arb]:
     """Radii of which none is much smaller than the others, so that a checker may bound their influence on each other crudely."""
     largest = max(radii, key=float)
     return [r.max(LEVEL * largest) for r in radii]
 
 
-def _flat(solution: tuple[list[list[Any]], list[Any]]) -> list[Any]:
+def _flat(solution: Solution) -> list[arb]:
     return [*(v for node in solution[0] for v in node), *solution[1]]
 
 
-def _tangent(along: Along, m: Any, p: Any) -> tuple[list[list[Any]], list[Any]]:
+def _tangent(along: Along, m: Nodes, p: arb) -> Solution:
     """The right side whose solution is the tangent, with its sign changed: the coordinate grows at the rate 1."""
     return [[library().arb(0)] * along.k for _ in range(along.length)], [library().arb(-1)]
 
 
-def _solved(along: Along, Z: Any, E: Any, F: tuple[Any, Any]) -> tuple[list[list[Any]], list[Any]]:
+def _solved(along: Along, Z: Nodes, E: Sequence[arb], F: Solution) -> Solution:
     at, along.at = along.at, library().arb(0)  # a constant of the equations
     try:
         blocks = along.linearise(Z, E)
@@ -170,7 +176,9 @@ def _solved(along: Along, Z: Any, E: Any, F: tuple[Any, Any]) -> tuple[list[list
     return solve(blocks)
 
 
-def _residual(along: Along, m: Any, p: Any, s: Any, center: Any, span: Any) -> tuple[Any, Any]:
+def _residual(
+    along: Along, m: Nodes, p: arb, s: Sequence[arb], center: arb, span: arb
+) -> tuple[list[list[Any]], list[arb]]:
     """Enclosures of F(m + s q) for all q in the span."""
     k = along.k
     along.at = center

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, overload
 
 from orbits.proofs.balls import ball
 from orbits.proofs.jets import power
+
+if TYPE_CHECKING:
+    from flint import arb
+
+    from orbits.proofs.jets import Jet, Number
 
 
 @dataclass(frozen=True)
@@ -30,7 +35,11 @@ class Varying:
         """A parameter that is one of the machine's numbers itself."""
         return cls(name, {name: ("1", 1)})
 
-    def at(self, value: Any) -> dict[str, Any]:
+    @overload
+    def at(self, value: arb) -> dict[str, arb]: ...
+    @overload
+    def at(self, value: Jet) -> dict[str, Jet]: ...
+    def at(self, value: Number) -> Mapping[str, Number]:
         """The numbers that move, at a value of the parameter (a ball or a jet)."""
         return {
             number: power(value, exponent) if factor == "1" else ball(factor) * power(value, exponent)

@@ -24,12 +24,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.contacts.dry_friction import ABSENT, SLIDE_BACK, SLIDE_ON, FrictionLaw
 from orbits.contacts.letters import NAMES as KINDS
 from orbits.contacts.letters import SWITCH, Letter
 from orbits.contacts.wall import FREE, WallLaw
+
+if TYPE_CHECKING:
+    from orbits.contacts.changes import Mode
 
 
 class Watch(IntEnum):
@@ -99,13 +102,13 @@ class Alphabet:
         raise KeyError(f"{KINDS[kind]} is no event of {self.contacts[contact]!r}")
 
     # ------------------------------------------------------------------ modes
-    def entry(self, mode: Any, contact: int) -> int:
+    def entry(self, mode: Mode, contact: int) -> int:
         """What a contact does in a mode."""
         if self.alone is None:
             return mode[contact]
         return mode if contact == self.alone else FREE
 
-    def with_entry(self, mode: Any, contact: int, value: int) -> Any:
+    def with_entry(self, mode: Mode, contact: int, value: int) -> Mode:
         """The mode with another entry for one contact."""
         if self.alone is not None:
             return value if contact == self.alone else mode
@@ -113,15 +116,15 @@ class Alphabet:
         changed[contact] = value
         return tuple(changed)
 
-    def absent(self, mode: Any, contact: int) -> bool:
+    def absent(self, mode: Mode, contact: int) -> bool:
         """Whether a friction's limit is zero in a mode."""
         return contact in self.without or self.entry(mode, contact) == ABSENT
 
-    def absent_in(self, mode: Any) -> frozenset[int]:
+    def absent_in(self, mode: Mode) -> frozenset[int]:
         """Frictions whose limit is zero in a mode."""
         return frozenset(j for j in range(len(self.contacts)) if self.entry(mode, j) == ABSENT)
 
-    def after_impact(self, mode: Any, wall: int) -> Any:
+    def after_impact(self, mode: Mode, wall: int) -> Mode:
         """The mode after an impact in a flight with this mode, where it turns nothing that has events of its own."""
         for (other, contact), sign in self.flips.items():
             if other == wall and contact in self.without and sign is not None:
@@ -142,7 +145,7 @@ class Alphabet:
             for text, letter in self.letters.items()
         }
 
-    def mirrored_mode(self, mode: Any) -> Any:
+    def mirrored_mode(self, mode: Mode) -> Mode:
         """The mirror image of a mode."""
         assert self.mirror is not None
         if self.alone is not None:

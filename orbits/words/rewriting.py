@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, STICK, SWITCH
 from orbits.words.alphabet import Watch
 from orbits.words.word import Word
+
+if TYPE_CHECKING:
+    from orbits.words.alphabet import Alphabet
 
 
 def changes_at(site: Site, watched: int) -> list[Change]:
@@ -74,7 +77,7 @@ def applied(word: Word, changes: Sequence[Change]) -> tuple[Word, int]:
     return word.like(events, modes), first
 
 
-def later(change: Change, places: int, alphabet: Any, turned: bool) -> Change:
+def later(change: Change, places: int, alphabet: Alphabet, turned: bool) -> Change:
     """The same change so many events later, of the mirror image if it is turned."""
     events, modes = change.events, change.modes
     if turned:

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
 from orbits.words.alphabet import SHAKEN, Alphabet, shaken
 from orbits.words.cyclic import least_rotation, power
 from orbits.words.reading import WordError, bracket, read
+
+if TYPE_CHECKING:
+    from orbits.contacts.changes import Mode
 
 
 @dataclass(frozen=True)
@@ -177,7 +180,7 @@ class Word:
         """The letter of an event."""
         return self.alphabet.letters[self.events[place % len(self.events)]]
 
-    def mode(self, place: int) -> Any:
+    def mode(self, place: int) -> Mode:
         """The mode after an event."""
         return self.modes[place % len(self.modes)]
 

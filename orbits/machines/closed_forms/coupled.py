@@ -20,11 +20,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.words import Word
+
+if TYPE_CHECKING:
+    from orbits.theory.multiple_scales import Equilibrium
 
 
 @dataclass(frozen=True)
@@ -118,7 +121,7 @@ def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
     return found[::-1] if abs(found[0][0, 1]) < abs(found[-1][0, 1]) else found
 
 
-def nodes_from_equilibrium(params: np.ndarray, equilibrium: Any) -> np.ndarray:
+def nodes_from_equilibrium(params: np.ndarray, equilibrium: Equilibrium) -> np.ndarray:
     """First approximation of the nodes of `LR` or `tt`, shape (2, 4), from a steady state of the slow flow.
 
     With v = C sin(Psi + gamma) and B, h of the slow flow: at the left wall v = 1 - pi B/2, v' = Omega (R B + h) and
@@ -136,7 +139,7 @@ def nodes_from_equilibrium(params: np.ndarray, equilibrium: Any) -> np.ndarray:
         B = equilibrium.velocity
         v, speed, second = 1.0 - 0.5 * math.pi * B, (1.0 - r) / (1.0 + r) * B + h, B + h
     else:
-        v, speed, second = -equilibrium.turning_point, -h, -equilibrium.turning_point
+        v, speed, second = -(equilibrium.turning_point or 0.0), -h, -(equilibrium.turning_point or 0.0)
     psi = (math.atan2(v, speed) - equilibrium.phase) % (2.0 * math.pi)
     return _mirrored(np.array([psi, second, v, omega * speed]))
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from types import ModuleType
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent, near_quantity
 from orbits.machines.physical.ratios import check_ratios
 from orbits.machines.physical.tables import PLACES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 CONTACT = Quantity("contact_time", "s", "1 ms", {}, (1e-7, 1.0), "the duration of an impact")
 
@@ -42,7 +45,7 @@ def tables(model: type[Model]) -> ModuleType:
     return importlib.import_module(f"orbits.machines.physical.tables.{PLACES[model.name]}")
 
 
-def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section: str = "") -> Any:
+def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section: str = "") -> Physical:
     """The machine called `name` with these quantities.
 
     Parameters
@@ -118,7 +121,7 @@ def _assembled(
     counted: Mapping[str, tuple[float, str]],
     unusual: bool,
     contact_time: float | None,
-) -> Any:
+) -> Physical:
     said = tuple(counted[q.name][1] for q in chosen)
     sizes = np.array([units.si(q, 1.0, unit) for q, unit in zip(chosen, said)])
     basis = Basis(chosen, (*base.parameter_names, *table.SCALES), sizes)
@@ -139,7 +142,7 @@ def _made(
     said: tuple[str, ...],
     unusual: bool,
     contact_time: float | None,
-) -> Any:
+) -> Physical:
     """The machine with these numbers, and what was said of it."""
     cls = _class_of(base)
     own = cls.__dataclass_fields__
@@ -281,7 +284,7 @@ class Physical(Model):
         quantity = next(q for q in self.basis.quantities if self.shakes(q.name))
         return f"{quantity.name} = 0 {self.units[quantity.name]}", f'{quantity.name} = "{quantity.example}"'
 
-    def with_(self, **changes: Any) -> Any:
+    def with_(self, **changes: str | float) -> Physical:
         """The machine with other quantities, as text or as numbers counted in `units`."""
         known: dict[str, Quantity] = self.tables.QUANTITIES
         groups = {known[name].choice for name in changes if name in known}
@@ -296,7 +299,7 @@ class Physical(Model):
         }
         return physical(self.name, own | counted, self.unusual)
 
-    def told_by(self, name: str) -> Any:
+    def told_by(self, name: str) -> Physical:
         """The same machine with quantity `name` in the place of the one that says the same.
 
         Raises
@@ -329,17 +332,17 @@ class Physical(Model):
         """The machine's quantities as text, ready for JSON."""
         return {"name": self.name, "units": "si", "unusual": self.unusual, **self._texts}
 
-    def changed(self, **values: Any) -> Any:
+    def changed(self, **values: object) -> Physical:
         """The same machine with other values of its own numbers."""
         numbers = dict(zip(self.parameter_names, (float(value) for value in self.vector(values))))
         counts = self.basis.amounts_of(np.array([*numbers.values()]))
         return _made(self.base, numbers, self.basis, counts, self.said, self.unusual, self.contact_time)
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Callable, tuple]:
         return _again, (self.settings(),)
 
 
-def _again(settings: Mapping[str, Any]) -> Any:
+def _again(settings: Mapping[str, Any]) -> Physical:
     """The machine with these settings."""
     values = {key: value for key, value in settings.items() if key not in ("name", "units", "unusual")}
     return physical(settings["name"], values, bool(settings["unusual"]))

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.machines.physical.quantities import Quantity, QuantityError
+
+if TYPE_CHECKING:
+    pass
 
 _KINDS = {
     "kg": "mass",
@@ -94,7 +97,7 @@ def in_si(unit: str) -> float:
         raise QuantityError(f"{unit!r} is no unit that is known; 'mm' or 'N s/m' would do") from None
 
 
-def read(quantity: Quantity, value: Any, section: str = "") -> tuple[float, str]:
+def read(quantity: Quantity, value: object, section: str = "") -> tuple[float, str]:
     """A quantity as a number and the unit in which it was given.
 
     Parameters
@@ -188,7 +191,7 @@ def counted(name: str, value: str, own: str) -> float:
     return float(match[1]) * factor
 
 
-def _many(quantity: Quantity, value: Any) -> str:
+def _many(quantity: Quantity, value: object) -> str:
     """Where more than one value stands in a quantity's place: what says that it varies or is uncertain."""
     if not (isinstance(value, list) or _SPREAD.search(str(value))):
         return ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,10 +19,15 @@ from orbits.machines.reference.oscillation import (
 )
 from orbits.words.alphabet import CODES
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from orbits.arguments import CycleData, Workspace
+
 TURN, STICK, SLIP = (CODES[letter] for letter in "tsu")
 
 
-def margins(law: Law, data: Any, u: np.ndarray, work: Any, out: np.ndarray) -> None:
+def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
     """Margins of admissibility, none negative for an orbit that a machine can follow.
 
     `out` has shape (4 L,), four numbers per node; infinity where there is nothing to watch. Reads sines and cosines of the last `linearise` from
@@ -93,7 +98,7 @@ def _bounds(q: Oscillation, order: int, start: float, end: float) -> tuple[float
     )
 
 
-def _slide(q: Oscillation) -> Any:
+def _slide(q: Oscillation) -> Callable[[float], tuple[float, float]]:
     """w' and w'' by time."""
 
     def look(tau: float) -> tuple[float, float]:
@@ -103,7 +108,7 @@ def _slide(q: Oscillation) -> Any:
     return look
 
 
-def _extrema(q: Oscillation, order: int, psi: float, end: float) -> Any:
+def _extrema(q: Oscillation, order: int, psi: float, end: float) -> Iterator[Point]:
     """The motion where q1''' vanishes."""
 
     def look(tau: float) -> tuple[float, float]:

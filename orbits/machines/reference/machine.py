@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +20,11 @@ from orbits.machines.reference import (
 from orbits.machines.reference.law import DRIVEN, LAWS, Law
 from orbits.machines.stepping import FAILED
 
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from orbits.arguments import CycleData, Workspace
+
 
 class Reference:
     """Maps, margins and stepper of the machine called `name`."""
@@ -28,7 +33,7 @@ class Reference:
         self.name, self.law_of = name, LAWS[name]
         shaken = name not in DRIVEN
         self._margins = shaken_margins.margins if shaken else driven_margins.margins
-        self._motion: Any = shaken_motion if shaken else driven_motion
+        self._motion: ModuleType = shaken_motion if shaken else driven_motion
         self._launch = legs.launch if shaken else driven_stepper.launch
         self._advance = shaken_stepper.advance if shaken else driven_stepper.advance
 
@@ -38,15 +43,15 @@ class Reference:
             return self.law_of(np.asarray(params, dtype=float))
 
     # ------------------------------------------------------------------ cycles
-    def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
+    def linearise(self, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:
         """Residuals and derivatives at the cycle `u`; see `orbits.machines.reference.maps.linearise`."""
         return maps.linearise(self.law_of, data, u, p, work)
 
-    def margins(self, data: Any, u: np.ndarray, p: float, work: Any, out: np.ndarray) -> None:
+    def margins(self, data: CycleData, u: np.ndarray, p: float, work: Workspace, out: np.ndarray) -> None:
         """Margins of admissibility, four numbers per node, from the last `linearise`."""
         self._margins(self.law(work.numbers), data, u, work, out)
 
-    def unpin(self, data: Any, work: Any) -> None:
+    def unpin(self, data: CycleData, work: Workspace) -> None:
         """Put the displacement equation back, for the multipliers."""
         maps.unpin(data, work)
 

@@ -27,7 +27,7 @@ one equation is redundant (the absorber's total displacement): row 1 of the last
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -36,11 +36,17 @@ from orbits.machines.reference.law import Law
 from orbits.machines.reference.oscillation import Point, State, after, chosen, leg
 from orbits.words.alphabet import CODES
 
+if TYPE_CHECKING:
+    from orbits.arguments import CycleData, Workspace
+    from orbits.numbers import Reals
+
 STEP = 1e-200  # its square is zero, so that real parts are those of real arithmetic
 STICK, SLIP = CODES["s"], CODES["u"]
 
 
-def linearise(law_of: Callable[[Any], Law], data: Any, u: np.ndarray, p: float, work: Any) -> float:
+def linearise(
+    law_of: Callable[[np.ndarray], Law], data: CycleData, u: np.ndarray, p: float, work: Workspace
+) -> float:
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
     Parameters
@@ -95,7 +101,7 @@ def linearise(law_of: Callable[[Any], Law], data: Any, u: np.ndarray, p: float, 
     back = end.v_rate + np.where(left, law.restitution_left, law.restitution_right) * end.rate - y
     place_ = end.w - np.where(left, law.left, law.right)
     sign = -1.0 if law.prescribed else 1.0
-    rows = [
+    rows: list[Any] = [
         np.where(
             hits, back * sign if law.prescribed else place_, np.where(arrival == SLIP, sign * slips, stops)
         ),
@@ -121,7 +127,7 @@ def linearise(law_of: Callable[[Any], Law], data: Any, u: np.ndarray, p: float, 
 
 def _flight(
     law: Law, events: np.ndarray, modes: np.ndarray, node: np.ndarray, phase: np.ndarray
-) -> tuple[State, State, Point, Any, Any]:
+) -> tuple[State, State, Point, Reals, Reals]:
     """Start and end of each segment, the motion at its end, q2'' in it, its duration."""
     hit = events < 2
     if law.prescribed:
@@ -142,7 +148,7 @@ def last_flight(modes: np.ndarray) -> int:
     return last if modes[last] != 0 else last - 1
 
 
-def _pin(data: Any, u: np.ndarray, work: Any, middle: complex) -> float:
+def _pin(data: CycleData, u: np.ndarray, work: Workspace, middle: complex) -> float:
     """Replace the displacement equation of the last flight by w_i + w_{i+1} = middle; returns what the mean position is off by."""
     F, A, D, Q = work.F, work.A, work.D, work.Q
     length, n = F.shape
@@ -156,7 +162,7 @@ def _pin(data: Any, u: np.ndarray, work: Any, middle: complex) -> float:
     return abs(float(F[last, 1]))
 
 
-def unpin(data: Any, work: Any) -> None:
+def unpin(data: CycleData, work: Workspace) -> None:
     """Put the displacement equation back, for the multipliers."""
     if data.pinned == 1:
         n, last = work.F.shape[1], last_flight(data.modes)
