@@ -53,7 +53,7 @@ def _motion(state: States, phase: Symbol, p: Named, contact: Named) -> tuple[Sym
     return v, v1, v2, push, -contact.floor1, -contact.floor2
 
 
-def _energy(state: Any, phase: Any, p: Any) -> Any:
+def _energy(state: States, phase: Symbol, p: Named) -> Symbol:
     """Kinetic energies, and that of the spring."""
     stiffness = p.oscillator_mass * (TURN * p.natural_frequency) ** 2
     stretch = state.q - p.base_amplitude * sin(phase)
