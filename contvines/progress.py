@@ -44,11 +44,20 @@ def as_text(state: Any) -> str:
         return str(own)
     if not hasattr(state, "waiting"):
         return str(state)
+    left = state.left
     return (
         f"{state.message}  |  {state.branches} branch{'' if state.branches == 1 else 'es'}, {state.special} special points, "
         f"{state.points} points, {state.waiting} waiting"
-        + (f", {state.done:.0%} of the budget" if state.done == state.done else "")
+        + ("" if left is None else f"; {left.done} of {left.known} pieces of work known so far")
+        + ("" if left is None else f"{time_left(left.seconds)}, {left.budget:.0%} of the budget")
     )
+
+
+def time_left(seconds: float) -> str:
+    """An estimate of a time as people say it, after a comma; nothing if there is none."""
+    if not seconds > 0.0:
+        return ""
+    return f", about {f'{seconds:.0f} s' if seconds < 100.0 else f'{seconds / 60.0:.0f} min'} left"
 
 
 @contextmanager

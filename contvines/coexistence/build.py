@@ -14,7 +14,7 @@ from ..continuation.settings import Settings
 from ..graph.automatic import new_run
 from ..graph.builder import finish, leave_waiting
 from ..graph.graph import Graph
-from ..graph.run import Run
+from ..graph.run import Left, Run
 from ..interruptible import Asked, OnInterrupt, carried_out
 from ..interrupts import listening
 from ..journal import Journal
@@ -25,10 +25,12 @@ from .handover import Handover
 from .places import scattered, unasked, unknown, unresolved
 from .population import Population, population_of
 from .roots import add_root
-from .windows import Windows, run_apart
+from .windows import CYCLES, Windows, run_apart
 
 FEW = 16  # starts at each of the further values
 SOUGHT = 8  # starts at each given value from which cycles are looked for, stable or not
+GIVEN, BETWEEN, SCATTERED = "given values", "values between changes", "scattered values"
+ENDS = "ends of stable stretches"
 FOLLOWED = 4  # starts that follow the motion past an end of stability
 LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds something new
 
@@ -142,6 +144,9 @@ def atlas(
 
 def _work(looking: _Looking, where: list[float], starts: int, scan: int) -> None:
     """The steps of an atlas, one after another."""
+    if scan:
+        looking.effort.expect(SCATTERED, scan)
+        looking.effort.expect(CYCLES, len(where))
     looking.given(where, starts)
     if scan:
         looking.between(scan)
@@ -224,14 +229,16 @@ class _Looking:
         self.effort = Effort(population, budget, lambda: run.points + apart.points)
         self.windows = Windows(run, population, apart, self.effort)
         self.left: dict[str, int] = {}  # pieces of work that the budget did not allow
-        run.done = lambda: self.effort.share
+        run.left = lambda: Left(self.effort.share, *self.effort.pieces, self.effort.seconds)
 
     def given(self, values: Sequence[float], starts: int) -> None:
         """Simulate starts at the given values."""
+        self.effort.expect(GIVEN, len(values))
         for k, p in enumerate(values):
-            if self._over("given values", len(values) - k):
+            if self._over(GIVEN, len(values) - k):
                 break
-            self.at(p, starts)
+            with self.effort.piece(GIVEN):
+                self.at(p, starts)
 
     def _over(self, what: str, left: int) -> bool:
         """Whether the budget is used up; then so many pieces of work are left out."""
@@ -253,7 +260,7 @@ class _Looking:
         self.windows.beside([counted for counted in self.found if counted.attractor.value in given])
         self.windows.around(values, SOUGHT, self.seed)
         if self.windows.left:
-            self.left["searches for unstable cycles"] = self.windows.left
+            self.left[CYCLES] = self.windows.left
 
     def between(self, most: int) -> None:
         """One value at least in each stretch between two changes, new changes included, up to `most` values."""
@@ -266,10 +273,12 @@ class _Looking:
     def _few(self, places: Callable[[Sequence[float], int], list[float]], most: int) -> None:
         while most > 0 and (wanted := places(self.asked, most)):
             most -= len(wanted)
+            self.effort.expect(BETWEEN, len(wanted))
             for k, p in enumerate(wanted):
-                if self._over("values between changes", len(wanted) - k):
+                if self._over(BETWEEN, len(wanted) - k):
                     return
-                self.at(p, FEW, self.seed + len(self.asked))
+                with self.effort.piece(BETWEEN):
+                    self.at(p, FEW, self.seed + len(self.asked))
 
     def _met(self) -> dict[str, list[float]]:
         met: dict[str, list[float]] = {}
@@ -280,12 +289,14 @@ class _Looking:
     def past_ends(self, most: int) -> None:
         """Follow what is lost at the ends of stable stretches, those of what it leads to included, until `most` starts have been in all."""
         while ends := self.handover.left()[: max(most // FOLLOWED - len(self.handover.done), 0)]:
+            self.effort.expect(ENDS, len(ends))
             for k, end in enumerate(ends):
-                if self._over("ends of stable stretches", len(ends) - k):
+                if self._over(ENDS, len(ends) - k):
                     break
-                found = self.handover.follow(end)
-                self.found += found
-                join(self.run, found, self.run.depth)  # what leaves its branches is met at their ends
+                with self.effort.piece(ENDS):
+                    found = self.handover.follow(end)
+                    self.found += found
+                    join(self.run, found, self.run.depth)  # what leaves its branches is met at their ends
             if self.effort.over:
                 break
         left = len(self.handover.left())
@@ -294,8 +305,12 @@ class _Looking:
     def everywhere(self, scan: int) -> None:
         """Scattered values until `scan` of them in a row have added nothing."""
         quiet = k = 0
-        while quiet < scan and k < LONGEST_SCAN * scan and not self._over("scattered values", scan - quiet):
-            added = self.at(scattered(self.run.graph.within, self.seed, k), FEW, self.seed + len(self.asked))
+        self.effort.expect(ENDS, len(self.handover.left()))
+        while (left := min(scan - quiet, LONGEST_SCAN * scan - k)) > 0 and not self._over(SCATTERED, left):
+            self.effort.expect(SCATTERED, left)
+            with self.effort.piece(SCATTERED):
+                p = scattered(self.run.graph.within, self.seed, k)
+                added = self.at(p, FEW, self.seed + len(self.asked))
             quiet = 0 if added else quiet + 1
             k += 1
         self.run.graph.settings |= {"scanned": k, "quiet": quiet}

@@ -19,6 +19,7 @@ from .effort import Effort, recall_work
 from .population import Population
 from .roots import add_root
 
+CYCLES = "searches for unstable cycles"
 MOST = 10_000  # branches traced apart
 NARROWEST = 1e-5  # of the interval: narrower windows are left out
 
@@ -55,13 +56,18 @@ class Windows:
         """
         before = len(self.run.graph.branches)
         parameter = self.population.parameter
-        for counted in found:
-            if counted.attractor.kind == "chaotic" and counted.state is not None:
-                if self.effort.over:
-                    self.left += 1
-                    continue
-                state, p = counted.state, counted.attractor.value
-                self.run.tell(f"unstable cycles in the chaos at {parameter} = {p:.6g}", p)
+        chaotic = [
+            (c.state, c.attractor.value)
+            for c in found
+            if c.attractor.kind == "chaotic" and c.state is not None
+        ]
+        self.effort.expect(CYCLES, self.effort.waiting.get(CYCLES, 0) + len(chaotic))
+        for state, p in chaotic:
+            if self.effort.over:
+                self.left += 1
+                continue
+            self.run.tell(f"unstable cycles in the chaos at {parameter} = {p:.6g}", p)
+            with self.effort.piece(CYCLES):
                 self._add(f"cycles/{p!r}", p, partial(self.population.embedded, state, p))
         return len(self.run.graph.branches) - before
 
@@ -82,7 +88,8 @@ class Windows:
                 continue
             starts = self.population.starts(count, seed, p)
             self.run.tell(f"cycles from {count} starts at {self.population.parameter} = {p:.6g}", p)
-            self._add(f"cycles/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
+            with self.effort.piece(CYCLES):
+                self._add(f"cycles/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
         return len(self.run.graph.branches) - before
 
     def _add(self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Any, np.ndarray]]]) -> None:

@@ -27,6 +27,18 @@ from .queue import Pending
 Found = TypeVar("Found")
 
 
+class Left(NamedTuple):
+    """What is left of an atlas, as far as that is known."""
+
+    budget: float
+    """Share that is used."""
+    done: int
+    known: int
+    """Pieces of work, those done included."""
+    seconds: float
+    """Estimate of the time that the others will take; NaN where none is done."""
+
+
 class Progress(NamedTuple):
     """Where a run is: a sentence, and how much there is so far."""
 
@@ -36,8 +48,8 @@ class Progress(NamedTuple):
     points: int
     value: float
     waiting: int
-    done: float = float("nan")
-    """Share of its budget that an atlas has used."""
+    left: Left | None = None
+    """Of an atlas."""
 
 
 class Run:
@@ -76,7 +88,7 @@ class Run:
         self.limits, self.kinds = limits, tuple(kinds)
         self.user_functions = {**(user_functions or {}), **limits.functions}
         self.progress = progress
-        self.done: Callable[[], float] | None = None
+        self.left: Callable[[], Left] | None = None
         self.queue: deque[Pending] = deque()
         self.register = Register()
         self.numbers: dict[str, int] = {}
@@ -99,7 +111,7 @@ class Run:
                     self.points,
                     value,
                     len(self.queue),
-                    float("nan") if self.done is None else self.done(),
+                    None if self.left is None else self.left(),
                 )
             )
 

@@ -19,6 +19,7 @@ from ..graph.identity import same_form
 from ..journal import NullJournal
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
+from ..progress import time_left
 from .born import Candidate
 from .chart import Chart
 from .codimension_two import find
@@ -71,16 +72,10 @@ class ChartProgress(NamedTuple):
     @property
     def sentence(self) -> str:
         """For a progress line."""
-        left = f", about {_duration(self.seconds)} left" if self.seconds > 0.0 else ""
         return (
-            f"{self.message}  |  {self.done} of {self.known} starts of loci known so far{left}; "
+            f"{self.message}  |  {self.done} of {self.known} starts of loci known so far{time_left(self.seconds)}; "
             f"{self.loci} loci, {self.points} points"
         )
-
-
-def _duration(seconds: float) -> str:
-    """A time as people say it."""
-    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
 
 
 class Charting:

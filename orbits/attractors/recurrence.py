@@ -24,6 +24,7 @@ UNSTABLE = 1e-5
 PASSING, CLOSED = 0.99, 1e-9  # a slower recurrence, open by more, passes beside a fold
 NEARLY = 1e-3  # nodes of a slow motion differ by less from one recurrence to the next
 LONGEST = 200_000  # forcing periods for which a slow or undamped transient is waited for
+DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed four times as long; t^(-1/2) gives 8
 TO_WALLS = 8  # times that a creeping motion is moved on to a wall
 AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
 
@@ -77,8 +78,9 @@ def settle(
             continue
         found = _recognise(engine, params, window, max_period, tolerance, last)
         before, recurring = recurring, next(iter(_returns(window, max_period, NEARLY)), None)
-        # next to a bifurcation a motion may recur but for a slow drift: it is given time as long as it does
-        slow = patience > 0 and recurring is not None and recurring == before and state[TURNS] < LONGEST
+        # next to a bifurcation a motion may recur but for a drift that fades or grows: it is given time as long as it does; one that
+        # stays as it is belongs to a longer cycle, or to narrow bands
+        slow = patience > 0 and state[TURNS] < LONGEST and _drifts(before, recurring)
         if found is not None:
             cycle = _cycle(model, engine, params, state, window, *found)
             sizes = np.abs(cycle.multipliers)
@@ -148,7 +150,7 @@ def _recognise(
     exist and be stable.
     """
     for slack in (tolerance, NEARLY) if last else (tolerance,):
-        for length, periods in _returns(window, max_period, slack):
+        for length, periods, _ in _returns(window, max_period, slack):
             if slack <= tolerance:
                 return length, periods
             codes, modes = window.codes[-length:], window.modes[-length:]
@@ -161,8 +163,8 @@ def _recognise(
     return None
 
 
-def _returns(window: _Window, max_period: int, slack: float) -> list[tuple[int, int]]:
-    """Candidates (events, periods), shortest first: the last cycle repeats the one before it."""
+def _returns(window: _Window, max_period: int, slack: float) -> list[tuple[int, int, float]]:
+    """Candidates (events, periods, largest difference), shortest first: the last cycle repeats the one before it."""
     codes, modes, nodes = window.codes, window.modes, window.nodes
     n = len(codes)
     if n < 2:
@@ -182,9 +184,17 @@ def _returns(window: _Window, max_period: int, slack: float) -> list[tuple[int, 
             continue
         shift = nodes[here] - nodes[before]
         shift[:, 0] -= TWO_PI * periods
-        if np.abs(shift).max() < slack:
-            found.append((int(length), periods))
+        gap = float(np.abs(shift).max())
+        if gap < slack:
+            found.append((int(length), periods, max(gap, np.finfo(float).tiny)))
     return found
+
+
+def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] | None) -> bool:
+    """Whether two looks have seen one and the same return, with differences that are not alike."""
+    if before is None or now is None or before[:2] != now[:2]:
+        return False
+    return not 1.0 / DRIFTS < now[2] / before[2] < DRIFTS
 
 
 def _cycle(

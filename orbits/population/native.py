@@ -28,7 +28,8 @@ TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those tha
 LONGEST = 24  # forcing periods of the longest recurrence looked for
 EMBEDDED = 6  # forcing periods of the longest unstable cycle looked for
 TOLERANCE = 1e-8  # difference of two states that counts as a return
-PATIENCE = 3  # times a motion that does not recur is looked at again
+PATIENCE = 3  # times at most a motion that does not recur is looked at again
+ENOUGH = 20_000.0  # forcing periods that chaotic motions, all those alike together, have not ended in
 LATE = 3000.0  # forcing periods between two such looks
 GROWTH = 4000  # forcing periods over which the growth of small differences is followed
 RECOGNISED = 1e-7  # difference of two nodes that counts as a return of a single motion
@@ -169,27 +170,43 @@ class NativeFleet:
         return found
 
     def _unsettled(self, i: int, sorting: Sorting) -> None:
-        """A motion that does not recur: looked at with patience once, then told by its growth of small differences."""
+        """A motion that does not recur, told by its growth of small differences; where it may still recur it is looked at again.
+
+        A chaotic transient ends at a rate that does not depend on its age (T. Tel and Y.-C. Lai, Transient Chaos, 2011): that many motions have
+        not ended together tells as much as that one has not in as many times the periods.
+        """
         state = self.states[i].copy()
-        for _ in range(PATIENCE):  # a chaotic transient may end late
-            found = self._looked_at(state, 200.0, LONGEST, 2)
-            if found.recurrent:
-                return self._add(found, i, sorting)
-            exponent, error = lyapunov(self.model.name, state, self.params, GROWTH)
-            skip(self.engine, state, self.params, state[TURNS] + LATE, 10**9)
-            self.work += 2.0 * GROWTH + LATE
-        kind = wandering(exponent, error, self.model.moving_cavity)  # two frequencies need four dimensions
-        if kind == "slow":  # neighbours come together: it may recur, but late
-            found = self._looked_at(state, 0.0, RARE, 1)
-            if found.recurrent:
-                return self._add(found, i, sorting)
-        others = (sorting.index < 0) & (self.result["outcome"] == 0)
+        others = (sorting.index < 0) & (self.result["outcome"] == WANDERING)
         others &= np.arange(len(others)) >= i
         gaps = self.result["gaps"]
         alike = others & (np.abs(np.log10(np.maximum(gaps, 1e-300) / max(gaps[i], 1e-300))) < 1.5)
         alike[i] = True
+        kind, exponent, error = self._grown(state)
+        followed = np.count_nonzero(alike) * sum(TRANSIENTS)
+        for _ in range(PATIENCE):
+            if kind == "chaotic" and followed >= ENOUGH:
+                break
+            found = self._looked_at(state, 200.0, LONGEST, 2)
+            if found.recurrent:
+                return self._add(found, i, sorting)
+            skip(self.engine, state, self.params, state[TURNS] + LATE, 10**9)
+            self.work += LATE
+            followed += state[TURNS]
+        if kind != "chaotic":  # now that it is nearer to what it settles on
+            kind, exponent, error = self._grown(state)
+        if kind == "slow":  # neighbours come together: it may recur, but late
+            found = self._looked_at(state, 0.0, RARE, 1)
+            if found.recurrent:
+                return self._add(found, i, sorting)
         sorting.plain(alike, kind, exponent=exponent, error=error, state=self.states[i].copy())
         return None
+
+    def _grown(self, state: np.ndarray) -> tuple[str, float, float]:
+        """Kind of a motion that does not recur, its Lyapunov exponent per forcing period and the error of that."""
+        exponent, error = lyapunov(self.model.name, state, self.params, GROWTH)
+        self.work += 2.0 * GROWTH
+        # two frequencies need four dimensions
+        return wandering(exponent, error, self.model.moving_cavity), exponent, error
 
     def _add(self, found: Attractor, i: int, sorting: Sorting) -> None:
         """Put an attractor on the list, unless it is there, and give it all starts whose states lie on it."""

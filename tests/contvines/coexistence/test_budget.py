@@ -4,13 +4,19 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.progress import as_text
 from orbits import Absorber
 from orbits.attractors import recurrence
 from orbits.attractors.recurrence import LONGEST, settle
 from orbits.machines.catalogue import stepper as machine
+from orbits.machines.stepping import RATE, TURNS, W
+from orbits.population.native import TRANSIENTS
+from orbits.simulation.driver import skip
 from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
+
+CHAOTIC = 1.75  # amplitude; exponent 1.19 per period
 
 
 def logistic():
@@ -77,6 +83,48 @@ def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
     state = np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0])
     settle(absorber, engine, absorber.vector({"amplitude": 1.59760071}), state, 0.0, 32, 1e-7, 1)
     assert len(looks) <= 2 + np.log(LONGEST) / np.log(4.0)
+
+
+def test_a_cycle_longer_than_looked_for_is_not_waited_for():
+    """Late in a cascade: the motion returns after 64 periods, and nearly so after 32. Nothing fades there that could be waited for."""
+    absorber = Absorber(restitution=0.8564451, friction=0.1418559, gravity=0.4553905, mass_ratio=0.006)
+    engine, params = machine(absorber.name), absorber.vector({"amplitude": 1.6727837502689091})
+    state = np.array([0.0, 0.4, 0.3, 1.0, 0.0, 0.0])
+    strobed = []
+    for whole in [20_000.0 + k for k in range(129)]:
+        skip(engine, state, params, whole, 10**9)
+        strobed.append(state[[W, RATE]].copy())
+    returns = {k: np.abs(strobed[-1] - strobed[-1 - k]).max() for k in (16, 32, 64)}
+    assert returns[64] < 1e-11 and 1e-5 < returns[32] < 1e-3 < 10 * returns[16]
+    assert not settle(absorber, engine, params, state, 0.0, 32, 1e-7, 1).recurrent
+    assert state[TURNS] < 1000.0
+
+
+def test_motions_that_wander_together_are_not_followed_one_by_one():
+    """A chaotic transient ends at a constant rate: sixteen motions of n periods that have not ended tell as much as one of 16 n."""
+    absorber = Absorber(restitution=0.8564451, friction=0.1418559, gravity=0.4553905, mass_ratio=0.006)
+    population = absorber.population("amplitude")
+
+    def looked_at(count):
+        before = population.work
+        (motion,), _, _ = population.settle(population.starts(count, 3, CHAOTIC), CHAOTIC)
+        assert motion.kind == "chaotic" and motion.exponent > 10 * motion.error
+        return population.work - before - count * sum(TRANSIENTS)
+
+    assert looked_at(16) < 0.5 * looked_at(2)
+
+
+def test_progress_counts_the_pieces_of_work():
+    told = []
+    graph = cv.atlas(
+        logistic(), within=(2.55, 3.4), values=4, starts=4, scan=8, depth=1, progress=told.append
+    )  # fmt: skip
+    left = [state.left for state in told]
+    assert left[0].known == 4 + 8 + 4  # given values, values in a row, searches for cycles at the given ones
+    assert all(each.done <= each.known and (each.seconds >= 0.0 or not each.done) for each in left)
+    assert graph.settings["scanned"] >= 8 and left[-1].done >= 4 + 8
+    text = as_text(told[-1]._replace(left=left[-1]._replace(seconds=90.0, budget=0.03)))
+    assert text.endswith(" pieces of work known so far, about 90 s left, 3% of the budget")
 
 
 def test_branches_that_wait_at_the_end_are_counted():
