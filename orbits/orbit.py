@@ -15,9 +15,7 @@ from orbits.cycles.deviation import deviation
 from orbits.flows.protocol import Equations
 from orbits.words.margins import Margin, approaches_of, limits_of, margin_units, named_margins
 
-REAL = (
-    -1e-12
-)  # margins down to this, in units of the machine's own size, are rounding: a border orbit itself is real
+REAL = -1e-12  # margins from here to zero, in units of the machine's own size, are rounding of zero: a border orbit itself is real
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,7 +40,8 @@ class Orbit(Cycle):
         half = self.symmetric and bool(self.flow.loose(self.model, self.word))
         system = self.system(half)
         residual, spectrum, margins = examined(system, self.nodes)
-        return residual, system.to_multipliers(spectrum), margins
+        rounding = (margins < 0.0) & (margins >= REAL)
+        return residual, system.to_multipliers(spectrum), np.where(rounding, 0.0, margins)
 
     @property
     def residual(self) -> float:
@@ -103,8 +102,8 @@ class Orbit(Cycle):
 
     @property
     def real(self) -> bool:
-        """Whether a machine can follow the orbit: no margin is negative. At a border one is zero, to rounding, and the orbit real."""
-        return self.margin >= REAL
+        """Whether a machine can follow the orbit: no margin is negative. At a border one is zero, and the orbit real."""
+        return self.margin >= 0.0
 
     @property
     def stable(self) -> bool:

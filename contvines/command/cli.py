@@ -16,6 +16,7 @@ import typer
 from contvines.command.commands import register
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
+QUOTES = "'\""
 
 app = typer.Typer(
     name="contvines",
@@ -108,5 +109,7 @@ def sentence(error: Exception) -> str:
             f"something went wrong that should not ({type(error).__name__}: {error}); "
             "the same command with --debug shows where"
         )
-    text = re.sub(rf"[^\s/]{{{LONGEST},}}", lambda m: f"{m[0][:60]}... ({len(m[0])} letters)", text)
+    text = re.sub(
+        rf"[^\s/]{{{LONGEST},}}", lambda m: f"{m[0][:60]}... ({len(m[0].strip(QUOTES))} letters)", text
+    )
     return text if text.endswith((".", "?")) or "\n" in text else text + "."

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from contvines.command.cli import main
+from contvines.command.cli import main, sentence
 from contvines.store import Store, save
 from tests.contvines import fakes
 
@@ -30,6 +30,12 @@ def test_help_and_version_import_nothing_heavy():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_words_too_long_for_a_sentence_are_cut_and_counted():
+    word = "LR" * 140
+    said = sentence(ValueError(f"no orbit {word!r} was found"))
+    assert said == f"no orbit '{word[:59]}... (280 letters) was found."
 
 
 def test_version(run):

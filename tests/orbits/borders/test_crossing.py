@@ -30,7 +30,8 @@ def test_pure_sliding_a_little_beyond_the_walls_is_none(room, real):
 def test_orbit_branch_and_border_agree_on_what_is_real(room, real):
     """At a border a margin is zero to rounding, and the orbit counts as real; beyond it nothing does."""
     orbit = MACHINE.orbit("tt", 1, amplitude=float(np.hypot(1.0 - room, H)))
-    assert orbit.margin == pytest.approx(room, abs=1e-14) and orbit.real is real
+    assert orbit.margin == pytest.approx(room, abs=1e-13) and orbit.real is real
+    assert orbit.real is (orbit.margin >= 0.0) is all(margin.value >= 0.0 for margin in orbit.margins)
     options = {"over": "amplitude", "within": (0.9, 1.1), "depth": 0}
     if not real:
         with pytest.raises(ValueError, match="beyond a border"):
