@@ -20,7 +20,7 @@ class Journal(Protocol):
         ...
 
     def record(self, key: str, values: dict[str, Any]) -> None:
-        """Keep the values, as copies; on return they survive a kill."""
+        """Keep the values, as copies but of arrays that nobody can write to; on return they survive a kill."""
         ...
 
     def checkpoint(self, graph: Any) -> None:
@@ -75,7 +75,8 @@ class MemoryJournal:
 
     def record(self, key: str, values: dict[str, Any]) -> None:
         self.entries[key] = {
-            name: value.copy() if isinstance(value, np.ndarray) else value for name, value in values.items()
+            name: value.copy() if isinstance(value, np.ndarray) and value.flags.writeable else value
+            for name, value in values.items()
         }
 
     def checkpoint(self, graph: Any) -> None:

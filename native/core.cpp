@@ -69,7 +69,7 @@ EXPORT whole core_points(continuation::Frame* frame, whole what, const double* c
     return continuation::points(*frame, what, chord, start, length, places, count, border, along, max_sweeps, {u, tangents, rows, numbers}, *aim);
 }
 
-EXPORT void core_scan(const continuation::Scanned* scanned) { continuation::scan(*scanned); }
+EXPORT whole core_scan(const continuation::Scanned* scanned) { return continuation::scan(*scanned); }
 
 // ---- algebra ---------------------------------------------------------------------------------------------------------------------
 EXPORT whole core_multipliers(const double* A, const double* D, whole length, whole n, double twist, double* re, double* im, double* scratch) {

@@ -10,11 +10,12 @@ constexpr double PAST = 1e-10;  // multipliers of a conservative system lie on t
 struct Scanned {
     whole count, unknowns, row, multipliers, kind, symmetries;
     Metric metric;
-    const double *points, *values, *rows;
+    double flat;  // slopes up to this are rounding
+    const double *points, *values, *tangents, *rows, *determinants;
     const whole* orders;
     const double *signs, *constants, *shift;
     double *room;  // (2, symmetries, unknowns)
-    double *lengths, *smallest, *near, *past, *pairs, *least, *change, *sizes, *turns;
+    double *lengths, *smallest, *near, *past, *pairs, *low, *sizes, *turns;
 };
 
 // Terms joined in four parts, so that the order is that of vector instructions whether there are any or not.
@@ -50,20 +51,46 @@ inline void multipliers_of(const Scanned& s, const double* row, whole i) {
     s.pairs[i] = paired;
 }
 
-inline void scan(const Scanned& s) {
+// Below the lowest of three points a parabola falls by a part of the changes between them: at most a quarter of the square of the longer
+// length over the shorter one. Of a pair (`unlike`) see contvines/bifurcation/evidence.py.
+inline double fall(double one, double other) {
+    const double uneven = larger(one / other, other / one);
+    return 0.5 * uneven * uneven;
+}
+inline bool may_fall(const double* to, double part, double unlike = 0.0) {
+    const double a = fabs(to[-2]), b = fabs(to[-1]), c = fabs(to[0]);
+    return smaller(smaller(a, b), c) - unlike * larger(larger(a, b), c) < part * larger(fabs(to[-1] - to[-2]), fabs(to[0] - to[-1]));
+}
+
+// Whether the slopes, signs and multipliers of the last two or three points up to i leave open that there is something between them.
+inline bool open_at(const Scanned& s, whole i) {
+    constexpr double UNLIKE = 0.2, STRAIGHT = 4.0;  // a straight line falls further than a parabola
+    const whole n = s.unknowns;
+    const double *slope = s.tangents + i * (n + 1) + n, here = slope[-n - 1], there = slope[0], length = s.lengths[i - 1];
+    if (!(fabs(here) > s.flat && fabs(there) > s.flat && here * there > 0.0 && s.determinants[i] * s.determinants[i - 1] > 0.0)) return true;
+    const double one = fabs(here), other = fabs(there), mean = (here > 0.0 ? s.values[i] - s.values[i - 1] : s.values[i - 1] - s.values[i]) / length;
+    const double bend = 3.0 * (one + other - 2.0 * mean), middle = 2.0 * one + other - 3.0 * mean;
+    if (bend > 0.0 && middle > 0.0 && middle < bend && one * bend < middle * middle) return true;  // the cubic turns twice
+    if (s.pairs[i] != s.pairs[i - 1]) return true;
+    for (int sort = 0; sort < 3; sort++)
+        if (s.past[sort * s.count + i] != s.past[sort * s.count + i - 1]) return true;
+    if (i < 2) return false;
+    const double part = fall(s.lengths[i - 2], length), slopes[] = {slope[-2 * n - 2], here, there};
+    return may_fall(slopes + 2, part) || may_fall(s.near + i, STRAIGHT * part) || may_fall(s.near + s.count + i, part) ||
+           may_fall(s.near + 2 * s.count + i, part, UNLIKE);
+}
+
+// Returns whether nothing is open.
+inline bool scan(const Scanned& s) {
     const whole n = s.unknowns, width = s.row - 2 * s.multipliers;
     const double period = sum(n, [&](whole j) { return s.shift[j] * s.shift[j]; });
-    for (whole j = 0; j < width; j++) s.least[j] = HUGE_VAL, s.change[j] = 0.0;
+    bool quiet = s.kind != REAL;  // where pairs tell, too
+    for (whole j = 0; j < width; j++) s.low[j] = 0.0;
     for (whole i = 0; i < s.count; i++) {
-        const double *point = s.points + i * n, *row = s.rows + i * s.row, *margins = row + 2 * s.multipliers;
+        const double *point = s.points + i * n, *row = s.rows + i * s.row, *c = row + 2 * s.multipliers;
         multipliers_of(s, row, i);
-        const double* old = i > 0 ? margins - s.row : margins;
-        for (whole j = 0; j < width; j++) {
-            const double size = fabs(margins[j] - MARGIN), change = fabs(margins[j] - old[j]);
-            s.least[j] = size < s.least[j] ? size : s.least[j];
-            s.change[j] = change > s.change[j] ? change : s.change[j];
-        }
-        s.smallest[i] = joined(width, HUGE_VAL, smaller, [&](whole j) { return margins[j]; });
+        s.smallest[i] = joined(width, HUGE_VAL, smaller, [&](whole j) { return c[j]; });
+        quiet &= s.smallest[i] >= MARGIN;
         for (whole k = 0; k < s.symmetries; k++) {
             double *gap = s.room + (i % 2 * s.symmetries + k) * n, *before = s.room + ((i + 1) % 2 * s.symmetries + k) * n;
             const whole* order = s.orders + k * n;
@@ -79,7 +106,15 @@ inline void scan(const Scanned& s) {
         const double* last = point - n;
         const double change = s.values[i] - s.values[i - 1], squares = sum(n, [&](whole j) { return (point[j] - last[j]) * (point[j] - last[j]); });
         s.lengths[i - 1] = sqrt(s.metric.of_unknowns * squares + s.metric.of_parameter * change * change);
+        quiet = quiet && !open_at(s, i);
+        if (i == 1) continue;
+        const double part = fall(s.lengths[i - 2], s.lengths[i - 1]), *b = c - s.row, *a = b - s.row;
+        for (whole j = 0; j < width; j++) {
+            const double least = smaller(smaller(fabs(a[j]), fabs(b[j])), fabs(c[j])) + MARGIN, most = larger(fabs(b[j] - a[j]), fabs(c[j] - b[j]));
+            s.low[j] = (least < part * most) & (most < HUGE_VAL) ? 1.0 : s.low[j];
+        }
     }
+    return quiet && sum(width, [&](whole j) { return s.low[j]; }) == 0.0;
 }
 
 }  // namespace continuation

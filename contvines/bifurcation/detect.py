@@ -30,12 +30,18 @@ NEXT = (
 class Detector(SegmentSearch):
     """What to look for along a branch: a search of segments, which is shown those that may hold something."""
 
-    def look(self, chunk: Chunk, real: bool = True) -> list[Located]:
+    def scan(self, chunk: Chunk) -> Scan:
+        """One pass over a chunk, for `look`."""
+        return scan(self.engine, self.symmetries, chunk)
+
+    def look(self, chunk: Chunk, scanned: Scan, real: bool = True) -> list[Located]:
         """All special points on a chunk, in order; what lies behind a border, a meeting, a leap or a landing is left out.
 
         Parameters
         ----------
         chunk : Chunk
+        scanned : Scan
+            Of the chunk.
         real : bool
             Whether the branch has positive margins; on a virtual one the return to positive margins is the border.
         """
@@ -45,14 +51,18 @@ class Detector(SegmentSearch):
         wide = chunk.widened() if len(chunk) == 2 else chunk  # two points are too few for a parabola
         extra = len(wide) - len(chunk)
         own = [np.asarray(own.values(wide), dtype=float) for own in self.own]
-        scanned = scan(engine, self.symmetries, wide)
-        slopes, lengths = wide.tangents[:, -1], scanned.lengths
+        if extra:
+            scanned = self.scan(wide)
+        meets, lands = self._meetings_and_landings(scanned)
+        if scanned.quiet and not (own or meets.any() or lands.any()):
+            return []
+        lengths = scanned.lengths
         seen = evidence(
             engine,
             wide.rows,
             scanned.smallest,
             scanned.spectra,
-            slopes,
+            wide.tangents[:, -1],
             wide.signs,
             engine.upright(float(wide.values[0])),
             np.column_stack(own) if own else np.zeros((len(wide), 0)),
@@ -70,7 +80,6 @@ class Detector(SegmentSearch):
         sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths)
         if engine.many:
             inside[:, SLOPE + 1 : SLOPE + 4] = False
-        meets, lands = self._meetings_and_landings(scanned)
         told = ((sides[1:] != sides[:-1]).any(axis=1) | borders | meets)[extra:]
         meets, lands = meets[extra:], lands[extra:]
         inside, born, sharp = inside[extra:], born[extra:] & ~meets, sharp[extra:] & ~meets
@@ -166,7 +175,7 @@ class Detector(SegmentSearch):
         A doubled branch that comes back to the fixed space is there as singular as any branch point: the nearer a point, the more of the other
         branch rounding mixes into its tangent, and what such points say is nothing. A step of another length ends elsewhere.
         """
-        meets, lands = np.zeros((2, len(scanned.lengths)), dtype=bool)
+        meets, lands = (np.zeros(len(scanned.lengths), dtype=bool) for _ in range(2))
         for size, turn in zip(scanned.sizes, scanned.turns):
             far = size > self.engine.settings.symmetric
             meets |= far[1:] & far[:-1] & (turn < 0.0)

@@ -130,14 +130,13 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
         return np.arange(first), np.zeros((len(lengths), first), dtype=bool)
     size = np.abs(seen.distances)
     with np.errstate(all="ignore"):
-        # below the lowest of three points a parabola falls by a part of the changes between them: at most a quarter of the
-        # square of the longer length over the shorter one
+        # as of `scan.low`, of all points at once
         uneven = lengths[1:] / lengths[:-1]
         part = 0.5 * float(np.fmax.reduce(np.fmax(uneven, 1.0 / uneven), initial=1.0)) ** 2
         least = np.fmin.reduce(size, axis=0)
         least[PAIR] -= UNLIKE * np.fmax.reduce(size[:, PAIR])
         low = np.flatnonzero(least < part * np.fmax.reduce(np.abs(np.diff(seen.distances, axis=0)), axis=0))
-        low_margins = first + np.flatnonzero(scan.least < part * scan.change)
+    low_margins = first + np.flatnonzero(scan.low)
     found = np.zeros((len(lengths), first + len(low_margins)), dtype=bool)
     for columns, places in ((low, low), (low_margins, slice(first, None))):
         values = seen.distance(columns)

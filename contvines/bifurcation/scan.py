@@ -15,7 +15,7 @@ from ..continuation.aims import KINDS
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine
 from ..continuation.loop import MARGIN
-from ..core.library import NOTHING, POINTER, address, function
+from ..core.library import POINTER, WHOLE, address, function
 from ..core.records import pack
 from .multiplier_counts import PAST, sizes_by_sort
 from .symmetry_test import SymmetryTest
@@ -49,21 +49,24 @@ class Scan(NamedTuple):
     smallest : ndarray, shape (n,)
         Smallest margins, infinity without margins.
     spectra : Spectra
-    least, change : ndarray, shape (w,)
-        Least distance of each margin from zero, and its largest change over one segment.
+    low : ndarray, shape (w,)
+        Not 0 for margins that a parabola through three neighbours may bring to zero: below the lowest of three points it falls by a part of the
+        changes between them, at most a quarter of the square of the longer length over the shorter one.
     sizes : ndarray, shape (s, n)
         Largest entry of the part that each symmetry changes.
     turns : ndarray, shape (s, n - 1)
         Inner products of that part at both ends of segments: negative where it turns round.
+    quiet : bool
+        Whether it is known that slopes, signs, multipliers and margins leave nothing to look for; False where it was not asked.
     """
 
     lengths: np.ndarray
     smallest: np.ndarray
     spectra: Spectra
-    least: np.ndarray
-    change: np.ndarray
+    low: np.ndarray
     sizes: np.ndarray
     turns: np.ndarray
+    quiet: bool = False
 
 
 def scan(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
@@ -87,16 +90,21 @@ def with_arrays(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk
     """The reference."""
     steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
     margins = chunk.rows[:, 2 * engine.m :]
-    parts = [test.part(chunk.points, chunk.values) for test in symmetries]
+    gaps = [test.part(chunk.points, chunk.values) for test in symmetries]
+    lengths = np.sqrt((steps**2) @ engine.weights)
     with np.errstate(all="ignore"):
+        uneven = lengths[1:] / lengths[:-1]
+        part = 0.5 * np.fmax(uneven, 1.0 / uneven)[:, None] ** 2
+        size, change = np.abs(margins), np.abs(np.diff(margins, axis=0))
+        least = np.fmin(np.fmin(size[:-2], size[1:-1]), size[2:]) + MARGIN
+        most = np.fmax(change[:-1], change[1:])
         return Scan(
-            np.sqrt((steps**2) @ engine.weights),
+            lengths,
             engine.smallest_margin(chunk.rows),
             spectra(engine, chunk.rows),
-            np.fmin.reduce(np.abs(margins - MARGIN), axis=0, initial=np.inf),
-            np.fmax.reduce(np.abs(np.diff(margins, axis=0)), axis=0, initial=0.0),
-            np.array([np.abs(part).max(axis=1, initial=0.0) for part in parts]),
-            np.array([np.einsum("ij,ij->i", part[1:], part[:-1]) for part in parts]),
+            np.asarray(((least < part * most) & (most < np.inf)).any(axis=0)),
+            np.array([np.abs(gap).max(axis=1, initial=0.0) for gap in gaps]),
+            np.array([np.einsum("ij,ij->i", gap[1:], gap[:-1]) for gap in gaps]),
         )
 
 
@@ -112,20 +120,18 @@ def in_native(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) 
         np.empty(count),
         Spectra(np.empty((3, count)), np.empty((3, count)), np.empty(count)),
         np.empty(width),
-        np.empty(width),
         np.empty((k, count)),
         np.empty((k, count - 1)),
     )
     shift = np.zeros(n) if engine.shift is None else engine.shift
     metric, room = (engine.metric.of_unknowns, engine.metric.of_parameter), np.empty((2, k, n))
     scanned = pack(
-        count, n, engine.row_size, engine.m, KINDS[engine.detection], k, *map(float, metric), chunk.points, chunk.values, chunk.rows,
-        orders, signs, constants, shift, room, *found[:2], *found.spectra, *found[3:],
+        count, n, engine.row_size, engine.m, KINDS[engine.detection], k, *map(float, metric), engine.upright(float(chunk.values[0])),
+        chunk.points, chunk.values, chunk.tangents, chunk.rows, chunk.signs, orders, signs, constants, shift, room, *found[:2], *found.spectra, *found[3:6],
     )  # fmt: skip
-    _native()(address(scanned))
-    return found
+    return found._replace(quiet=bool(_native()(address(scanned))))
 
 
 @cache
-def _native() -> Callable[..., None]:
-    return function("core_scan", NOTHING, POINTER)
+def _native() -> Callable[..., int]:
+    return function("core_scan", WHOLE, POINTER)

@@ -32,13 +32,6 @@ class Piece(NamedTuple):
         where = slice(n - stop, n - start) if self.turned else slice(start, stop)
         return Piece(*(array[where] for array in self[:5]), turned=self.turned)
 
-    def in_order(self) -> tuple[np.ndarray, ...]:
-        """The arrays in the order in which the piece is read."""
-        if not self.turned:
-            return self[:5]
-        points, values, tangents, spectrum, smallest = (array[::-1] for array in self[:5])
-        return points, values, -tangents, spectrum, smallest
-
 
 def piece_of(engine: Engine, point: Solved) -> Piece:
     """A piece of one point."""
@@ -124,8 +117,18 @@ class HalfBranch:
         """All points as one piece, in order."""
         if len(self.pieces) == 1 and not self.pieces[0].turned:
             return self.pieces[0]
-        arrays = zip(*(piece.in_order() for piece in self.pieces))
-        whole = Piece(*[np.concatenate(parts) for parts in arrays], turned=False)
+        total = len(self)
+        whole = Piece(
+            *[np.empty((total, *array.shape[1:]), array.dtype) for array in self.pieces[0][:5]], turned=False
+        )
+        here = 0
+        for piece in self.pieces:
+            there = here + len(piece.values)
+            for to, array in zip(whole[:5], piece[:5]):
+                to[here:there] = array[::-1] if piece.turned else array
+            if piece.turned:
+                np.negative(whole.tangents[here:there], out=whole.tangents[here:there])
+            here = there
         self.pieces = [whole]
         return whole
 

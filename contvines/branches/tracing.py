@@ -81,9 +81,9 @@ def trace_half(
             half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
             half.status = Status.COARSE
             return half
-        known = journal.recall(name)
+        known, scanned = journal.recall(name), detector.scan(chunk)
         if known is None:
-            events = detector.look(chunk, real)
+            events = detector.look(chunk, scanned, real)
             if len(chunk) > 1 and not isinstance(journal, NullJournal):
                 journal.record(name, pack(events, engine))
         else:
@@ -108,7 +108,7 @@ def trace_half(
             chunk.values,
             chunk.tangents,
             chunk.rows[:, : 2 * engine.m].copy(),  # the loop writes its next rows to the same place
-            engine.smallest_margin(chunk.rows),
+            scanned.smallest,
         )
         here, total = 1, len(half)  # the first point is the last one of the chunk before
         for event in events:

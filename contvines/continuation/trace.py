@@ -132,6 +132,12 @@ def _chunks(
             # a step that failed at once is nothing to keep: a start that is refused leaves no journal
             if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
                 values: dict[str, Any] = {part: getattr(chunk, part) for part in source.Points._fields}
+                for part in (
+                    "points",
+                    "tangents",
+                ):  # the loop writes to others the next time, and nobody to these
+                    values[part] = values[part].view()
+                    values[part].flags.writeable = False
                 journal.record(name, {**values, "status": int(chunk.status), "h": h})
         chunk.before = history[-2] if len(history) > 1 else None
         retrace = yield chunk

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from contvines.bifurcation.detect import Detector
 from contvines.bifurcation.scan import in_native, with_arrays
 from contvines.bifurcation.symmetry_test import SymmetryTest
 from contvines.continuation.arrays import Metric
@@ -29,11 +30,13 @@ class Shown(Rows):
         self.metric = Metric(self.weights, np.ones(n + 1), 1.0 / n, parameter_weight)
         self.shift = TURN * np.eye(n)[0]
         self.compiled = self.plain = True
+        self.upright = lambda p: 1e-9
 
 
 def chunk(points, values, rows):
-    """A chunk; what a scan does not read is left out."""
-    return Chunk(points, values, np.zeros(0), rows, np.zeros(0), np.zeros(0), Status.RUNNING)
+    """A chunk on which the parameter rises."""
+    tangents, ones = np.ones((len(points), points.shape[1] + 1)), np.ones(len(points))
+    return Chunk(points, values, tangents, rows, ones, 0.0 * ones, Status.RUNNING)
 
 
 def symmetry(apply, engine):
@@ -66,8 +69,7 @@ def test_numbers_known_by_hand(scan):
     np.testing.assert_allclose(found.spectra.near, near, rtol=1e-14)
     np.testing.assert_allclose(found.spectra.past, [[1, 0, 2], [0, 0, 0], [0, 0, 0]])
     np.testing.assert_allclose(found.spectra.pairs, [0, 1, 0])
-    np.testing.assert_allclose(found.least, [1.0, 1.0], rtol=1e-11)
-    np.testing.assert_allclose(found.change, [0.0, 3.0])
+    np.testing.assert_allclose(found.low, [0, 1])  # the second one changes its sign
     np.testing.assert_allclose(found.sizes, [[1.0, 7.0, 7.0]])
     np.testing.assert_allclose(found.turns, [[-7.0, 49.0]])
 
@@ -96,6 +98,35 @@ def test_native_and_numpy_agree(data):
         data.draw(arrays(float, (count, 2 * m + w), elements=NUMBERS)),
     )
     one, other = (scan(engine, symmetries, drawn) for scan in (with_arrays, in_native))
-    flat = [[*found[:2], *found.spectra, *found[3:]] for found in (one, other)]
+    flat = [[*found[:2], *found.spectra, *found[3:6]] for found in (one, other)]
     for expected, numbers in zip(*flat):
         np.testing.assert_allclose(numbers, np.reshape(expected, numbers.shape), rtol=1e-13, atol=1e-11)
+
+
+@pytest.mark.skipif(not native(), reason="no native core")
+@given(st.integers(0, 2**32 - 1))
+def test_of_a_quiet_chunk_no_segment_is_searched(seed):
+    """Rows are parabolas with a little that is none, and come near to zero here and there."""
+    rng = np.random.default_rng(seed)
+    count, n, m, w = rng.integers((3, 1, 0, 0), (12, 4, 3, 3))
+    engine = Shown(n, m, w, rng.choice(["map", "flow", "real"]))
+    engine.many = engine.exchanges = False
+    detector = Detector.__new__(Detector)
+    detector.engine, detector.own, detector.symmetries = engine, [], []
+
+    def columns(k):
+        bend, place, least = rng.uniform((0.0, -1.5, 0.0), (0.5, 1.5, rng.choice([0.1, 1.0])), (k, 3)).T
+        return (
+            bend * (np.linspace(-1.0, 1.0, count)[:, None] - place) ** 2
+            + least
+            + rng.uniform(0.0, 1e-3, (count, k))
+        )
+
+    rows, slopes = columns(2 * m + w), columns(n + 1)
+    rows[:, 1 : 2 * m : 2] *= rng.choice([0.0, 1.0])
+    values = np.cumsum(0.3 * slopes[:, -1])
+    points = np.cumsum(rng.uniform(0.2, 0.3, (count, n)), axis=0)
+    signs = np.where(np.arange(count) == rng.integers(-20, count), -1.0, 1.0)
+    drawn = Chunk(points, values, slopes, rows, signs, np.zeros(count), Status.RUNNING)
+    if in_native(engine, [], drawn).quiet:
+        assert detector.look(drawn, with_arrays(engine, [], drawn)) == []
