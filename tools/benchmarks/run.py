@@ -20,7 +20,7 @@ import scipy
 
 from contvines.core.library import variant as core
 
-from . import case, scripts
+from . import case, figures, scripts
 from .auto import Auto
 from .flights import MODELS, Flights
 from .floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
@@ -204,7 +204,7 @@ def start_up(repeats=3):
         environment = {**os.environ, "PYTHONPATH": str(ROOT)}
 
         def timed(*arguments):
-            command = [sys.executable, "-c", "from contvines.command.cli import main; main()", *arguments]
+            command = [sys.executable, "-c", "from contvines.command.entry import main; main()", *arguments]
             begin = os.times()
             done = subprocess.run(command, cwd=directory, env=environment, capture_output=True, text=True)
             end = os.times()
@@ -337,6 +337,8 @@ def main(arguments=None):
     if not options.quick:
         times = start_up()
         show("seconds", list(times), ["processor"], lambda name, _: number(times[name]))
+        print("\nfigures of the design, both variants of the core")
+        figures.main(["--rounds", str(rounds)])
 
 
 if __name__ == "__main__":
