@@ -19,6 +19,7 @@ _PLACES = {
     "Wall": "orbits.contacts.wall",
     "Word": "orbits.words",
     "coupled_two": "orbits.machines.coupled_two",
+    "structure": "orbits.machines.structure.structure",
     "WordError": "orbits.words",
 }
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")

@@ -69,6 +69,9 @@ def first_orbit(study: Study) -> Any:
     ValueError
         If the word cannot be, or no orbit with it is found; the sentence names the study.
     """
+    reduction = getattr(study.model, "reduction", None)
+    if reduction is not None and reduction.error:
+        print(f"contvines: {study.path}: [model] {reduction.sentence}.", file=sys.stderr)
     try:
         if study.sort is Sort.FLOW:
             if study.state is not None or study.flow.field.forced:

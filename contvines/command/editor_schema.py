@@ -130,10 +130,10 @@ def _physical(name: str) -> dict[str, Any] | None:
 
 def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
     """What a Python file declares, told from the others by the name of its file; its parameters are known when that has run."""
-    from orbits.machines.catalogue import PAGES
+    from orbits.machines.catalogue import PAGES, STRUCTURE
 
-    about = f'a file beside the study, and the machine or flow in it: "file.py:name"; or one that comes with the package: {", ".join(PAGES)}'
-    name = {"type": "string", "pattern": "|".join([r"\.py", *PAGES]), "description": about}
+    about = f'a file beside the study, and the machine or flow in it: "file.py:name"; or one that comes with the package: {", ".join([STRUCTURE, *PAGES])}'
+    name = {"type": "string", "pattern": "|".join([r"\.py", STRUCTURE, *PAGES]), "description": about}
     made["properties"]["model"] = {"type": "object", "properties": {"name": name}, "required": ["name"]}
     made["properties"]["start"]["additionalProperties"] = True
     return made | {"title": title, "required": ["model", *made["required"]]}

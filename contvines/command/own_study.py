@@ -14,7 +14,7 @@ from contvines.command.own_code import own_code
 from contvines.command.schema import FlowSections, PageSections, given, study_model, text
 from contvines.command.study_data import Sort, Study, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
-from orbits.machines.catalogue import PAGES, page_machine
+from orbits.machines.catalogue import PAGES, STRUCTURE, page_machine
 
 
 def read_own(data: dict[str, Any], path: Path) -> Study:
@@ -27,6 +27,9 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
     from contvines.flows.files import load_flow
 
     said = str(data["model"]["name"])
+    if said == STRUCTURE:
+        machine, plain = _structure(data, path)
+        return _page(plain, path, machine)
     if said in PAGES:
         return _page(data, path, page_machine(said))
     page, _, name = said.partition(":")
@@ -43,6 +46,40 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
     return _page(data, path, load_page(file, name))
 
 
+def _section(data: dict[str, Any], name: str) -> dict[str, Any]:
+    section = data.get(name)
+    return section if isinstance(section, dict) else {}
+
+
+def _structure(data: dict[str, Any], path: Path) -> tuple[Any, dict[str, Any]]:
+    """The structure of a study, and the study without its matrices and elements."""
+    from orbits.machines.parameters import ParameterError
+    from orbits.machines.structure.structure import GIVEN, MATRICES, MEANT, structure
+
+    model, start, go = (_section(data, name) for name in ("model", "start", "continue"))
+    for name in MATRICES:
+        if name not in model:
+            raise StudyError(
+                f'[model] {name} is missing; {name} = [[2, -1], [-1, 2]], "{name}.csv" or "model.mat:{name[0].upper()}" would do.'
+            )
+    spec = {name: model[name] for name in (*MATRICES, *GIVEN) if name in model}
+    within = go.get("within")
+    highest = [
+        x
+        for x in (within if isinstance(within, list) else [])
+        if isinstance(x, float | int) and go.get("parameter") == "frequency"
+    ]
+    said = start.get("frequency", model.get("frequency", sum(highest) / len(highest) if highest else None))
+    if isinstance(said, float | int) and not isinstance(said, bool):
+        spec |= {"frequency": float(said), "highest": spec.get("highest", MEANT * max([said, *highest]))}
+    try:
+        machine = structure(**spec, folder=path.parent)
+    except (ParameterError, TypeError) as error:
+        raise StudyError(f"[model] {str(error).rstrip('.')}.") from None
+    rest = {name: value for name, value in model.items() if name not in (*MATRICES, *GIVEN)}
+    return machine, {**data, "model": rest}
+
+
 def _values(
     sections: Any, base: Any, known: Mapping[str, float], data: dict[str, Any]
 ) -> tuple[Any, dict[str, float]]:
@@ -50,7 +87,9 @@ def _values(
     kinds: dict[str, Any] = {
         name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in known.items()
     }
-    settings: dict[str, Any] = {"name": (Annotated[str, Field(pattern="|".join([r"\.py", *PAGES]))], ...)}
+    settings: dict[str, Any] = {
+        "name": (Annotated[str, Field(pattern="|".join([r"\.py", STRUCTURE, *PAGES]))], ...)
+    }
     settings = {**{name: (kind | None, None) for name, kind in kinds.items()}, **settings}
     file = validated(study_model(base, settings, kinds), data)
     return file, {**given(file.model, kinds), **given(file.start, kinds)}

@@ -12,7 +12,7 @@ from contvines.command.conditions import check_varied, without_tables
 from contvines.command.study_data import Study
 from contvines.command.study_errors import StudyError as StudyError
 from contvines.command.toml_text import TomlError, toml_data
-from orbits.machines.catalogue import PAGES
+from orbits.machines.catalogue import PAGES, STRUCTURE
 
 
 def read_study(path: str | Path) -> Study:
@@ -63,7 +63,7 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
         data, conditions, tables = without_tables(data)
         check_varied(data, tables)
         said = str(about.get("name", ""))
-        if ".py" in said or said in PAGES:
+        if ".py" in said or said in (*PAGES, STRUCTURE):
             from contvines.command.own_study import read_own
 
             study = read_own(data, path)

@@ -25,6 +25,8 @@ PLACES = {
 }
 """Module and class of each machine."""
 NAMES = tuple(PLACES)
+STRUCTURE = "structure"
+"""What studies call a machine of matrices (`orbits.machines.structure`)."""
 PAGES = {"coupled_two": "orbits.machines.coupled_two"}
 """Machines that come with the package, whose flow is a page's; the module holds the machine by its name."""
 

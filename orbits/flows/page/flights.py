@@ -23,7 +23,8 @@ from orbits.integrators.engine import engine
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
 TINY = 1e-300
-LONGEST = 1e3  # clock of one flight: Newton's method has lost its way beyond it
+LONGEST = 1e3  # clock of one flight: Newton's method has lost its way beyond it,
+AHEAD = 2.0  # or, of a forced machine, beyond so many times the period
 TOGETHER = 4
 """Flights in one mode from which they are integrated side by side: a flight of two states then takes 11 to 15 us in place of 35 to 40, of four
 states 11 to 17 in place of 24 to 35. With fewer, half empty vectors gain less than another integrator costs to compile."""
@@ -79,7 +80,7 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
     numbers[:, data.index] = p
     begin, end = data.clocks(nodes)
     spans = end - begin
-    if np.abs(spans).max() > LONGEST:
+    if np.abs(spans).max() > (AHEAD * data.shift if data.forced else LONGEST):
         return math.inf
     if not _fly(data, nodes, begin, end, work):
         return math.inf

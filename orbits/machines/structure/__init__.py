@@ -1,0 +1,1 @@
+"""Structures: matrices with local contacts, as machines on a page."""

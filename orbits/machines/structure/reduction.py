@@ -1,0 +1,125 @@
+"""Rubin's reduction: the structure's own modes up to a frequency, and what forces at its contacts bend beside them, statically.
+
+The degrees of freedom with forces and contacts stay coordinates. Source: S. Rubin, Improved component-mode representation for structural dynamic analysis,
+AIAA Journal 13 (1975) 995.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from orbits.machines.parameters import ParameterError
+
+WHOLE = 8  # degrees of freedom up to which nothing is reduced
+STILL = 1e-12  # smallest square of a natural frequency over the largest: below, the structure floats
+GRID = 200  # frequencies at which receptances are compared, beside the natural ones
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """A structure in few coordinates.
+
+    Attributes
+    ----------
+    mass, damping, stiffness : float array (k, k)
+    kept : tuple of int
+        Degrees of freedom, from 0, that are the first coordinates; modes follow.
+    size : int
+        Degrees of freedom of the whole.
+    error : float
+        Largest relative difference of the receptances (displacements per force, at the kept ones) up to `highest`; 0 if nothing is reduced.
+    highest : float
+        Frequency, radians a unit of time.
+    """
+
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    kept: tuple[int, ...]
+    size: int
+    error: float
+    highest: float
+
+    @property
+    def sentence(self) -> str:
+        """What was done, and how good it is."""
+        if len(self.mass) == self.size:
+            return f"all {self.size} degrees of freedom are kept"
+        modes = len(self.mass) - len(self.kept)
+        return (
+            f"{self.size} degrees of freedom are reduced to {len(self.kept)}, those with forces and contacts, and {modes} "
+            f"mode{'' if modes == 1 else 's'}; receptances there differ by at most {100.0 * self.error:.2g} % up to {self.highest:.4g} rad/s"
+        )
+
+
+def reduced(
+    mass: np.ndarray,
+    damping: np.ndarray,
+    stiffness: np.ndarray,
+    kept: Sequence[int],
+    highest: float,
+    accuracy: float,
+) -> Reduced:
+    """As few modes as the accuracy needs.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : float array (n, n)
+    kept : sequence of int
+        Degrees of freedom, from 0, that must stay.
+    highest, accuracy : float
+        Up to which frequency receptances are compared, and how much they may differ.
+
+    Raises
+    ------
+    ParameterError
+        If the mass matrix is not positive definite.
+    """
+    size = len(mass)
+    if np.linalg.eigvalsh(mass)[0] <= 0.0:
+        raise ParameterError(
+            "mass: the matrix is not positive definite; every degree of freedom needs a mass"
+        )
+    if size <= WHOLE or len(kept) >= size:
+        return Reduced(mass, damping, stiffness, tuple(range(size)), size, 0.0, highest)
+    squares, modes = eigh(stiffness, mass)
+    shift = (
+        highest**2 if squares[0] <= STILL * squares[-1] else 0.0
+    )  # a structure that floats has no static answer
+    bent = np.linalg.solve(stiffness + shift * mass, np.eye(size)[:, kept])
+    own = np.sqrt(np.maximum(squares, 0.0))
+    steady = np.linspace(0.0, highest, GRID + 1)[1:]
+    places = np.unique(np.concatenate([steady, own[(own > 0.0) & (own <= highest)]]))
+    matrices, ends = (mass, damping, stiffness), np.asarray(kept, dtype=int)
+    true = np.array([_receptance(matrices, w, ends) for w in places])
+    scale = np.linalg.norm(true, axis=(1, 2))
+    for count in range(int(np.searchsorted(own, highest, side="right")), size - len(kept)):
+        basis = _basis(mass, modes[:, :count], bent, ends)
+        small = tuple(basis.T @ matrix @ basis for matrix in matrices)
+        here = np.array([_receptance(small, w, np.arange(len(kept))) for w in places])
+        error = float((np.linalg.norm(here - true, axis=(1, 2)) / scale).max())
+        if error <= accuracy:
+            return Reduced(small[0], small[1], small[2], tuple(int(i) for i in kept), size, error, highest)
+    return Reduced(mass, damping, stiffness, tuple(range(size)), size, 0.0, highest)
+
+
+def _basis(mass: np.ndarray, modes: np.ndarray, bent: np.ndarray, kept: np.ndarray) -> np.ndarray:
+    """Directions (n, k): the first move the kept degrees of freedom by 1 each, the others leave them where they are."""
+    rest = bent - modes @ (modes.T @ (mass @ bent))
+    span = np.hstack([modes, rest / np.linalg.norm(rest, axis=0)])
+    rows = span[kept]
+    still = np.linalg.svd(rows)[2][len(kept) :].T
+    inside = span @ still
+    return np.hstack(
+        [span @ np.linalg.pinv(rows), inside / np.sqrt(np.sum(inside * (mass @ inside), axis=0))]
+    )
+
+
+def _receptance(matrices: Sequence[np.ndarray], omega: float, at: np.ndarray) -> np.ndarray:
+    """Displacements of these coordinates for unit forces on them."""
+    m, c, k = matrices
+    return np.linalg.solve(k + 1j * omega * c - omega**2 * m, np.eye(len(m))[:, at])[at]
