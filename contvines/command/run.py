@@ -31,6 +31,7 @@ from contvines.command.options import (
     TrustOption,
 )
 
+MANY = 30  # branches; of a larger graph `diagram` tells the stable motions alone
 OutputOption = Annotated[
     Path | None,
     typer.Option(
@@ -66,9 +67,16 @@ def diagram(
         ),
     ] = True,
     compare: CompareOption = None,
+    details: Annotated[
+        bool,
+        typer.Option(
+            "--details",
+            help=f"All branches and special points, also of a graph with more than {MANY} branches.",
+        ),
+    ] = False,
 ) -> None:
     """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
-    _run("diagram", study, output, plot, fresh, quiet, x, y, compare, look)
+    _run("diagram", study, output, plot, fresh, quiet, x, y, compare, look, details)
 
 
 def atlas(
@@ -157,6 +165,7 @@ def _run(
     y: str | None,
     compare: list[str] | None = None,
     look: bool = False,
+    details: bool = False,
 ) -> None:
     from contvines.command.asked_measures import check_axes, check_bounds
     from contvines.command.compose import check_shaken
@@ -170,9 +179,10 @@ def _run(
     target = place_of(output, path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_plot(plot)
     with held(target, quiet, fresh):
-        graph = graph_of(study, command, target, quiet, problems=plot is not None, look=look)
+        problems = plot is not None or (command == "diagram" and not quiet)  # measures need them
+        graph = graph_of(study, command, target, quiet, problems=problems, look=look)
     if not quiet:
-        typer.echo(str(graph))
+        _tell(graph, target, command == "diagram", details)
     if compare and not quiet:
         from contvines.command.compare import told_compared
         from contvines.text_table import fitted
@@ -183,6 +193,22 @@ def _run(
 
         say(told(graph, f"contvines atlas {path} adds what is connected to it"), quiet)
     draw(plot, lambda: _picture(graph, x, y, compare), quiet)
+
+
+def _tell(graph: Any, target: Path, summarised: bool, details: bool) -> None:
+    """The stable motions first; then the whole graph where it is small, or is asked for."""
+    from contvines.survey.summary import summary
+
+    if summarised and any(branch.stable is not None for branch in graph.branches.values()):
+        typer.echo(summary(graph) + "\n")
+        if len(graph.branches) > MANY and not details:
+            typer.echo(
+                f"{len(graph.branches)} branches, {len(graph.special)} special points: contvines show {target}"
+            )
+            if not graph.complete:
+                typer.echo(str(graph.message))
+            return
+    typer.echo(str(graph))
 
 
 def graph_of(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:

@@ -1,0 +1,112 @@
+"""A first answer in a few lines: the stable motions of a graph, the widest first, and where none is known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ..graph.graph import Graph
+from ..graph.measures import default_measure
+from ..graph.shortening import motion_name
+from ..graph.table import size_of, with_unit
+from ..number_text import number_text
+from ..text_table import Table, fitted, terminal_width
+from .stretches import gaps, stretches
+
+MOST = 8  # motions that are listed
+LEAST = 1e-3  # of the interval: motions that are stable on less are counted only
+DIGITS = 4
+
+
+def summary(graph: Graph, width: int | None = None) -> str:
+    """Stable motions of a graph: word, period, where, largest response; then what part of the interval has none.
+
+    Parameters
+    ----------
+    graph : Graph
+    width : int, optional
+        Characters to a line; those of the terminal by default.
+    """
+    width = terminal_width() if width is None else width
+    measure, size = default_measure(graph), size_of(graph.within)
+    met: dict[tuple[str, str], list[Any]] = {}
+    for part in stretches(graph):
+        about = part.branch.description
+        met.setdefault((motion_name(about), _kind(about)), []).append(part)
+    length = graph.within[1] - graph.within[0]
+    found = sorted(((_length(parts), key, parts) for key, parts in met.items()), key=lambda row: -row[0])
+    listed = [row for row in found if row[0] >= LEAST * length][:MOST] or found[:MOST]
+    rows = []
+    for _, (word, kind), parts in listed:
+        top = max(parts, key=lambda part: _largest(part)[0])
+        height, at = _largest(top)
+        ends = [f"{number_text(a, DIGITS, size)}..{number_text(b, DIGITS, size)}" for a, b in _united(parts)]
+        rows.append(
+            (
+                word,
+                kind,
+                ", ".join(ends[:3]) + (f" and {len(ends) - 3} more" if len(ends) > 3 else ""),
+                f"{number_text(height, DIGITS)} at {number_text(at, DIGITS, size)}"
+                if np.isfinite(height)
+                else "-",
+            )
+        )
+    unit = graph.units.get(graph.parameter)
+    head = (
+        "motion",
+        "type",
+        f"stable in {with_unit(graph.parameter, unit)}",
+        f"largest {with_unit(measure, graph.units.get(measure))}",
+    )
+    lines = Table(head, rows).lines(width) if rows else ["no stable motion"]
+    lines.insert(
+        0, fitted(f"stable motions of {len(graph.branches)} branches, the widest first") if rows else ""
+    )
+    if len(found) > len(listed):
+        lines.append(f"and {len(found) - len(listed)} more, on narrow stretches")
+    open_ = gaps(graph)
+    part = sum(b - a for a, b in open_) / length
+    if part >= LEAST and rows:
+        low, high = max(open_, key=lambda gap: gap[1] - gap[0])
+        where = f"{graph.parameter} = {number_text(low, DIGITS, size)} to {number_text(high, DIGITS, size)} {unit or ''}".rstrip()
+        lines.append(
+            fitted(
+                f"no stable motion on a branch in {100.0 * part:.3g} % of the interval, most of it {where}: modulated or chaotic motions, or motions that are not connected to these"
+            )
+        )
+    return "\n".join(line for line in lines if line)
+
+
+def _kind(about: Mapping[str, Any]) -> str:
+    """What kind of motion it is, in a few words."""
+    periods = int(about.get("periods") or 0)
+    said = ["symmetric"] if about.get("symmetric") else []
+    said += [f"period {periods}"] if periods > 1 else []
+    if "impacts" in about and not about["impacts"]:
+        said.append("no impacts")
+    return ", ".join(said)
+
+
+def _largest(part: Any) -> tuple[float, float]:
+    """The largest response at the points of a stretch, and where; -inf where it has none."""
+    if not np.isfinite(part.response).any():
+        return -np.inf, np.nan
+    index = int(np.nanargmax(part.response))
+    return float(part.response[index]), float(part.values[index])
+
+
+def _united(parts: list[Any]) -> list[tuple[float, float]]:
+    """Intervals of the stretches, those that meet joined."""
+    found: list[tuple[float, float]] = []
+    for low, high in sorted((float(part.values.min()), float(part.values.max())) for part in parts):
+        if found and low <= found[-1][1]:
+            found[-1] = (found[-1][0], max(found[-1][1], high))
+        else:
+            found.append((low, high))
+    return found
+
+
+def _length(parts: list[Any]) -> float:
+    return sum(high - low for low, high in _united(parts))
