@@ -81,14 +81,14 @@ def recommended(
 
     own = digest(read, cost, target)
     if place.exists():
-        kept = _kept(place)
-        if kept.get("digest") != own:
+        known = kept(place)
+        if known.get("digest") != own:
             raise ValueError(
                 f"{place}: this file holds another recommendation (or this one before the study was edited); --fresh sets it aside, "
                 "-o gives another name."
             )
         say(f"{place} holds the finished recommendation; nothing to compute.", quiet)
-        return Recommendation.from_dict(kept["recommendation"])
+        return Recommendation.from_dict(known["recommendation"])
     journals: list[Path] = []
 
     def journal(count: int) -> Path:
@@ -114,7 +114,14 @@ def recommended(
     return found
 
 
-def _kept(place: Path) -> dict[str, Any]:
+def kept(place: Path) -> dict[str, Any]:
+    """What a file of this command holds.
+
+    Raises
+    ------
+    ValueError
+        If it is another file.
+    """
     try:
         found = json.loads(place.read_text(encoding="utf-8"))
     except (OSError, ValueError):

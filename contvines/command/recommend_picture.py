@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BLUE, RED, GREY = "#0b3c6f", "#b5121b", "0.45"
-SIZE = (10.0, 4.0)  # inches
-ROOM = 1.12  # of the vertical axis above the largest number
+SIZE, REPORT = (10.0, 4.0), (9.0, 3.4)  # inches
+PART = 0.6  # of the height for the start-up
+ROOM = 1.3  # of the vertical axis beside the largest number: for the legend
 
 
 def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:
@@ -77,7 +78,7 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
         ylabel=_label(found, "peak", "largest response"),
         ylim=(0.0, None),
     )
-    axes.margins(y=ROOM - 1.0)
+    axes.margins(y=0.1)
     axes.legend(loc="best", fontsize="x-small")
 
 
@@ -100,7 +101,42 @@ def draw_responses(axes: Axes, found: Recommendation) -> None:
     axes.set(
         xlabel=_label(found, found.parameter, found.parameter.replace("_", " ")),
         ylabel=_label(found, "peak", "largest displacement"),
-        ylim=(0.0, None),
+        ylim=(0.0, ROOM * max(max(curve.y) for curve in found.curves)),
         xlim=found.within,
     )
-    axes.legend(loc="best", fontsize="x-small")
+    axes.legend(loc="upper center", ncols=2, fontsize="x-small")
+
+
+def draw_start_up(axes: Axes, found: Recommendation) -> None:
+    """The start-up from rest, with the absorber and without."""
+    assert found.start_up is not None
+    series = found.start_up.series
+    axes.plot(series["time"], series["bare"], color=LOOKS["bare"][0], lw=0.6, label="bare oscillator")
+    axes.plot(series["time"], series["oscillator"], color=BLUE, lw=0.6, label="recommended")
+    axes.set(
+        xlabel=_label(found, "time", "time"),
+        ylabel=_label(found, "peak", "displacement"),
+        xlim=(0.0, series["time"][-1]),
+    )
+    axes.legend(loc="lower right", fontsize="x-small")
+
+
+def report_pictures(found: Recommendation) -> list[tuple[Figure, str]]:
+    """The pictures of the report with their captions."""
+    from contvines.plots.figures import new_figure, settle, styled, thin_ticks
+
+    pictures = [
+        (
+            choice_picture(found, REPORT),
+            "Left: the largest response over the value that is chosen. Right: responses at the choice; where two solid lines run side by side, the machine's past decides.",
+        )
+    ]
+    if found.start_up is not None and found.start_up.series:
+        with styled():
+            figure = new_figure(figsize=(REPORT[0], REPORT[1] * PART))
+            axes = figure.add_subplot()
+            draw_start_up(axes, found)
+            settle(figure)
+            thin_ticks(axes)
+        pictures.append((figure, f"Start-up from rest; {found.start_up_at}."))
+    return pictures

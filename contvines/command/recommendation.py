@@ -62,6 +62,14 @@ class Start:
     series: dict[str, list[float]] = field(default_factory=dict, repr=False)
 
 
+def _nan(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _numbers(data: dict[str, Any]) -> dict[str, Any]:
+    return {key: _nan(value) if value is None else value for key, value in data.items()}
+
+
 @dataclass(frozen=True)
 class Recommendation:
     """A value, what it costs and brings, and what is not known.
@@ -101,6 +109,8 @@ class Recommendation:
     checked : (float, float) or None
         Largest response of the study's machine at the choice by the diagram and by simulation up and down.
     start_up : Start or None
+    machine : dict
+        The study's quantities by name, as text with units and with what is uncertain of them.
     curves : list of Curve
         Responses of the study's machine at the choice, and those to compare with.
     assumed, unknown : list of str
@@ -125,6 +135,7 @@ class Recommendation:
     loads: dict[str, float]
     checked: tuple[float, float] | None
     start_up: Start | None
+    machine: dict[str, str] = field(default_factory=dict)
     curves: list[Curve] = field(default_factory=list, repr=False)
     assumed: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
@@ -135,15 +146,16 @@ class Recommendation:
 
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Recommendation:
-        """From `to_dict`."""
-        places = [Place(**place) for place in data["places"]]
-        start = data["start_up"] and Start(**data["start_up"])
+        """From `to_dict`, through JSON: that has no nan."""
+        places = [Place(**_numbers(place)) for place in data["places"]]
+        start = data["start_up"] and Start(**_numbers(data["start_up"]))
         pairs = {name: tuple(pair) for name, pair in data["compared"].items()}
-        ends = {key: tuple(data[key]) for key in ("within", "tolerance")}
+        ends = {key: tuple(_nan(end) for end in data[key]) for key in ("within", "tolerance")}
         checked = data["checked"] and tuple(data["checked"])
         curves = [Curve(**curve) for curve in data["curves"]]
         made = {"places": places, "start_up": start, "compared": pairs, "checked": checked, "curves": curves}
-        return cls(**{**data, **ends, **made})
+        numbers = {key: _nan(data[key]) for key in ("works", "target")}
+        return cls(**{**data, **ends, **numbers, **made})
 
     # ------------------------------------------------------------------ sentences
     def shown(self, name: str, value: float | None) -> str:
@@ -172,7 +184,7 @@ class Recommendation:
         if self.value is None:
             return f"No {self.name} can be recommended: {self.unknown[0] if self.unknown else 'nothing is known'}."
         low, high = self.tolerance
-        said = f"{self.name} = {self.shown(self.name, self.value)}"
+        said = f"Recommended: {self.name.replace('_', ' ')} {self.shown(self.name, self.value)}"
         if low < high:
             said += f"; from {low:.3g} to {self.shown(self.name, float(f'{high:.3g}'))} it costs less than {100 * self.cost:g} %"
         return said + "."
@@ -317,6 +329,12 @@ class Recommendation:
 
     def _settled(self, value: float) -> str:
         return self.shown("time", value) if math.isfinite(value) else "does not"
+
+    @property
+    def start_up_at(self) -> str:
+        """Under which excitation it is."""
+        said = next((text for text in self.assumed if text.startswith("start-up")), "")
+        return said.partition(" from rest ")[2]
 
     @property
     def tables(self) -> list[tuple[str, list[tuple[str, str, str]]]]:

@@ -309,7 +309,7 @@ class _Work:
             "study": str(study.path), "title": study.path.stem, "name": self.name, "parameter": study.parameter,
             "within": study.within, "units": {**self.units, "time": "s" if self.model.units else ""},
             "own": self.own(), "cost": cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
-            "places": places, "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
+            "machine": self._machine(), "places": places, "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
         }  # fmt: skip
         if best is None:
             return Recommendation(
@@ -335,6 +335,22 @@ class _Work:
             loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked,
             start_up=self._start_up(model) if has_bare else None, curves=curves + (self._lines(model) if has_bare else []),
         )  # fmt: skip
+
+    def _machine(self) -> dict[str, str]:
+        """The study's numbers as text, with what is uncertain."""
+        known = getattr(self.model, "quantities", None) or self.study.parameters
+        found = {
+            name: f"{value:.4g} {self.model.units.get(name, '')}".rstrip() for name, value in known.items()
+        }
+        found.pop(self.study.parameter, None)
+        for name, values in self.drawn.items():
+            unit = self.model.units.get(name, "")
+            found[name] = (
+                f"{values.min():.3g} to {values.max():.3g} {unit}".rstrip() + f" in {len(values)} samples"
+            )
+        if self.name in found:
+            found[self.name] = f"chosen; {found[self.name]} in the study"
+        return found
 
     def _at(self, value: float) -> Any:
         change = getattr(self.model, "with_", None) or self.model.changed

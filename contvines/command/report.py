@@ -13,12 +13,19 @@ def report(
     file: Annotated[
         Path,
         typer.Argument(
-            metavar="FILE", help="What diagram, atlas or chart (.vines) or survey (.nc) has made."
+            metavar="FILE",
+            help="What diagram, atlas or chart (.vines), survey (.nc) or recommend (.json) has made.",
         ),
     ],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="PAGE.html", help="The page; by default FILE.html here."),
+    ] = None,
+    pdf: Annotated[
+        Path | None,
+        typer.Option(
+            "--pdf", metavar="FILE.pdf", help="Also print the page, with the browser of this computer."
+        ),
     ] = None,
     trust: TrustOption = False,
 ) -> None:
@@ -27,14 +34,29 @@ def report(
     The diagram or chart can be zoomed; a click on any point shows its orbit:
     portrait, history, an animation, word, multipliers, margins, and the command
     and the Python line that give it again. Of a survey: outcomes over what
-    varies, and the machines behind each point.
+    varies, and the machines behind each point. Of a recommendation: the answer,
+    pictures, tables, assumptions, on two sheets of paper.
     """
+    from contvines.report.answer import print_page
     from contvines.report.page import check_page, write_report
 
     target = output or beside(file, ".html")
+    if pdf is not None and (pdf.suffix.lower() != ".pdf" or not pdf.parent.is_dir()):
+        raise ValueError(f"--pdf {pdf}: give the name of a file that ends in .pdf, in a folder that exists.")
+    if file.suffix == ".json":
+        check_page(target, plotly=False)
+        target.write_text(_answer(file).page(), encoding="utf-8")
+        typer.echo(str(target))
+        if pdf is not None:
+            print_page(target, pdf)
+            typer.echo(str(pdf))
+        return
     check_page(target)
     result = _result(file, trust)
     typer.echo(str(write_report(result, target, file.name, trust)))
+    if pdf is not None:
+        print_page(target, pdf)
+        typer.echo(str(pdf))
     branches = getattr(result, "branches", {}) or getattr(result, "loci", {})
     if branches and not trust and all(branch.problem is None for branch in branches.values()):
         say(f"the page has no orbits: {file} names Python code, which --trust would run")
@@ -60,3 +82,29 @@ def _result(file: Path, trust: bool) -> Any:
     elif not result.branches:
         raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
     return result
+
+
+def _answer(file: Path) -> Any:
+    """The page of a recommendation."""
+    from contvines.command.recommend import kept
+    from contvines.command.recommend_picture import report_pictures
+    from contvines.command.recommendation import Recommendation
+    from contvines.provenance import provenance
+    from contvines.report.answer import Answer
+
+    found = Recommendation.from_dict(kept(file)["recommendation"])
+    machine = [(name.replace("_", " "), text) for name, text in found.machine.items()]
+    checked = []
+    if found.checked is not None:
+        by, simulated = (found.shown("peak", value) for value in found.checked)
+        checked = [f"Checked by simulation: {simulated} beside {by} of the diagram."]
+    lists = [("Assumed", found.assumed), ("Not known", found.unknown or ["nothing that was asked"])]
+    return Answer(
+        f"{found.title}: {found.name.replace('_', ' ')}",
+        found.headline,
+        [*found.sentences, *checked],
+        report_pictures(found),
+        [*found.tables, ("The machine", machine)],
+        [(title, sentences) for title, sentences in lists if sentences],
+        f"contvines {provenance()['contvines']}, from {found.study}",
+    )

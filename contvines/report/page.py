@@ -95,7 +95,7 @@ def page(data: dict[str, Any], kind: str = "graph") -> str:
     return text
 
 
-def check_page(place: Path) -> None:
+def check_page(place: Path, plotly: bool = True) -> None:
     """Refuse, before any work, a page that could not be written at the end.
 
     Raises
@@ -111,7 +111,8 @@ def check_page(place: Path) -> None:
         raise ValueError(
             f"{place}: there is no folder {str(place.parent)!r}; make it first, or choose another place."
         )
-    _plotly()
+    if plotly:
+        _plotly()
 
 
 def _plotly() -> str:

@@ -2,14 +2,17 @@
 
 import json
 import math
+import shutil
 
 import numpy as np
 import pytest
 
 from contvines.command.cli import main
-from contvines.command.recommendation import Recommendation
+from contvines.command.recommendation import Place, Recommendation
 from contvines.command.recommending import recommend
 from contvines.command.study import read_study
+from contvines.export import json_text
+from contvines.report.answer import BROWSERS, Answer, print_page
 from orbits.attractors.sweep import sweep
 from orbits.design.first_clearance import first_clearance
 
@@ -76,6 +79,25 @@ def test_refusals(tmp_path, survey, says, capsys, monkeypatch):
     assert "this is not a file of contvines recommend" in capsys.readouterr().err
 
 
+def test_what_is_not_known_stays_unknown_in_a_file():
+    unknown = Place(58.0, math.nan, math.nan, math.nan, 2, 3, "no stable motion is known")
+    found = Recommendation(
+        "a.toml", "a", "half_width", "frequency", (7.0, 9.0), {"half_width": "mm"}, None, 20.0, (math.nan, math.nan), 0.05, {}, [unknown], {},
+        math.nan, math.nan, {}, {}, None, None, unknown=["the response at half_width = 58"],
+    )  # fmt: skip
+    again = Recommendation.from_dict(json.loads(json_text(found.to_dict())))
+    assert repr(again) == repr(found)
+    assert "No half_width can be recommended" in str(again) and "not known: the response" in str(again)
+
+
+@pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no browser that prints")
+def test_a_page_is_printed_on_paper(tmp_path):
+    page = tmp_path / "a.html"
+    page.write_text(Answer("A study", "The answer.", ["A sentence."], tables=[("T", [("a", "1 mm")])]).page())
+    print_page(page, tmp_path / "a.pdf")
+    assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
+
+
 @pytest.mark.slow
 def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -110,7 +132,11 @@ def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path
     assert run("recommend", str(path), "--plot", "choice.png") == 0
     told = capsys.readouterr().out
     assert (
-        "half_width = " in told
+        "Recommended: half width" in told
         and "tuned absorber of the same mass" in told
         and (tmp_path / "choice.png").exists()
     )
+    assert run("report", "machine-recommend.json") == 0
+    page = (tmp_path / "machine-recommend.html").read_text()
+    assert "<svg" in page and "tuned absorber of the same mass" in page and "3.2 kg" in page
+    assert page.count("not known") <= 1 + len(found.unknown)  # nothing is hidden, nothing is dumped
