@@ -34,6 +34,7 @@ myst_enable_extensions = ["dollarmath"]
 os.environ["PATH"] = os.pathsep.join(
     [os.path.dirname(sys.executable), os.environ.get("PATH", "")]
 )  # cells call `contvines`
+os.environ["CONTVINES_DOCS"] = str(HERE)
 os.environ["CONTVINES_PROGRESS"] = "off"  # pages show results, not the way to them
 nb_execution_mode = "auto"
 nb_execution_in_temp = True
