@@ -332,9 +332,9 @@ inline void inspect(void* data, const double* U, double q, void* work, double* r
     const Data& d = *static_cast<Data*>(data);
     const Work& w = *static_cast<Work*>(work);
     const Table& t = *d.table;
-    if ((d.kind == FOLD || d.kind == FLIP) && worn(w, w.solution(TESTED))) {
+    if ((d.kind == FOLD || d.kind == BRANCH || d.kind == FLIP) && worn(w, w.solution(TESTED))) {
         w.state[KNOWN] = smaller(w.state[KNOWN], 0.0);  // slopes belong to the borders
-        if (d.kind == FOLD) renew(d, w, w.border(B), w.border(C), w.solution(TESTED));
+        if (d.kind != FLIP) renew(d, w, w.border(B), w.border(C), w.solution(TESTED));
         else {
             t.flip(d.first, w.base, -1.0);
             renew(d, w, w.border(FLIP_B), w.border(FLIP_C), w.solution(TESTED));

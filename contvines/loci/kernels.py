@@ -225,9 +225,9 @@ def locus_inspect(data, U, q, work, row):
     borders, solutions, reference = work[BORDERS], work[SOLUTIONS], work[REFERENCE]
     kind, multipliers = data[KIND], data[MULTIPLIERS]
     n = work[BASE_F].shape[0]
-    if kind in (FOLD, FLIP) and worn(work, solutions[TESTED]):
+    if kind in (FOLD, BRANCH, FLIP) and worn(work, solutions[TESTED]):
         work[STATE][KNOWN] = min(work[STATE][KNOWN], 0.0)  # slopes belong to the borders
-        if kind == FOLD:
+        if kind != FLIP:
             renew(data, work, borders[B], borders[C], solutions[TESTED])
         else:
             data[CALLS].flip(first, base, -1.0)

@@ -85,3 +85,27 @@ def test_burgers_map_where_a_pitchfork_meets_a_flip():
     assert {point.kind for point in chart.points.values()} == set(expected)
     for point in chart.points.values():
         assert point.value == pytest.approx(expected[point.kind], abs=1e-9)
+
+
+def test_truncated_normal_form_of_the_resonance_1_2():
+    """The map of MatContM's tutorial (Govaerts, Khoshsiar Ghaziani, Kuznetsov, Meijer), with C = D = 1, by closed forms and a chart of default depth.
+
+    At rest trace b2 - 2 and determinant 1 - b1 - b2. The null vectors of a branch point are (1, 2) and (b1 / 2, 1): the left one turns.
+    """
+
+    def normal_form(u, p):
+        x, y = u
+        return [y - x, p.beta1 * x + (p.beta2 - 1) * y + x**3 + x**2 * y]
+
+    problem = cv.MapProblem(normal_form, [0.0, 0.0], {"beta1": -2.0, "beta2": 0.0}, parameter="beta2")
+    graph = cv.diagram(problem, over="beta2", within=(-1.0, 6.0))
+    branch_points = cv.locus(graph["BP1"], over="beta1", within=(-5.0, 3.0))
+    assert set(branch_points.values[[0, -1], 1]) == {-5.0, 3.0}
+    np.testing.assert_allclose(branch_points.values[:, 0], 2 - branch_points.values[:, 1] / 2, atol=1e-12)
+    chart = cv.chart(graph, over="beta1", within=(-5.0, 2.0))
+    assert chart.message == "finished"
+    for label, condition in (("NS1", lambda b2, b1: b1 + b2), ("BP1", lambda b2, b1: b1 + 2 * b2 - 4)):
+        assert np.abs([condition(*value) for value in chart.loci[label].values]).max() < 1e-11
+    places = {"resonance-1-1": (4, -4), "resonance-1-2": (0, 0), "resonance-1-3": (1, -1), "resonance-1-4": (2, -2), "fold-flip": (2, 0)}  # fmt: skip
+    found = {point.kind: point.value for point in chart.points.values()}
+    assert found == {kind: pytest.approx(place, abs=1e-10) for kind, place in places.items()}
