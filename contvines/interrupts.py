@@ -16,7 +16,7 @@ from types import FrameType, TracebackType
 from typing import Any
 
 # what `signal` hands on to: it makes enumerations of handlers, which takes longer than solving a point
-_plain: Any = sys.modules["_signal"]
+_plain = sys.modules["_signal"]
 
 
 class _State:

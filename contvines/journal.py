@@ -23,7 +23,7 @@ class Journal(Protocol):
         """Keep the values, as copies but of arrays that nobody can write to; on return they survive a kill."""
         ...
 
-    def checkpoint(self, graph: Any) -> None:
+    def checkpoint(self, graph: object) -> None:
         """Called with the graph so far, after each finished branch and at the end (``graph.finished``)."""
         ...
 
@@ -37,7 +37,7 @@ class NullJournal:
     def record(self, key: str, values: dict[str, Any]) -> None:
         return None
 
-    def checkpoint(self, graph: Any) -> None:
+    def checkpoint(self, graph: object) -> None:
         return None
 
 
@@ -59,7 +59,7 @@ class Part:
     def record(self, key: str, values: dict[str, Any]) -> None:
         self.journal.record(self.prefix + key, values)
 
-    def checkpoint(self, graph: Any) -> None:
+    def checkpoint(self, graph: object) -> None:
         return None
 
 
@@ -68,7 +68,7 @@ class MemoryJournal:
 
     def __init__(self) -> None:
         self.entries: dict[str, dict[str, Any]] = {}
-        self.graph: Any = None
+        self.graph: object = None
 
     def recall(self, key: str) -> dict[str, Any] | None:
         return self.entries.get(key)
@@ -79,5 +79,5 @@ class MemoryJournal:
             for name, value in values.items()
         }
 
-    def checkpoint(self, graph: Any) -> None:
+    def checkpoint(self, graph: object) -> None:
         self.graph = graph

@@ -111,11 +111,11 @@ def counted(total: int, what: str, asked: Tell | bool | None = None, done: int =
         yield asked if callable(asked) else None
         return
 
-    def count(_: Any) -> str:
+    def count(_: object) -> str:
         return f"{done} of {total} {what}"
 
     def telling(tell: Tell) -> Tell:
-        def tick(piece: Any) -> None:
+        def tick(piece: object) -> None:
             nonlocal done
             done += 1
             tell(piece)

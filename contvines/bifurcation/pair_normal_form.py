@@ -13,7 +13,7 @@ from .point_on_branch import PointOnBranch
 
 def classify(point: PointOnBranch) -> Classified:
     """From derivatives of the equations; of cycles on a mesh, whose unknowns are more than the states of a map, from the problem's own form."""
-    problem: Any = point.problem
+    problem = point.problem
     if point.engine.adaptive and problem.spectrum == "map":
         return _of_cycle(problem, point)
     if problem.spectrum not in ("map", "flow"):

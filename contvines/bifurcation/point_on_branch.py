@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
     from ..continuation.engine import Engine, Solved
+    from ..problems.protocol import Problem
     from .segment import Segment
 
 
@@ -54,7 +55,7 @@ class PointOnBranch:
         return self.solved.tangent
 
     @property
-    def problem(self) -> Any:
+    def problem(self) -> Problem:
         return self.engine.problem
 
     @property

@@ -64,6 +64,6 @@ def chebyshev_fit(values: np.ndarray) -> np.ndarray:
     return coefficients.reshape(values.shape)
 
 
-def chebyshev_value(coefficients: np.ndarray, x: Any) -> Any:
+def chebyshev_value(coefficients: np.ndarray, x: np.ndarray | complex) -> Any:
     """The Chebyshev series at x."""
     return np.polynomial.chebyshev.chebval(x, coefficients)

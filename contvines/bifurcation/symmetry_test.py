@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Symmetry
 
 
 @lru_cache(maxsize=64)
@@ -16,7 +19,7 @@ def _patternless(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return probe, check, np.argsort(probe, kind="stable")
 
 
-def image_of(symmetry: Any, u: np.ndarray, p: float) -> np.ndarray:
+def image_of(symmetry: Symmetry, u: np.ndarray, p: float) -> np.ndarray:
     """The image of a solution (u, p)."""
     image = symmetry.apply(u)
     return image if symmetry.offset is None else image + symmetry.offset(p)
@@ -30,7 +33,7 @@ class SymmetryTest:
     """
 
     def __init__(
-        self, symmetry: Any, n: int, shift: np.ndarray | None, scale: np.ndarray | None = None
+        self, symmetry: Symmetry, n: int, shift: np.ndarray | None, scale: np.ndarray | None = None
     ) -> None:
         self.symmetry, self.kind = symmetry, symmetry.kind
         self.shift, self.scale = shift, scale

@@ -80,13 +80,13 @@ class Branch:
 
         return branch_page(self)
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self):
         """The points as a data frame; see :func:`contvines.export.frames.branch_frame`."""
         from ..export.frames import branch_frame
 
         return branch_frame(self)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self):
         """The branch as a data set; see :func:`contvines.export.frames.branch_dataset`."""
         from ..export.frames import branch_dataset
 

@@ -6,7 +6,7 @@ one of those; where a border is near it may lie behind that. Then a first point 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Located, Role
@@ -17,6 +17,9 @@ from ..journal import NullJournal
 from .half_branch import HalfBranch, piece_of, single
 from .records import pack, unpack
 
+if TYPE_CHECKING:
+    from ..journal import Journal
+
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 SHOWN = 1e-10  # margins of a special point that are certainly positive
 ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
@@ -25,7 +28,7 @@ TURNING = ("fold", "branch-point")  # what rounding makes of solutions of nearly
 
 
 def opening(
-    engine: Engine, origin: Solved, start: Solved, detector: Detector, journal: Any, key: str, real: bool
+    engine: Engine, origin: Solved, start: Solved, detector: Detector, journal: Journal, key: str, real: bool
 ) -> tuple[HalfBranch, Solved]:
     """From a special point to the first point of a branch that leaves it, and that point: a nearer one than `start` where that one leapt."""
     known = journal.recall(key)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from ..continuation.hints import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
 from .lazy_field import Later
+
+if TYPE_CHECKING:
+    pass
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
 
@@ -145,7 +148,7 @@ class SpecialPoint:
         limited = self.kind in BORDERS and isinstance(found, Limited)
         return found.with_multipliers(self.multipliers) if limited else found
 
-    def plot(self, **options: Any) -> Any:
+    def plot(self, **options: Any):
         """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
         from ..plots.portrait import plot_portrait
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import count as count_from
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Role
@@ -16,6 +16,9 @@ from ..problems.abilities import Adaptive
 from .half_branch import HalfBranch, Piece, piece_of, single
 from .opening import SHORTER, opening, without_rounding
 from .records import pack, unpack
+
+if TYPE_CHECKING:
+    from ..journal import Journal
 
 # a branch that has come to an end like this is followed again where its mesh is too coarse
 UNFINISHED = (Status.RUNNING, Status.STEP_TOO_SMALL, Status.BORDER, Status.LEFT_INTERVAL, Status.CREEPING)
@@ -29,7 +32,7 @@ def trace_half(
     engine: Engine,
     start: Solved,
     detector: Detector,
-    journal: Any,
+    journal: Journal,
     key: str,
     real: bool = True,
     first_step: float | None = None,

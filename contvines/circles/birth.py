@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from ..continuation.settings import Settings
 from ..problems.abilities import Adaptive
 from .invariance import Curve, Frame
 from .section import Imaged, Section, section_of, slopes
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
 
 class Birth(NamedTuple):
@@ -48,7 +51,7 @@ class Birth(NamedTuple):
         return Curve(points, self.rotation, self.value(amplitude))
 
 
-def anchored(point: SpecialPoint) -> Any:
+def anchored(point: SpecialPoint) -> Problem:
     """The problem of a point; of cycles on a mesh the one that begins with the point, across whose cycle sections are taken."""
     problem: Any = point.problem
     if not isinstance(problem, Adaptive):

@@ -186,7 +186,7 @@ class Circles:
         ]
         return Table(head, rows, ("replay", "normal form", "simulated"))
 
-    def plot(self, **options: Any) -> Any:
+    def plot(self, **options: Any):
         """Section picture with radius and rotation number; see :func:`contvines.plots.circles.plot_circles`."""
         from ..plots.circles import plot_circles
 

@@ -73,7 +73,7 @@ class Basins:
     unit: str = ""
     gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
 
-    def shown(self, name: str, values: Any) -> Any:
+    def shown(self, name: str, values: np.ndarray | float) -> Any:
         """Values of a coordinate in the unit in which it is shown."""
         return values * self.gauges.get(name, (1.0, ""))[0]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from ..graph.attractor import Attractor
 from ..graph.run import Run
 from .effort import recall_work
 from .population import Population
+
+if TYPE_CHECKING:
+    from ..journal import Journal
 
 
 @dataclass
@@ -24,7 +27,7 @@ class Counted:
     state: np.ndarray | None = None
 
 
-def census(population: Population, p: float, count: int, seed: int, journal: Any) -> list[Counted]:
+def census(population: Population, p: float, count: int, seed: int, journal: Journal) -> list[Counted]:
     """Draw starts, let them settle, count; what the journal remembers is not simulated again.
 
     Parameters
@@ -39,7 +42,9 @@ def census(population: Population, p: float, count: int, seed: int, journal: Any
     )
 
 
-def followed(population: Population, p: float, starts: np.ndarray, key: str, journal: Any) -> list[Counted]:
+def followed(
+    population: Population, p: float, starts: np.ndarray, key: str, journal: Journal
+) -> list[Counted]:
     """Let starts settle that were not drawn: what they reach has no share.
 
     Parameters
@@ -64,7 +69,7 @@ def locate(run: Run, counted: Counted) -> str | None:
 
 
 def _settled(
-    population: Population, p: float, starts_of: Callable[[], np.ndarray], key: str, journal: Any
+    population: Population, p: float, starts_of: Callable[[], np.ndarray], key: str, journal: Journal
 ) -> list[Counted]:
     """What starts settle on, with shares of them; the starts are made where the journal does not know."""
     known = journal.recall(key)

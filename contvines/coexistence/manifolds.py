@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,12 @@ from ..circles.section import Section, Walled, section_of
 from ..graph.graph import Graph
 from .circle_step import TURN, next_point
 from .solutions import solutions_at
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ..branches.branch import Branch
+    from ..problems.protocol import Problem
 
 FIRST = (
     1e-4,
@@ -58,7 +64,7 @@ class Manifold:
     points: np.ndarray
     ended: str
 
-    def to_dict(self, sizes: Any = 1.0) -> dict[str, Any]:
+    def to_dict(self, sizes: ArrayLike = 1.0) -> dict[str, Any]:
         """Ready for JSON; `sizes` are of one of each coordinate in the unit in which it is shown."""
         return {
             "branch": self.branch,
@@ -151,7 +157,7 @@ class _Counted:
         return self.step(x)
 
 
-def _places(problem: Any, section: Any, u: np.ndarray, p: float) -> list[np.ndarray]:
+def _places(problem: Problem, section: Any, u: np.ndarray, p: float) -> list[np.ndarray]:
     """Where a solution and its images under the problem's symmetries meet the section, each point once."""
     found: list[np.ndarray] = []
     for one in (u, *(image_of(symmetry, u, p) for symmetry in problem.symmetries)):
@@ -161,7 +167,7 @@ def _places(problem: Any, section: Any, u: np.ndarray, p: float) -> list[np.ndar
     return found
 
 
-def _saddles(branch: Any, at: float) -> list[np.ndarray]:
+def _saddles(branch: Branch, at: float) -> list[np.ndarray]:
     """Unknowns of the branch's real solutions at a value with one multiplier outside the circle."""
     engine, solved = solutions_at(branch, at)
     return [one.u for one in solved if np.count_nonzero(np.abs(engine.multipliers(one.row)) > 1.0) == 1]

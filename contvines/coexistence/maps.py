@@ -10,6 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ..problems.maps import MapProblem
+    from ..problems.protocol import Problem
 
 TRANSIENTS = (200, 800, 3200)  # iterations, each for those that do not recur before
 LONGEST = 64  # of the cycles looked for
@@ -35,7 +36,7 @@ class Cycle:
     kind: str
     word: str = ""
     periods: int = 0
-    problem: Any = field(default=None, repr=False)
+    problem: Problem | None = field(default=None, repr=False)
     u: np.ndarray | None = field(default=None, repr=False)
     exponent: float = float("nan")
     error: float = float("nan")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..graph.run import Run
 from ..journal import NullJournal
+
+if TYPE_CHECKING:
+    from ..branches.special_point import SpecialPoint
 
 
 def merge(graph: Graph, other: Graph) -> dict[str, str]:
@@ -68,7 +71,7 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
     return called
 
 
-def _special(run: Run, point: Any, called: dict[str, str]) -> str:
+def _special(run: Run, point: SpecialPoint, called: dict[str, str]) -> str:
     """The label of a special point here: of the same one where there is one, else a new one."""
     graph = run.graph
     form = point.problem.canonical(point.u, point.value)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..graph.builder import begin, trace_pending, work
 from ..graph.run import Run
 
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
-def add_root(run: Run, problem: Any, u: np.ndarray, p: float, depth: int = 0) -> None:
+
+def add_root(run: Run, problem: Problem, u: np.ndarray, p: float, depth: int = 0) -> None:
     """Trace a solution with all that leaves it; alone where `max_branches`, which limits no roots, is reached.
 
     Its branch counts as one that `depth` others lie before.

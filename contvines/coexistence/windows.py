@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from .census import Counted
 from .effort import Effort, recall_work
 from .population import Population
 from .roots import add_root
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
 CYCLES = "searches for unstable cycles"
 MOST = 10_000  # branches traced apart
@@ -140,7 +143,7 @@ class Windows:
         self.run.journal.record(key, record)
         return cycles
 
-    def _traced(self, problem: Any, u: np.ndarray, p: float) -> list[tuple[Any, np.ndarray, float]]:
+    def _traced(self, problem: Problem, u: np.ndarray, p: float) -> list[tuple[Any, np.ndarray, float]]:
         """Trace a cycle unless it has been; a point of each stable stretch of what is new."""
         if self.apart.register.find(problem, u, p) is not None:
             return []

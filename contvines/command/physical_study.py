@@ -93,7 +93,7 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     except QuantityError as error:
         section = places.get(str(error).split(" ", 1)[0].rstrip(":"), "model")
         return None, _without_texts(plain), [*wrong, f"[{section}] {error}."]
-    if usual in known:
+    if usual is not None and usual in known:
         machine = machine.told_by(usual)
     for section, values in plain.items():
         if isinstance(values, dict) and section not in ("start", "survey"):

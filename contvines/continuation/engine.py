@@ -92,12 +92,12 @@ class Engine(Rows):
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
         self.known = np.zeros(bracketing.SIZE)
-        self.loop: Any = self._loop(kernels)
+        self.loop = self._loop(kernels)
         self.part = corrector.Found(
             np.empty((1, n)), np.empty((1, n + 1)), np.zeros((1, self.row_size)), np.empty((1, 5))
         )
 
-    def _loop(self, kernels: Any) -> Any:
+    def _loop(self, kernels: Any):
         """March and single points, in the native core for compiled problems."""
         rest = self.metric, self.noise, self.known, self.scratch, self.settings.step_rule
         if not self.compiled:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields
-from typing import Any, ParamSpec, TypeVar
+from typing import ParamSpec, TypeVar
 
 from contvines.shared import near_arguments
 
@@ -28,7 +28,7 @@ def hinted(thing: type[T]) -> type[T]:
     return near_arguments.hinted(thing, _setting)
 
 
-def _setting(name: str, value: Any, known: Sequence[str]) -> str:
+def _setting(name: str, value: object, known: Sequence[str]) -> str:
     if "settings" not in known or name not in [field.name for field in fields(Settings)]:
         return ""
     return f"it is a setting: settings={{{name!r}: {value!r}}} would do"

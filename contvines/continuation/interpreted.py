@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from .arrays import Metric
 from .corrector import Found, Scratch
 from .loop import Points
 from .step_rule import StepRule
+
+if TYPE_CHECKING:
+    from ..problems.kernels import Kernels
 
 
 class InterpretedLoop:
@@ -31,9 +34,9 @@ class InterpretedLoop:
 
     def __init__(
         self,
-        kernels: Any,
-        data: Any,
-        work: Any,
+        kernels: Kernels,
+        data: object,
+        work: object,
         metric: Metric,
         noise: float,
         known: np.ndarray,

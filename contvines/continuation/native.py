@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,10 +18,13 @@ from .corrector import Found, Scratch
 from .loop import RUNNING, Points
 from .step_rule import BY_ANGLE, StepRule
 
+if TYPE_CHECKING:
+    from ..core.table import Struct
+
 AT_ONCE = 50_000  # unknowns times points of one call: between calls an interrupt is seen
 FEWEST = 8  # points of one call
 
-JUDGE: Any = ctypes.CFUNCTYPE(NUMBER, NUMBER, NUMBER, WHOLE, NUMBER, NUMBER, NUMBER)
+JUDGE = ctypes.CFUNCTYPE(NUMBER, NUMBER, NUMBER, WHOLE, NUMBER, NUMBER, NUMBER)
 ABORT = -np.inf
 
 
@@ -76,8 +79,8 @@ class NativeLoop:
     def __init__(
         self,
         table: int,
-        data: Any,
-        work: Any,
+        data: Struct,
+        work: Struct,
         sizes: tuple[int, int],
         metric: Metric,
         noise: float,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,13 +11,20 @@ from ..problems.abilities import Rough, Started
 from ..problems.protocol import MEMBERS, Problem
 from .engine import Engine, Solved
 
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike
+
+    from ..problems.scales import Scales
+
 TOLD = (
     1e-2  # distance of a start from the solution that was found, in typical sizes, from which on it is told
 )
 SOLVED = 1e-9  # residual of a start that is a solution
 
 
-def check_interval(within: Any) -> tuple[float, float]:
+def check_interval(within: Iterable[float]) -> tuple[float, float]:
     """The interval as two floats.
 
     Raises
@@ -40,7 +47,9 @@ def check_interval(within: Any) -> tuple[float, float]:
     return lower, upper
 
 
-def problem_and_start(seed: Any, over: str | None, u: Any = None, p: Any = None) -> tuple[Any, Any, float]:
+def problem_and_start(
+    seed: Any, over: str | None, u: ArrayLike | None = None, p: float | None = None
+) -> tuple[Problem, Any, float]:
     """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``; u and p win where they are given."""
     if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
         problem = complete(seed)
@@ -82,7 +91,7 @@ def complete(problem: Any) -> Problem:
     return problem
 
 
-def solve_start(engine: Engine, u: Any, p: float, tangent: np.ndarray | None = None) -> Solved:
+def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | None = None) -> Solved:
     """The first point of a branch.
 
     Raises
@@ -117,7 +126,7 @@ def solve_start(engine: Engine, u: Any, p: float, tangent: np.ndarray | None = N
     return found
 
 
-def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
+def told_start(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     """A sentence on a start that was no solution: how large F is there, and where the branch begins instead; empty if it was one.
 
     Parameters
@@ -139,7 +148,7 @@ def told_start(engine: Engine, u: Any, p: float, found: Solved) -> str:
     return "; ".join(part for part in (_moved(engine, u, p, found), _untold(problem.scales)) if part)
 
 
-def _untold(scales: Any) -> str:
+def _untold(scales: Scales | None) -> str:
     """A sentence on unknowns of which nothing tells how large they become; empty if there is none."""
     if scales is None or not scales.untold:
         return ""
@@ -147,9 +156,10 @@ def _untold(scales: Any) -> str:
     return f"at the start nothing tells how large {names} may become: 1 is taken; scale= would say it"
 
 
-def _moved(engine: Engine, u: Any, p: float, found: Solved) -> str:
+def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     """A sentence on a start that was no solution; empty if it was one."""
-    problem: Any = engine.problem
+    problem = engine.problem
+    assert isinstance(problem, Rough)
     u = np.asarray(u, dtype=float).reshape(-1)
     moved = np.abs(found.u - u) / engine.scale[:-1]
     shift = abs(found.p - float(p)) / float(engine.scale[-1])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Generator, Iterator
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,11 @@ from .settings import Settings
 from .status import Status
 from .step_rule import BY_ANGLE
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..journal import Journal
+
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 FEWEST = 8  # points in a chunk, however many unknowns there are
 AGAIN = 32  # points that are traced again with shorter steps
@@ -37,7 +42,7 @@ class Retrace(NamedTuple):
 def chunks(
     engine: Engine,
     start: Solved,
-    journal: Any = None,
+    journal: Journal | None = None,
     key: str = "",
     stop_at_border: bool = False,
     first_step: float | None = None,
@@ -72,7 +77,7 @@ def chunks(
 def _chunks(
     engine: Engine,
     start: Solved,
-    journal: Any,
+    journal: Journal | None,
     key: str,
     stop_at_border: bool,
     first_step: float | None,
@@ -168,7 +173,9 @@ def _anchored(engine: Engine, history: list[Solved]) -> list[Solved]:
     return [*(point for point in before if point is not None), points[-1]]
 
 
-def _solved_again(engine: Engine, point: Solved, image: Any = None) -> Solved | None:
+def _solved_again(
+    engine: Engine, point: Solved, image: Callable[..., np.ndarray] | None = None
+) -> Solved | None:
     """A point, as its image on another mesh reads, solved along its tangent."""
     u, direction = point.u, point.tangent[:-1]
     if image is not None:
@@ -282,10 +289,10 @@ def trace(
     """
     from .starts import check_interval, problem_and_start, solve_start
 
-    problem, u, p = problem_and_start(problem, over, u, p)
+    problem, begin, p = problem_and_start(problem, over, u, p)
     settings = Settings.of(settings)
     engine = Engine(problem, check_interval(within), settings)
-    start = solve_start(engine, u, p)
+    start = solve_start(engine, begin, p)
     if start.tangent[-1] * direction < 0.0:
         start = start._replace(tangent=-start.tangent, sign=-start.sign)
     first = True

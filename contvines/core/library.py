@@ -26,7 +26,7 @@ class Unusable(Exception):
 
 
 @cache
-def library() -> Any | None:
+def library() -> ctypes.CDLL | None:
     """The loaded library (`ctypes.CDLL`), or None where the reference core computes.
 
     Raises
@@ -46,7 +46,7 @@ def library() -> Any | None:
         return None
 
 
-def _load(choice: str) -> Any:
+def _load(choice: str) -> ctypes.CDLL:
     """The variant of this name, or the best one."""
     baseline = _open("baseline")
     if choice == "baseline" or "avx2" not in variants():
@@ -65,7 +65,7 @@ def _load(choice: str) -> Any:
         return baseline
 
 
-def _open(variant: str) -> Any:
+def _open(variant: str) -> ctypes.CDLL:
     path = path_of(variant)
     checkout = (SOURCES / "core.cpp").exists()
     again = "run python -m contvines.core.build" if checkout else "install contvines again"
@@ -95,7 +95,7 @@ def native() -> bool:
 
 
 @cache
-def function(name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
+def function(name: str, result: type | None, *arguments: type) -> Callable[..., Any]:
     """A function of the library by name, with the types of its result and arguments."""
     found = library()
     if found is None:

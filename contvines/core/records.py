@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from math import prod
-from typing import Any
 
 import numpy as np
 
 from .library import address
 
 
-def pack(*members: Any) -> np.ndarray:
+def pack(*members: float | np.ndarray) -> np.ndarray:
     """A struct from its members, shape (k,): floats, integers, and arrays as pointers.
 
     Raises

@@ -7,12 +7,16 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from .library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from .records import place
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 
 _PROTOTYPES = (
     ctypes.CFUNCTYPE(NUMBER, POINTER, POINTER, NUMBER, POINTER),
@@ -23,6 +27,13 @@ _PROTOTYPES = (
     ctypes.CFUNCTYPE(NOTHING, POINTER, POINTER, POINTER, POINTER),
 )
 """Of linearise, bordered, inspect, assign, flip, transpose."""
+
+
+class Struct(Protocol):
+    """What the functions of a table find at an address."""
+
+    @property
+    def memory(self) -> np.ndarray: ...
 
 
 class TableKernels:
@@ -36,32 +47,32 @@ class TableKernels:
 
     compiled = True
     column = 3
-    matrix: Any = None
+    matrix: None = None
 
     def __init__(self, table: int) -> None:
         self.table = table
         addresses = (ctypes.c_void_p * len(_PROTOTYPES)).from_address(table)
         calls: list[Any] = [make(at) if at else None for make, at in zip(_PROTOTYPES, addresses)]
-        self._linearise: Any = calls[0]
-        self._bordered: Any = calls[1]
-        self._inspect: Any = calls[2]
-        self._assign: Any = calls[3]
-        self._flip: Any = calls[4]
-        self._transpose: Any = calls[5]
+        self._linearise = calls[0]
+        self._bordered = calls[1]
+        self._inspect = calls[2]
+        self._assign = calls[3]
+        self._flip = calls[4]
+        self._transpose = calls[5]
         loci = self._transpose is not None
-        self.assign: Any = self._assigned if loci else None
-        self.flip: Any = self._flipped if loci else None
-        self.transpose: Any = self._transposed if loci else None
+        self.assign = self._assigned if loci else None
+        self.flip = self._flipped if loci else None
+        self.transpose = self._transposed if loci else None
 
-    def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
+    def linearise(self, data: Struct, u: np.ndarray, p: float, work: Struct) -> float:
         """Residual and derivatives into `work`; returns the largest residual."""
         u = np.ascontiguousarray(u, dtype=float)
         return self._linearise(address(data.memory), address(u), p, address(work.memory))
 
     def bordered(
         self,
-        data: Any,
-        work: Any,
+        data: Struct,
+        work: Struct,
         border: np.ndarray,
         target: float,
         step: np.ndarray,
@@ -73,30 +84,30 @@ class TableKernels:
             address(data.memory), address(work.memory), address(border), target, place(step), place(tangent)
         )
 
-    def inspect(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+    def inspect(self, data: Struct, u: np.ndarray, p: float, work: Struct, row: np.ndarray) -> None:
         """Multipliers and margins."""
         u = np.ascontiguousarray(u, dtype=float)
         self._inspect(address(data.memory), address(u), p, address(work.memory), place(row))
 
-    def _assigned(self, data: Any, other: Any, value: float) -> None:
+    def _assigned(self, data: Struct, other: Struct, value: float) -> None:
         """Give the parameter that varies in `other` a value in `data`."""
         self._assign(address(data.memory), address(other.memory), value)
 
-    def _flipped(self, data: Any, work: Any, sign: float) -> None:
+    def _flipped(self, data: Struct, work: Struct, sign: float) -> None:
         """Turn the linearisation's closure round."""
         self._flip(address(data.memory), address(work.memory), sign)
 
-    def _transposed(self, data: Any, work: Any, column: np.ndarray, other: Any) -> None:
+    def _transposed(self, data: Struct, work: Struct, column: np.ndarray, other: Struct) -> None:
         """Write the transposed system, with another last column, into another workspace."""
         column = np.ascontiguousarray(column, dtype=float)
         self._transpose(address(data.memory), address(work.memory), address(column), address(other.memory))
 
     def newton(
         self,
-        data: Any,
+        data: Struct,
         u: np.ndarray,
         p: float,
-        work: Any,
+        work: Struct,
         border: np.ndarray,
         step: np.ndarray,
         tangent: np.ndarray,
@@ -144,7 +155,7 @@ class TableKernels:
         )
         return residual, count.value, value.value
 
-    def examine(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> float:
+    def examine(self, data: Struct, u: np.ndarray, p: float, work: Struct, row: np.ndarray) -> float:
         """Residual, and the row of `inspect`, of one solution."""
         residual = self.linearise(data, u, p, work)
         self.inspect(data, u, p, work, row)
@@ -152,7 +163,7 @@ class TableKernels:
 
 
 @cache
-def _newton() -> Any:
+def _newton() -> Callable[..., float]:
     return function("core_newton", NUMBER, *[POINTER] * 3, WHOLE, *[POINTER] * 6, NUMBER, WHOLE, POINTER)
 
 

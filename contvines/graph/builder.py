@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,13 +29,16 @@ from .queue import Origin, Pending
 from .run import Run
 from .schedule_branches import SWITCHING, leave, tell_dead_end
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
 NOWHERE = 1e-12  # a branch shorter than this is none, and ...
 BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along, and ...
 BEYOND = -1e-13  # ... one whose margins are less all along, though no less than what counts as rounding
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
-def begin(run: Run, problem: Problem, u: Any, p: float, depth: int = 0) -> None:
+def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) -> None:
     """Put the start into the queue; its branch counts as one that so many others lie before.
 
     Raises

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from ..branches.branch import Branch
     from ..branches.special_point import SpecialPoint
+    from ..problems.protocol import Problem
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ class Graph(Resumable):
     missing: list[Attractor] = field(default_factory=list)
     unresolved: list[Unresolved] = field(default_factory=list)
 
-    def __getitem__(self, label: str) -> Any:
+    def __getitem__(self, label: str):
         if label in self.special:
             return self.special[label]
         if label in self.branches:
@@ -188,7 +189,7 @@ class Graph(Resumable):
 
         return prove(self, labels, **options)
 
-    def attach(self, problem: Any) -> None:
+    def attach(self, problem: Problem) -> None:
         """Give all branches and special points without a problem this one (after loading a callable's graph)."""
         for branch in self.branches.values():
             if branch.problem is None and branch.points.shape[1] == problem.dimension:
@@ -243,7 +244,7 @@ class Graph(Resumable):
                 },
             )
 
-    def network(self) -> Any:
+    def network(self):
         """The graph as networkx MultiDiGraph: nodes are branches, edges are switches.
 
         Raises
@@ -269,19 +270,19 @@ class Graph(Resumable):
 
         return merge(self, other)
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self):
         """All points of all branches as a data frame; see :func:`contvines.export.frames.graph_frame`."""
         from ..export.frames import graph_frame
 
         return graph_frame(self)
 
-    def points_to_pandas(self) -> Any:
+    def points_to_pandas(self):
         """The special points as a data frame; see :func:`contvines.export.frames.points_frame`."""
         from ..export.frames import points_frame
 
         return points_frame(self)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self):
         """All points of all branches as a data set; see :func:`contvines.export.frames.graph_dataset`."""
         from ..export.frames import graph_dataset
 
@@ -299,7 +300,7 @@ class Graph(Resumable):
 
         return export(self, to, path)
 
-    def plot(self, x: str | None = None, y: str | None = None, **options: Any) -> Any:
+    def plot(self, x: str | None = None, y: str | None = None, **options: Any):
         """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""
         from ..plots.diagram import plot_diagram
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
 if TYPE_CHECKING:
+    from ..branches.branch import Branch
+    from ..branches.special_point import SpecialPoint
     from .graph import Graph
 
 
@@ -40,7 +42,7 @@ def undrawn(graph: Graph, x: str, y: str) -> str:
     return f"not drawn: {listed} ({'no impacts' if still else f'no {y} there'})"
 
 
-def measured(branch: Any, name: str) -> np.ndarray:
+def measured(branch: Branch, name: str) -> np.ndarray:
     """A measure along a branch, shape (n,); what cannot be had is refused with the names that can.
 
     Raises
@@ -61,12 +63,12 @@ def _shown(graph: Graph, name: str) -> bool:
     return any(_finite(b, graph.parameter, name) for b in graph.branches.values() if len(b))
 
 
-def _finite(branch: Any, x: str, y: str) -> bool:
+def _finite(branch: Branch, x: str, y: str) -> bool:
     """Whether some point of a branch has both measures."""
     return bool(np.any(np.isfinite(measured(branch, x)) & np.isfinite(measured(branch, y))))
 
 
-def measure_at(branch: Any, point: Any, name: str) -> float:
+def measure_at(branch: Branch, point: SpecialPoint, name: str) -> float:
     if name == branch.parameter:
         return float(point.value)
     if 0 <= point.index < len(branch):

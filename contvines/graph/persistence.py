@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,11 @@ from .graph import Graph, Switch
 from .old_names import renamed
 from .unresolved import Unresolved
 from .well_formed import check_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ..problems.protocol import Problem
 
 Entry = tuple[str, str, dict[str, Any]]
 
@@ -81,7 +86,7 @@ def graph_from_entries(
     return graph
 
 
-def branch_of(content: Mapping[str, Any], problem: Any) -> Branch:
+def branch_of(content: Mapping[str, Any], problem: Problem | None) -> Branch:
     """The branch that `content_of` took apart."""
     own = dict(content)
     own["endings"] = _pair(
@@ -103,7 +108,7 @@ def content_of(thing: Any) -> dict[str, Any]:
     return content
 
 
-def _pair(values: Any) -> Any:
+def _pair(values: Iterable) -> tuple:
     first, second = values
     return (first, second)
 
@@ -128,7 +133,7 @@ def same_graph(one: Graph, other: Graph) -> bool:
     )
 
 
-def _equal(a: Any, b: Any) -> bool:
+def _equal(a: object, b: object) -> bool:
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         return (
             isinstance(a, np.ndarray)

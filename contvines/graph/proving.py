@@ -20,7 +20,7 @@ def subject(graph: Graph, label: str) -> Any:
         If there is none, or it cannot be proved.
     """
     name, _, place = label.partition(":")
-    thing = graph[name]
+    thing: Any = graph[name]
     if not place:
         return thing
     last = len(thing) - 1 if name in graph.branches else -1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from .graph import Graph, Switch
 from .identity import Register
 from .limits import NO_LIMITS, Limits
 from .queue import Pending
+
+if TYPE_CHECKING:
+    from ..journal import Journal
 
 Found = TypeVar("Found")
 
@@ -75,7 +78,7 @@ class Run:
         self,
         graph: Graph,
         settings: Settings,
-        journal: Any,
+        journal: Journal,
         depth: int,
         virtual: bool,
         user_functions: Mapping[str, Any] | None,

@@ -148,7 +148,7 @@ def _finite_size(value: float) -> bool:
     return True
 
 
-def _plain(value: Any, levels: int = DEEPEST) -> bool:
+def _plain(value: object, levels: int = DEEPEST) -> bool:
     """Whether a value of any type is nested so little that it can be written and compared."""
     if isinstance(value, Mapping):
         return levels > 0 and all(_plain(v, levels - 1) for v in value.values())
@@ -170,7 +170,7 @@ def _shaped(label: str, thing: Any, **dimensions: int) -> None:
             raise ValueError(f"{label}: {name} has the shape {array.shape} and the type {array.dtype}")
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     text = repr(value) if not is_dataclass(value) else type(value).__name__
     return text if len(text) <= 60 else f"{text[:57]}..."
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -55,7 +55,7 @@ class Candidate(NamedTuple):
 class Child(NamedTuple):
     """A problem in which the motion at a point is a branch point, its unknowns there, and the direction in which others leave."""
 
-    problem: Any
+    problem: Problem
     u: np.ndarray
     direction: np.ndarray
 

@@ -60,7 +60,7 @@ class Chart(Resumable):
     finished: bool = False
     message: str = ""
 
-    def __getitem__(self, label: str) -> Any:
+    def __getitem__(self, label: str):
         for group in (self.loci, self.points):
             if label in group:
                 return group[label]
@@ -121,19 +121,19 @@ class Chart(Resumable):
         }
         return {**result, "units": self.units} if self.units else result
 
-    def plot(self, **options: Any) -> Any:
+    def plot(self, **options: Any):
         """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
         from ..plots.chart import plot_chart
 
         return plot_chart(self, **options)
 
-    def to_pandas(self) -> Any:
+    def to_pandas(self):
         """All points of all loci as a data frame; see :func:`contvines.export.frames.chart_frame`."""
         from ..export.frames import chart_frame
 
         return chart_frame(self)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self):
         """All points of all loci as a data set; see :func:`contvines.export.frames.chart_dataset`."""
         from ..export.frames import chart_dataset
 

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from time import monotonic
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from .plane_point import PlanePoint
 from .regions import divide
 from .starts import begin, regular_side
 from .tracing import checked_ends, trace_locus
+
+if TYPE_CHECKING:
+    from ..journal import Journal
 
 T = TypeVar("T")
 SAME = 1e-7  # points of the plane closer than this part of its sides are one
@@ -89,7 +92,7 @@ class Charting:
         bounds: tuple[float, float],
         virtual: bool,
         settings: Settings,
-        journal: Any,
+        journal: Journal | None,
         progress: Callable[[ChartProgress], None] | None,
     ) -> None:
         self.graph, self.over, self.within, self.bounds = graph, over, within, bounds

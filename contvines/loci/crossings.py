@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from itertools import combinations
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,13 +12,16 @@ from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from .locus import Locus
 
+if TYPE_CHECKING:
+    from .chart import Chart
+
 Met = tuple[str, str, int, int, np.ndarray]  # two loci, a segment of each, and where these meet
 
 MEETING = 1e-5  # of the plane's sides: a crossing so near to a point on both loci is that point
 SOLVED = 1e-12  # of the interval of the second parameter
 
 
-def crossings(chart: Any, each: Callable[[list[Met]], Iterable[Met]] = iter) -> list[dict[str, Any]]:
+def crossings(chart: Chart, each: Callable[[list[Met]], Iterable[Met]] = iter) -> list[dict[str, Any]]:
     """The crossings of the real parts of a chart's loci.
 
     Parameters

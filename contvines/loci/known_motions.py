@@ -14,7 +14,6 @@ from ..branches.branch import Branch
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..problems.abilities import Attracting
-from ..problems.protocol import Problem
 from .layout import BRANCH, FOLD
 from .locus import Locus
 
@@ -27,7 +26,7 @@ INSIDE = -1e-12  # margins below this are negative
 class Start(NamedTuple):
     """A motion at (p, q), and the key of its word."""
 
-    problem: Problem
+    problem: Any
     u: np.ndarray
     p: float
     q: float

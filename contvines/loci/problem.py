@@ -276,7 +276,7 @@ class LocusProblem(ProblemDefaults):
             return self.base.margin_kind(j)
         return "resonance" if j == own + 2 else "end"
 
-    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+    def to_multipliers(self, spectrum: Any) -> np.ndarray:
         """Multipliers of the full period along the locus."""
         return self.base.to_multipliers(spectrum)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from itertools import count
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from .own_test import of_own_kind, with_condition
 from .problem import LocusProblem
 from .sides import impossible_side
 from .starts import begin, first_point, regular_side
+
+if TYPE_CHECKING:
+    from ..journal import Journal
 
 NEARLY = 1e-5  # distance of a motion from its image, relative to the sizes, at which Newton's method may fail because they become one
 UNFOLDED = (
@@ -151,7 +154,7 @@ def trace_locus(
     label: str,
     seed: str | None = None,
     virtual: bool = False,
-    journal: Any = None,
+    journal: Journal | None = None,
     progress: Callable[[str, int, float], None] | None = None,
 ) -> Locus | None:
     """The locus through a special point, both ways; None if its equations do not converge there.
@@ -183,7 +186,7 @@ def _traced(
     label: str,
     seed: str | None,
     virtual: bool,
-    journal: Any,
+    journal: Journal | None,
     progress: Callable[[str, int, float], None] | None,
     name: str,
 ) -> Locus | None:

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
+
+    from .protocol import BorderPoint, Problem, Seed
 
 
 @runtime_checkable
@@ -56,7 +63,7 @@ class Notated(Protocol):
     def notation(self) -> Mapping[str, str]: ...
 
 
-def notation_of(*things: Any) -> dict[str, str]:
+def notation_of(*things: object) -> dict[str, str]:
     """The labels of the first of these (problems, populations, families) that has any; names without one are shown as they are."""
     return next((dict(thing.notation) for thing in things if isinstance(thing, Notated)), {})
 
@@ -65,7 +72,7 @@ def notation_of(*things: Any) -> dict[str, str]:
 class Populated(Protocol):
     """Many starts can be simulated; see :mod:`contvines.coexistence.population`."""
 
-    def population(self, over: str | None = None, **parameters: Any) -> Any: ...
+    def population(self, over: str | None = None, **parameters: float) -> Any: ...
 
 
 @runtime_checkable
@@ -79,7 +86,7 @@ class Attracting(Protocol):
 class Onward(Protocol):
     """Tells of ``beyond`` what needs no switch alone; what leaves with another period or symmetry only where nothing else is found."""
 
-    def onward(self, point: Any) -> Sequence[Any]: ...
+    def onward(self, point: BorderPoint) -> Sequence[Seed]: ...
 
 
 @runtime_checkable
@@ -100,7 +107,7 @@ class Limited(Protocol):
 class Drawable(Protocol):
     """Of what ``orbit`` returned: draws itself."""
 
-    def plot(self, **options: Any) -> Any: ...
+    def plot(self, **options: object) -> Figure: ...
 
 
 @runtime_checkable
@@ -124,7 +131,7 @@ class Provable(Protocol):
         values: np.ndarray,
         marks: Sequence[int] = (),
         within: tuple[float, float] | None = None,
-        special: Mapping[int, Any] | None = None,
+        special: Mapping[int, BorderPoint] | None = None,
     ) -> Any: ...
 
 
@@ -162,7 +169,7 @@ class Nearing(Protocol):
 class Doubling(Protocol):
     """In other pieces it has cycles of twice the length."""
 
-    def doubled_with(self, pieces: Any) -> Any: ...
+    def doubled_with(self, pieces: Any) -> Problem: ...
 
 
 @runtime_checkable
@@ -186,7 +193,7 @@ class Adaptive(Protocol):
 
     def accuracy(self, u: np.ndarray, p: float) -> float: ...
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float: ...
-    def touch_error(self, point: Any) -> float: ...
+    def touch_error(self, point: BorderPoint) -> float: ...
     def normal_form(
         self,
         kind: str,
@@ -196,7 +203,7 @@ class Adaptive(Protocol):
         along: np.ndarray | None = None,
     ) -> tuple[float, float] | None: ...
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None: ...
-    def adapted(self, u: np.ndarray) -> Any: ...
+    def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None: ...
     def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool: ...
-    def refined(self) -> Any: ...
+    def refined(self) -> Problem: ...
     def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray: ...

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +23,13 @@ from .registry import addresses, find_callables
 from .scales import flat_start, given_scale
 from .simulated import SimulatedFlow
 from .spectra import WATCHED, reference_of, rounding, vectors_of, watched, without_roundoff
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from .dense import DenseWork
+    from .large.sparse_work import SparseWork
+    from .protocol import BorderPoint
 
 ALL_ZERO = np.zeros(NEAREST, dtype=complex)
 
@@ -90,9 +97,9 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         jacobian: Callable | None = None,
         derivative: Callable | Mapping[str, Callable] | None = None,
         spectrum: str = "none",
-        mirror: Any = None,
+        mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None = None,
         name: str = "algebraic",
-        scale: Any = None,
+        scale: ArrayLike | None = None,
         symmetries: Sequence[Any] = (),
         conditions: Sequence[Callable] = (),
         switches: Mapping[str, Callable] | None = None,
@@ -205,14 +212,14 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             return self.conditions.equations(u, p, f, self.values)
         return f.value(u, p), f.jacobian(u, p), f.derivative(u, p)
 
-    inverse: Any = None
+    inverse: Callable | None = None
     mixed_rows = True
 
     def preconditioner_at(self) -> Any:
         """The user's approximation of the inverse of dF/du where the equations were evaluated last, or None."""
         return self.inverse
 
-    def raw_spectrum(self, work: Any) -> np.ndarray:
+    def raw_spectrum(self, work: DenseWork | SparseWork) -> np.ndarray:
         """Eigenvalues of dF/du, in units of the typical rate; those watched for branch points, where there is no spectrum."""
         if not self.n_multipliers:
             return np.zeros(0)
@@ -236,7 +243,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             return self.conditions.eigenvalues(work.jacobian)
         return without_roundoff(np.linalg.eigvals(work.jacobian))
 
-    def blur(self, work: Any) -> float:
+    def blur(self, work: DenseWork | SparseWork) -> float:
         """By how much rounding moves a raw eigenvalue."""
         if self.functions.structure == "operator":
             return 0.0
@@ -253,7 +260,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
 
         return sparse.eigenvectors(matrix, values)
 
-    def rates(self, work: Any) -> list[float]:
+    def rates(self, work: DenseWork | SparseWork) -> list[float]:
         """Median size of the eigenvalues, for spectrum "flow"."""
         if self.spectrum != "flow":
             return []
@@ -276,7 +283,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         """Every border of a piece is a switch."""
         return "switch"
 
-    def beyond(self, point: Any) -> list[Seed]:
+    def beyond(self, point: BorderPoint) -> list[Seed]:
         """The solution of the piece on the other side of a switch."""
         return self.pieces.beyond(self, point)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import copy
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -22,6 +22,13 @@ from .parameters import ParameterSet
 from .pieces import Pieces
 from .protocol import ProblemDefaults
 from .scales import Scales
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from .dense import DenseWork
+    from .kernels import Kernels
+    from .large.sparse_work import SparseWork
 
 NOTICED = 1e-13  # noise of the unknowns below this is roundoff
 # relative accuracy of a value that is found to roundoff, for each unknown: brackets may be narrower than that
@@ -66,7 +73,7 @@ class CallableProblem(ProblemDefaults):
     u0: np.ndarray
     given_scale: np.ndarray | None = None
     scales: Scales | None = None
-    reference: Any = None
+    reference: np.ndarray | None = None
     many = False
     close = False
     trouble = ""
@@ -204,12 +211,12 @@ class CallableProblem(ProblemDefaults):
             self._side = self.scales, side(self.sizes()[0])
         return self._side[1]
 
-    def row_sizes(self, work: Any, scale: np.ndarray, width: float) -> np.ndarray:
+    def row_sizes(self, work: DenseWork | SparseWork, scale: np.ndarray, width: float) -> np.ndarray:
         """Largest change of each equation when one unknown or the parameter changes by its scale."""
         return np.maximum(self.algebra.row_sizes(work, scale), np.abs(work.derivative) * width)
 
     def weighed(
-        self, work: Any, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
+        self, work: DenseWork | SparseWork, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Lengths of unknowns of which nothing else is known, from a linearisation at (u, p); and which are known then."""
         if self.functions.structure != "dense":
@@ -223,11 +230,11 @@ class CallableProblem(ProblemDefaults):
 
         return weighed(beside, work.jacobian, lengths, known)
 
-    def rates(self, work: Any) -> list[float]:
+    def rates(self, work: DenseWork | SparseWork) -> list[float]:
         """Sizes of the eigenvalues of dF/du, where they are wanted and can be had cheaply."""
         return []
 
-    def noise_at(self, work: Any, scale: np.ndarray, border: np.ndarray) -> float:
+    def noise_at(self, work: DenseWork | SparseWork, scale: np.ndarray, border: np.ndarray) -> float:
         """How much the noise of the equations moves a solution along the row `border`, relative to the scale.
 
         `work` has the linearisation.
@@ -243,7 +250,7 @@ class CallableProblem(ProblemDefaults):
 
     # ------------------------------------------------------------------ algebra
     @property
-    def algebra(self) -> Any:
+    def algebra(self) -> ModuleType:
         """The module with the kernels that fit the Jacobian."""
         if self.functions.structure == "dense":
             return dense
@@ -252,11 +259,11 @@ class CallableProblem(ProblemDefaults):
         return sparse
 
     @property
-    def kernels(self) -> Any:
+    def kernels(self) -> Kernels:
         """The kernels that fit the Jacobian: dense, sparse, or matrix-free."""
         return self.algebra.KERNELS
 
-    def workspace(self) -> Any:
+    def workspace(self) -> DenseWork | SparseWork:
         """Arrays for the kernels."""
         return self.algebra.workspace(self)
 
@@ -282,7 +289,7 @@ class CallableProblem(ProblemDefaults):
         scale = self.scales.unknowns[: len(errors)]
         return max(float((errors * scale).max() / self.scales.rows.max()), least)
 
-    def doubts(self, work: Any, rounding: float) -> Any:
+    def doubts(self, work: DenseWork | SparseWork, rounding: float) -> Any:
         """Bounds of the errors of the entries of (F_u, F_p), shape (N, N + 1): rounding, and what differences are known to.
 
         A sparse matrix of a sparse problem, None of one without a matrix.

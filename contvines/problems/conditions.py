@@ -11,7 +11,6 @@ is regular again, and a = 0 on its solutions where c is not orthogonal to the le
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from scipy.linalg import null_space
@@ -42,7 +41,7 @@ class Conditions:
     def __init__(self, given: list[Callable], functions: Differentiated, u: np.ndarray) -> None:
         self.given, self.count, self.node = given, len(given), len(u)
 
-        def together(u: np.ndarray, p: Any) -> np.ndarray:
+        def together(u: np.ndarray, p: float) -> np.ndarray:
             return np.array([np.asarray(g(u, p)).reshape(-1)[0] for g in given])
 
         self.functions = functions.of(together, None, None, "conditions", len(given))

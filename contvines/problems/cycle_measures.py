@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .outputs import Outputs
 from .spectra import vectors_of
+
+if TYPE_CHECKING:
+    from .derivatives import Differentiated
+    from .pieces import Pieces
 
 
 class CycleMeasures:
@@ -17,8 +21,8 @@ class CycleMeasures:
     outputs: Outputs
     node: int
     cycle: int
-    pieces: Any
-    functions: Any
+    pieces: Pieces
+    functions: Differentiated
 
     @property
     def measure_names(self) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
@@ -15,6 +15,10 @@ from .interpreted import assign, inspect, not_finite
 from .kernels import Kernels
 from .nearness import distance, nearest
 from .spectra import reference_of, watched
+
+if TYPE_CHECKING:
+    from .interpreted import Equations
+    from .protocol import Problem
 
 # solves and hands out the factors (scipy's getrs starts threads for the smallest matrices); 1 / largest entry of each row
 FACTORISE_AND_SOLVE, ROWS = get_lapack_funcs(("gesv", "geequ"), dtype=np.float64)
@@ -28,7 +32,7 @@ class Units:
         self.scales: Any = self
         self.table = self.columns = self.negative = self.rows = np.ones(0)
 
-    def take(self, data: Any, work: DenseWork) -> None:
+    def take(self, data: Equations, work: DenseWork) -> None:
         """Those of a problem as it is now; the right-hand side that is watched comes with them."""
         size = len(work.last)
         scales = self.scales = data.scales
@@ -100,7 +104,7 @@ def dense_workspace(n: int, watched: bool = False) -> DenseWork:
     )
 
 
-def workspace(problem: Any) -> DenseWork:
+def workspace(problem: Problem) -> DenseWork:
     """Arrays for a problem."""
     return dense_workspace(problem.dimension, isinstance(problem, Nearing) and problem.many)
 
@@ -110,7 +114,7 @@ def row_sizes(work: DenseWork, scale: np.ndarray) -> np.ndarray:
     return (np.abs(work.jacobian) * scale).max(axis=1)
 
 
-def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
+def linearise(data: Equations, u: np.ndarray, p: float, work: DenseWork) -> float:
     """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
     units = work.units
     if units.scales is not data.scales:
@@ -133,7 +137,7 @@ def linearise(data: Any, u: np.ndarray, p: float, work: DenseWork) -> float:
 
 
 def bordered(
-    data: Any, work: DenseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
+    data: Equations, work: DenseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant.
 
@@ -184,12 +188,12 @@ def _equilibrate(work: DenseWork, border: np.ndarray, n: float) -> None:
         np.multiply(work.matrix, factors[:, None], out=work.matrix)
 
 
-def distance_to_singular(data: Any, work: DenseWork) -> float:
+def distance_to_singular(data: Equations, work: DenseWork) -> float:
     """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`.nearness`."""
     return distance(work.image)
 
 
-def nearest_eigenvalues(data: Any, work: DenseWork) -> np.ndarray:
+def nearest_eigenvalues(data: Equations, work: DenseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
     if data.reference is None:
         rows, units = data.sizes()
@@ -197,7 +201,7 @@ def nearest_eigenvalues(data: Any, work: DenseWork) -> np.ndarray:
     return nearest(watched(work.jacobian, data.reference))
 
 
-def matrix(data: Any, work: DenseWork) -> np.ndarray:
+def matrix(data: Equations, work: DenseWork) -> np.ndarray:
     """F_u as it stands in a workspace."""
     return work.jacobian.copy()
 
@@ -207,7 +211,7 @@ def flip(data: Any, work: DenseWork, sign: float) -> None:
     data.turn_closure(work.jacobian, sign)
 
 
-def transpose(data: Any, work: DenseWork, column: np.ndarray, other: DenseWork) -> None:
+def transpose(data: Equations, work: DenseWork, column: np.ndarray, other: DenseWork) -> None:
     """The transposed Jacobian, with another last column, into another workspace."""
     other.jacobian[:] = work.jacobian.T
     other.derivative[:] = column

@@ -39,7 +39,7 @@ class UserFunction:
         self.f, self.name, self.parameters = f, name, parameters
         self.alone = not parameters.named
 
-    def raw(self, u: np.ndarray, p: Any) -> Any:
+    def raw(self, u: np.ndarray, p: complex) -> Any:
         """What f returns, whatever it is.
 
         Raises
@@ -56,7 +56,7 @@ class UserFunction:
                 hint = f" ({self.name} must not change its argument; let it work on u.copy())"
             raise NotEvaluable(f"{self.name} raises {type(error).__name__}: {error}{hint}") from error
 
-    def __call__(self, u: np.ndarray, p: Any) -> np.ndarray:
+    def __call__(self, u: np.ndarray, p: complex) -> np.ndarray:
         """A flat array of its own: real for real arguments, complex for complex ones.
 
         Raises
@@ -66,7 +66,7 @@ class UserFunction:
         """
         return self.flat(self.raw(u, p), u, p)
 
-    def flat(self, value: Any, u: np.ndarray, p: Any) -> np.ndarray:
+    def flat(self, value: object, u: np.ndarray, p: complex) -> np.ndarray:
         """What f has returned at (u, p) as a flat array; see ``__call__``."""
         if value is None:
             raise NotEvaluable(f"{self.name} returns None; numbers are needed")

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cmp_to_key
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsRichComparison
+    from numpy.typing import ArrayLike
 
 Image = Callable[[np.ndarray], np.ndarray]
 
@@ -17,7 +21,9 @@ def linear_part(image: Image, n: int) -> Image:
     return image if not added.any() else lambda v: image(v) - added
 
 
-def image_map(symmetry: Any, n: int, name: str = "mirror") -> Callable[[np.ndarray], np.ndarray]:
+def image_map(
+    symmetry: Callable[[np.ndarray], ArrayLike] | ArrayLike, n: int, name: str = "mirror"
+) -> Callable[[np.ndarray], np.ndarray]:
     """u -> image of u.
 
     Parameters
@@ -103,7 +109,7 @@ def smallest_image(u: np.ndarray, images: list[Callable], scale: np.ndarray) -> 
     return best
 
 
-def in_order(scale: np.ndarray) -> Any:
+def in_order(scale: np.ndarray) -> Callable[[np.ndarray], SupportsRichComparison]:
     """A key of dictionary order, in which differences at roundoff do not count."""
 
     def compare(a: np.ndarray, b: np.ndarray) -> int:

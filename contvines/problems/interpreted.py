@@ -2,12 +2,36 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from .parameters import ParameterSet
+    from .scales import Scales
 
-def inspect(data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+
+class Equations(Protocol):
+    """What the kernels read of a problem made of Python callables, their `data`."""
+
+    values: ParameterSet
+    scales: Scales | None
+    reference: Any
+    trouble: str
+    unsolved: bool
+
+    @property
+    def parameter(self) -> str: ...
+    @property
+    def side(self) -> np.ndarray: ...
+    def preconditioner_at(self) -> Any: ...
+    def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, Any, np.ndarray]: ...
+    def sizes(self) -> tuple[np.ndarray, np.ndarray]: ...
+    def raw_spectrum(self, work: Any) -> np.ndarray: ...
+    def margins(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+def inspect(data: Equations, u: np.ndarray, p: float, work: object, row: np.ndarray) -> None:
     """Raw spectrum of the linearisation, then the margins of problems that have any."""
     spectrum = data.raw_spectrum(work)
     m = 2 * len(spectrum)
@@ -30,6 +54,6 @@ def not_finite(residual: np.ndarray, jacobian: np.ndarray, derivative: np.ndarra
     return ""
 
 
-def assign(data: Any, other: Any, value: float) -> None:
+def assign(data: Equations, other: Equations, value: float) -> None:
     """Give the parameter that varies in ``other`` a value in ``data``, in place."""
     data.values.assign(other.parameter, value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,12 @@ from .registry import addresses, find_callables
 from .scales import flat_start, given_scale
 from .simulated import SimulatedMap
 from .spectra import without_roundoff
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from .dense import DenseWork
+    from .protocol import BorderPoint
 
 SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
 
@@ -78,8 +84,8 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         derivative: Callable | Mapping[str, Callable] | None = None,
         name: str = "map",
         dimension: int | None = None,
-        mirror: Any = None,
-        scale: Any = None,
+        mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None = None,
+        scale: ArrayLike | None = None,
         switches: Mapping[str, Callable] | None = None,
         outputs: Mapping[str, Callable] | None = None,
     ) -> None:
@@ -208,7 +214,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         n, d = self.cycle, self.node
         jacobian.reshape(n, d, n, d)[n - 1, :, 0, :] -= 2.0 * sign * np.eye(d)
 
-    def raw_spectrum(self, work: Any) -> np.ndarray:
+    def raw_spectrum(self, work: DenseWork) -> np.ndarray:
         """Multipliers: eigenvalues of the product of the Jacobians along the cycle."""
         n, d = self.cycle, self.node
         blocks = work.jacobian.reshape(n, d, n, d)
@@ -228,7 +234,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         """Every border of a piece is a switch."""
         return "switch"
 
-    def beyond(self, point: Any) -> list[Seed]:
+    def beyond(self, point: BorderPoint) -> list[Seed]:
         """The cycles on the other side of a switch."""
         return self.pieces.beyond(self, point)
 
@@ -305,7 +311,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         return ("cycle", root, self.node, pieces), min(turned, key=in_order(np.tile(scale, root)))
 
     @hinting
-    def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None) -> Any:
+    def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None):
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
         problem = self if over in (None, self.parameter) else self.against(str(over))
         from ..coexistence.maps import MapPopulation

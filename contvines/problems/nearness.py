@@ -9,9 +9,12 @@ problem is asked (`closer`): its rows hold the NEAREST eigenvalues to zero of F_
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from .protocol import Problem
 
 LARGEST = 300  # unknowns up to which a dense matrix of a sparse Jacobian is made for normal forms
 NEAREST = 4  # as many null vectors as a branch point may have
@@ -34,7 +37,7 @@ def nearest(values: np.ndarray) -> np.ndarray:
     return values[order][:NEAREST]
 
 
-def is_large(problem: Any) -> bool:
+def is_large(problem: Problem) -> bool:
     """Whether F_u is sparse and no dense matrix of it is made."""
     functions = getattr(problem, "functions", None)
     return getattr(functions, "structure", "dense") == "sparse" and problem.dimension > LARGEST

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contvines.shared.near_names import did_you_mean
+
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 
 class Parameters:
@@ -20,13 +23,13 @@ class Parameters:
     def __init__(self, values: Mapping[str, Any]) -> None:
         self.__dict__.update(values)
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> NoReturn:
         raise AttributeError(f"there is no parameter {name!r}; the problem has {', '.join(self)}")
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, name: str) -> complex:
         return getattr(self, name)
 
-    def __setattr__(self, name: str, value: Any) -> None:
+    def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"parameter {name!r} cannot be changed by the equations")
 
     def __iter__(self) -> Iterator[str]:
@@ -59,9 +62,9 @@ class ParameterSet:
         If a name is no identifier, a value no finite number, the mapping is empty, or the name is not among them.
     """
 
-    def __init__(self, given: Any, varying: str) -> None:
+    def __init__(self, given: Mapping[str, float] | float, varying: str) -> None:
         self.named = isinstance(given, Mapping)
-        values = dict(given) if self.named else {varying: given}
+        values: dict[str, Any] = dict(given) if isinstance(given, Mapping) else {varying: given}
         if not values:
             raise ValueError("p0 = {}: give at least one parameter, for example {'p': 1.0}")
         for name, value in values.items():
@@ -90,7 +93,7 @@ class ParameterSet:
         """Give a parameter another value, in place."""
         self.values[name] = float(value)
 
-    def at(self, p: Any) -> Any:
+    def at(self, p: complex) -> Parameters | complex:
         """What the user's functions get as their second argument when the varying parameter is `p`."""
         return Parameters({**self.values, self.varying: p}) if self.named else p
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from copy import copy
 from inspect import signature
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from .abilities import Doubling
 from .functions import NotEvaluable, UserFunction
 from .parameters import ParameterSet
 from .protocol import Seed
+
+if TYPE_CHECKING:
+    from .protocol import BorderPoint
 
 NOTHING = 1e-3  # margins below this part of their change over a small step vanish
 
@@ -38,7 +41,7 @@ class UnknownSwitch(KeyError):
 class Signs(dict[str, int]):
     """+1 or -1 by the name of a switch."""
 
-    def __missing__(self, name: Any) -> int:
+    def __missing__(self, name: str) -> int:
         hint = did_you_mean(str(name), self)
         raise UnknownSwitch(f"there is no switch {name!r}{hint}; the problem has {', '.join(self)}")
 
@@ -166,7 +169,7 @@ class Pieces:
         other.signs = np.tile(self.signs[:of], (times, 1))
         return other
 
-    def beyond(self, problem: Any, point: Any) -> list[Seed]:
+    def beyond(self, problem: Any, point: BorderPoint) -> list[Seed]:
         """What leaves a border: the solution of the piece next door, and of maps the cycle of twice the length.
 
         Parameters
@@ -177,6 +180,7 @@ class Pieces:
             Its tangent points out of the piece.
         """
         j = point.margin_index
+        assert j is not None
         seeds = []
         candidates = [(problem.with_pieces(self.turned(j)), point.u, False)]
         if isinstance(problem, Doubling):

@@ -87,7 +87,7 @@ class Symmetry:
 
     kind: str
     apply: Callable[[np.ndarray], np.ndarray]
-    root: Callable[[np.ndarray], tuple[Any, np.ndarray]] | None = None
+    root: Callable[[np.ndarray], tuple[Problem, np.ndarray]] | None = None
     kind_at: Callable[[np.ndarray], str] | None = None
     offset: Callable[[float], np.ndarray] | None = None
 
@@ -95,7 +95,7 @@ class Symmetry:
 class Embedding(NamedTuple):
     """A solution seen in a larger problem, in which it is a branch point."""
 
-    problem: Any
+    problem: Problem
     u: np.ndarray
     tangent: np.ndarray
     kind: str
@@ -120,13 +120,26 @@ class Seed:
         At a border: the branch simply goes on with another word (else: a nonsmooth fold).
     """
 
-    problem: Any
+    problem: Problem
     u: np.ndarray
     p: float
     tangent: np.ndarray | None = None
     kind: str = "start"
     note: str = ""
     persistence: bool = True
+
+
+class BorderPoint(Protocol):
+    """What a problem is told of a special point at a border."""
+
+    @property
+    def u(self) -> np.ndarray: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def tangent(self) -> np.ndarray: ...
+    @property
+    def margin_index(self) -> int | None: ...
 
 
 class Problem(Protocol):
@@ -144,7 +157,7 @@ class Problem(Protocol):
     @property
     def data(self) -> Any: ...
     def workspace(self) -> Any: ...
-    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Any: ...
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Problem: ...
     def check_value(self, name: str, value: float) -> None: ...
 
     # sizes
@@ -178,15 +191,15 @@ class Problem(Protocol):
     @property
     def period_shift(self) -> np.ndarray | None: ...
     @property
-    def symmetries(self) -> Sequence[Any]: ...
+    def symmetries(self) -> Sequence[Symmetry]: ...
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]: ...
-    def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool | None: ...
-    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None: ...
+    def same_motion(self, u: np.ndarray, p: float, other: Problem, v: np.ndarray) -> bool | None: ...
+    def root(self, u: np.ndarray, p: float) -> tuple[Problem, np.ndarray] | None: ...
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
-    ) -> Sequence[Any]: ...
-    def beyond(self, point: Any) -> Sequence[Any]: ...
-    def dead_end(self, point: Any) -> str: ...
+    ) -> Sequence[Embedding]: ...
+    def beyond(self, point: BorderPoint) -> Sequence[Seed]: ...
+    def dead_end(self, point: BorderPoint) -> str: ...
 
     # for people
     @property
@@ -243,7 +256,7 @@ class ProblemDefaults:
     def parameters(self) -> Mapping[str, float]:
         return {}
 
-    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Any:
+    def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Problem:
         raise ValueError(
             f"{parameter} cannot vary: a {type(self).__name__} has the one parameter {self.parameter!r}"
         )
@@ -271,19 +284,19 @@ class ProblemDefaults:
     ) -> list[Embedding]:
         return []
 
-    def beyond(self, point: Any) -> list[Seed]:
+    def beyond(self, point: BorderPoint) -> list[Seed]:
         return []
 
-    def dead_end(self, point: Any) -> str:
+    def dead_end(self, point: BorderPoint) -> str:
         return ""
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
         return (type(self).__name__, self.dimension), np.asarray(u, dtype=float)
 
-    def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool | None:
+    def same_motion(self, u: np.ndarray, p: float, other: Problem, v: np.ndarray) -> bool | None:
         return None
 
-    def root(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None:
+    def root(self, u: np.ndarray, p: float) -> tuple[Problem, np.ndarray] | None:
         return None
 
     @property
@@ -308,7 +321,7 @@ class ProblemDefaults:
     def describe(self) -> dict[str, Any]:
         return {"name": type(self).__name__, "factory": None}
 
-    def orbit(self, u: np.ndarray, p: float) -> Any:
+    def orbit(self, u: np.ndarray, p: float) -> object:
         return Solution(self.parameter, float(p), np.array(u))
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:

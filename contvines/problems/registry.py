@@ -35,7 +35,7 @@ def register(name: str, build: Callable[..., Any]) -> None:
     _added[str(name)] = build
 
 
-def factory(name: Any) -> Callable[..., Any]:
+def factory(name: object) -> Callable[..., Any]:
     """The function behind a factory's name.
 
     Raises

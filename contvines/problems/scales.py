@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 APART = 30.0  # of many unknowns those whose sizes differ by less belong to one field
 MANY = 20  # unknowns of fewer have each its own scale
@@ -53,7 +56,7 @@ class Scales:
         )
 
 
-def flat_start(u0: Any) -> np.ndarray:
+def flat_start(u0: ArrayLike) -> np.ndarray:
     """A user's start as a flat array of its own.
 
     Raises
@@ -74,7 +77,7 @@ def flat_start(u0: Any) -> np.ndarray:
     return start.reshape(-1)
 
 
-def given_scale(scale: Any, n: int) -> np.ndarray | None:
+def given_scale(scale: ArrayLike | None, n: int) -> np.ndarray | None:
     """A user's ``scale`` as an array of n positive numbers; None stays None.
 
     Raises

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .functions import NotEvaluable
 from .scales import Scales
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 class MapSection:
@@ -59,7 +62,7 @@ class MapSection:
 class SimulatedMap:
     """What a MapProblem says of its motions."""
 
-    population: Any
+    population: Callable[..., Any]
     cycle: int
 
     def section(self, p: float) -> MapSection:
@@ -86,7 +89,7 @@ class SimulatedFlow:
     spectrum: str
     node: int
     u0: np.ndarray
-    residuals: Any
+    residuals: Callable[[np.ndarray, float], np.ndarray]
     scales: Scales | None
 
     def witness(self, p: float, starts: int = 12) -> list[dict[str, Any]]:

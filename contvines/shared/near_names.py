@@ -2,10 +2,9 @@
 
 import difflib
 from collections.abc import Iterable
-from typing import Any
 
 
-def did_you_mean(given: Any, known: Iterable[str]) -> str:
+def did_you_mean(given: object, known: Iterable[str]) -> str:
     """ " (did you mean ...?)" where one of the known names is close, else empty."""
     close = difflib.get_close_matches(str(given)[:60], [str(name) for name in known], n=1, cutoff=0.6)
     return f" (did you mean {close[0]!r}?)" if close else ""
@@ -15,7 +14,7 @@ def did_you_mean(given: Any, known: Iterable[str]) -> str:
 ASKED = ("word", "periods", "guess", "start", "count", "seed", "size", "time", "events", "over")
 
 
-def no_parameter(given: Any, machine: str, known: Iterable[str]) -> str:
+def no_parameter(given: object, machine: str, known: Iterable[str]) -> str:
     """The sentence that a machine has no such parameter, and which it has."""
     names = list(known)
     return f"{given} is no parameter of {machine}{did_you_mean(given, [*names, *ASKED])}; it has {', '.join(names)}"

@@ -19,7 +19,10 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
 
 THREADS = Path("/proc/self/task")  # a folder per thread
 ATTEMPTS = 3  # at one piece whose process is lost
@@ -142,7 +145,7 @@ class _Worker:
         self.connection.close()
 
 
-def _serve(connection: Any, work: Callable[..., Any]) -> None:
+def _serve(connection: Connection, work: Callable[..., Any]) -> None:
     """What such a process does."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that asks decides when to stop
     signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853
@@ -15,9 +15,6 @@ from scipy.optimize import brentq, minimize_scalar
 
 from orbits.integrators.expressions import Layout, Values, constant, derivatives, variable, written
 from orbits.symbols import Symbol
-
-if TYPE_CHECKING:
-    pass
 
 RELATIVE, ABSOLUTE = 1e-13, 1e-14  # error of a step
 BETWEEN = np.linspace(0.0, 1.0, 13)[1:]  # parts of a step at which functions are sampled

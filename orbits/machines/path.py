@@ -7,12 +7,7 @@ forcing together. While one parameter p varies, number j is ``path[0, j] * p**pa
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    pass
 
 
 def place(params, path, p, out):

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
 from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
-
-if TYPE_CHECKING:
-    pass
 
 TWO_PI = 2.0 * np.pi
 

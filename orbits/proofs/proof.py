@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from orbits.proofs.balls import ball, library, precision, texts
 from orbits.proofs.certificates import Entry, certificate, orbit_box, resting_box
@@ -12,9 +12,6 @@ from orbits.proofs.enclosing import Box
 from orbits.proofs.equations import Motif
 from orbits.proofs.obstacles import Obstacle
 from orbits.proofs.varying import Varying
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)

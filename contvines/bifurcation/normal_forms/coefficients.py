@@ -31,7 +31,7 @@ from .taylor import Line, along_line
 NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
 
 
-def _size(vector: Any) -> float:
+def _size(vector: np.ndarray) -> float:
     """Largest entry."""
     return float(np.abs(vector).max())
 
@@ -47,7 +47,7 @@ class Coefficient(NamedTuple):
 class Pair(NamedTuple):
     """The critical vector of a pair with open ends, the left one, derivatives along real and imaginary part, h20, w.K q."""
 
-    vector: Any
+    vector: np.ndarray
     left: np.ndarray
     a: Line
     b: Line

@@ -25,12 +25,16 @@ Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., chapters 8 a
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .coefficients import Forms
 from .manifold import Monomial, reduced
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 
 NEAR = 1e-4  # distance at which a multiplier is one of those that a strong resonance has
 #: of flows, how the coefficients grow with the unit of rates; those that are not named do not
@@ -102,7 +106,7 @@ def _simple(
     values: list[Any],
     stay: list[tuple[int, Monomial]],
     degree: int,
-    wanted: Any,
+    wanted: Callable[[Any], dict[str, float]],
 ) -> dict[str, float]:
     """The reduction for simple multipliers, conjugate ones in a row; what stays for one of a pair stays for the other."""
     m = len(values)

@@ -11,7 +11,7 @@ taken from F_u at Chebyshev nodes on the lines along the real and the imaginary 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,6 +20,9 @@ from scipy.sparse.linalg import splu
 from .coefficients import Coefficient
 from .taylor import ENOUGH, NODES, RADIUS, SMALLER, derivative_weights, nodes
 
+if TYPE_CHECKING:
+    from ...problems.protocol import Problem
+
 RADII = 14  # at most
 WORSE = 8.0  # growth of the change from one radius to the next at which rounding has taken over
 SWEEPS = 12  # of inverse iteration, at most
@@ -27,7 +30,7 @@ SWEEPS = 12  # of inverse iteration, at most
 Products = Callable[[np.ndarray, np.ndarray], "np.ndarray | None"]
 
 
-def sparse_lyapunov(problem: Any, u: np.ndarray, p: float, critical: complex) -> Coefficient:
+def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex) -> Coefficient:
     """l1 of an equilibrium whose F_u is sparse.
 
     Parameters

@@ -8,13 +8,17 @@ F_u is nearly singular, it is as good as elsewhere.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from .nearest_eigenvalues import nearest_sparse
+
+if TYPE_CHECKING:
+    from ..interpreted import Equations
+    from .sparse_work import SparseWork
 
 ACCURATE = 1e-11  # relative residual
 ENOUGH = 1e-4  # ... that will do where rounding or the patience below allows no more
@@ -89,7 +93,7 @@ class Bordered:
     border : ndarray, shape (N + 1,)
     """
 
-    def __init__(self, data: Any, work: Any, border: np.ndarray) -> None:
+    def __init__(self, data: Equations, work: SparseWork, border: np.ndarray) -> None:
         rows, units = data.sizes()
         width = 1.0 if data.scales is None else data.scales.parameter
         self.work, self.inverse = work, data.preconditioner_at()
@@ -138,7 +142,9 @@ class Bordered:
         return found * self.columns, gap
 
 
-def iterate(data: Any, work: Any, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
+def iterate(
+    data: Equations, work: SparseWork, border: np.ndarray, sides: np.ndarray
+) -> tuple[np.ndarray, float]:
     """Solutions of the bordered system; the sign of the determinant is not known.
 
     NaN where GMRES does not converge, which the problem is told. `work` has F_u and F_p.
@@ -171,7 +177,7 @@ def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarr
     return tangent * (sides[-1, 1] / along) if along != 0.0 else None
 
 
-def distance_to_singular(data: Any, work: Any) -> float | None:
+def distance_to_singular(data: Equations, work: SparseWork) -> float | None:
     """How near the bordered matrix of the last solution is to a singular one: |M^-1 b| / |M^-1 M^-1 b|; see :mod:`contvines.problems.nearness`.
 
     Without a sign of the determinant this is all that tells a branch point, so that one application of the inverse, in which a null
@@ -191,7 +197,7 @@ def distance_to_singular(data: Any, work: Any) -> float | None:
 class Inverse:
     """(F_u - shift)^-1, by GMRES, in the place of factors; the shift in units of rows and unknowns, or as eigenvalues of F_u have it."""
 
-    def __init__(self, data: Any, work: Any, shift: float, plain: bool = False) -> None:
+    def __init__(self, data: Equations, work: SparseWork, shift: float, plain: bool = False) -> None:
         self.rows, self.columns = data.sizes()
         self.jacobian, self.inverse = work.jacobian, data.preconditioner_at()
         self.shift = shift * (self.columns if plain else self.rows)
@@ -214,7 +220,7 @@ class Inverse:
         return found * self.columns
 
 
-def nearest_eigenvalues(data: Any, work: Any) -> np.ndarray:
+def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to the sizes of rows and unknowns; shifted where it is singular."""
     rows, units = data.sizes()
     values = np.zeros(0)

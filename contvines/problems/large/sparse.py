@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,8 +23,13 @@ from ..kernels import Kernels
 from ..nearness import distance
 from . import matrix_free
 from .nearest_eigenvalues import nearest_sparse
-from .sparse_factors import Method, SuperLUFactors
+from .sparse_factors import SuperLUFactors
 from .sparse_loci import flip, matrix, transpose
+from .sparse_work import SparseWork
+
+if TYPE_CHECKING:
+    from ..interpreted import Equations
+    from ..protocol import Problem
 
 REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
 ENOUGH = 1e-9  # ... at which it will do
@@ -35,27 +39,7 @@ CLOSE, SWEEPS = 1e-2, 8  # refinement with those has to gain two digits each tim
 EIGENVALUES = 1e-8  # relative accuracy of the leading eigenvalues
 
 
-@dataclass
-class SparseWork:
-    """F, F_u, F_p and the factors of F_u, made when they are first needed; `near` are those of the Jacobian before, if they are kept."""
-
-    residual: np.ndarray
-    derivative: np.ndarray
-    jacobian: Any = None
-    factors: Any = None
-    near: Any = None
-    keep: bool = True
-    failed: bool = False
-    method: Method = field(default_factory=Method)
-    eliminated: Any = None  # factors, border, F_u^-1 F_p and Schur complement of the last block elimination
-    distance: float = 1.0
-    tangent: Any = None  # the last one of a matrix-free Jacobian, a guess of the next one
-
-    def __getitem__(self, i: int) -> np.ndarray:
-        return (self.residual, self.derivative)[i]
-
-
-def workspace(problem: Any) -> SparseWork:
+def workspace(problem: Problem) -> SparseWork:
     """Arrays for a problem."""
     # eigenvalues need factors of the very Jacobian, so that those of another one save nothing
     keep = problem.spectrum == "none"
@@ -69,7 +53,7 @@ def row_sizes(work: SparseWork, scale: np.ndarray) -> np.ndarray:
     return np.asarray(abs(work.jacobian).multiply(scale[None, :]).max(axis=1).todense()).reshape(-1)
 
 
-def linearise(data: Any, u: np.ndarray, p: float, work: SparseWork) -> float:
+def linearise(data: Equations, u: np.ndarray, p: float, work: SparseWork) -> float:
     """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
     with np.errstate(all="ignore"):
         try:
@@ -209,7 +193,7 @@ def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np
 
 
 def bordered(
-    data: Any, work: SparseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
+    data: Equations, work: SparseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant (1: not known)."""
     sides = np.zeros((len(border), 2))
@@ -226,7 +210,7 @@ def bordered(
 
 
 # ---------------------------------------------------------------------- eigenvalues
-def distance_to_singular(data: Any, work: SparseWork) -> float:
+def distance_to_singular(data: Equations, work: SparseWork) -> float:
     """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`contvines.problems.nearness`. Without refinement: it is a rough number."""
     if work.eliminated is None:
         return work.distance
@@ -243,7 +227,7 @@ def distance_to_singular(data: Any, work: SparseWork) -> float:
     return work.distance
 
 
-def nearest_eigenvalues(data: Any, work: SparseWork) -> np.ndarray:
+def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
     if not sp.issparse(work.jacobian):
         return matrix_free.nearest_eigenvalues(data, work)
@@ -253,7 +237,7 @@ def nearest_eigenvalues(data: Any, work: SparseWork) -> np.ndarray:
     return nearest_sparse(_factorise(work), data.reference)
 
 
-def leading(data: Any, work: SparseWork, count: int, shift: float) -> np.ndarray:
+def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.ndarray:
     """The eigenvalues of F_u nearest to a shift, by ARPACK; with the factors at hand where the shift is 0.
 
     Without a matrix they are had by solving with the preconditioner; without that, too, the rightmost ones are looked for.

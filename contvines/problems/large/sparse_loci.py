@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..nearness import LARGEST
 
+if TYPE_CHECKING:
+    from ..interpreted import Equations
+    from .sparse_work import SparseWork
 
-def flip(data: Any, work: Any, sign: float) -> None:
+
+def flip(data: Equations, work: SparseWork, sign: float) -> None:
     """Nothing: what has a sparse Jacobian is no map."""
 
 
-def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
+def transpose(data: Equations, work: SparseWork, column: np.ndarray, other: SparseWork) -> None:
     """The transposed Jacobian, with another last column, into another workspace."""
     from scipy.sparse import issparse
 
@@ -25,7 +29,7 @@ def transpose(data: Any, work: Any, column: np.ndarray, other: Any) -> None:
     other.derivative[:] = column
 
 
-def matrix(data: Any, work: Any) -> np.ndarray:
+def matrix(data: Equations, work: SparseWork) -> np.ndarray:
     """F_u as it stands in a workspace, dense."""
     from scipy.sparse import issparse
 

@@ -5,12 +5,9 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from orbits.machines.physical.quantities import Quantity, QuantityError
-
-if TYPE_CHECKING:
-    pass
 
 _KINDS = {
     "kg": "mass",
