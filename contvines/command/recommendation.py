@@ -289,6 +289,14 @@ class Recommendation:
                 continue
             top = self.met.get(f"{kind}_peak", math.nan)
             most = f", at most {self.shown('peak', top)}" if math.isfinite(top) else ""
+            if kind == "modulated" and "modulated_mean" in self.met:
+                low, mean, high = (
+                    self.shown("peak", self.met[f"modulated_{end}"]) for end in ("low", "mean", "high")
+                )
+                strong = 100 * self.met["modulated_strong"]
+                most += (
+                    f", per period {low} to {high} (mean {mean}); strongly modulated: {strong:.3g} % of them"
+                )
             found.append(
                 (f"  {said}", f"{100 * self.met[kind]:.3g} %", f"of simulated starts over the interval{most}")
             )

@@ -318,11 +318,12 @@ class _Work:
         from contvines.survey.plan import Plan
 
         plan = Plan({self.name: np.array([best.value])}, self.drawn)
-        rows = self.surveyed(plan, ("peak", loads, met), values=VALUES, starts=STARTS)
+        rows = self.surveyed(plan, ("peak", "modulated", loads, met), values=VALUES, starts=STARTS)
         peaks = rows.known("peak").ravel()
         works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
         shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MET}
-        tops = {name: _largest(rows[name]) for name in ("calm_peak", "modulated_peak")}
+        bands = ("modulated_low", "modulated_mean", "modulated_high", "modulated_strong")
+        tops = {name: _largest(rows[name]) for name in ("calm_peak", "modulated_peak", *bands)}
         shares |= {name: top for name, top in tops.items() if math.isfinite(top)}
         most = {name: _largest(rows[name]) for name in LOADS}
         unknown += [

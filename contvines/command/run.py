@@ -31,6 +31,7 @@ from contvines.command.options import (
     TrustOption,
 )
 
+SIMULATED = "#2f6f3e"
 MANY = 30  # branches; of a larger graph `diagram` tells the stable motions alone
 OutputOption = Annotated[
     Path | None,
@@ -192,7 +193,7 @@ def _run(
         from contvines.coexistence.missing import told
 
         say(told(graph, f"contvines atlas {path} adds what is connected to it"), quiet)
-    draw(plot, lambda: _picture(graph, x, y, compare), quiet)
+    draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 
 def _tell(graph: Any, target: Path, summarised: bool, details: bool) -> None:
@@ -253,11 +254,65 @@ def _look(study: Any, target: Path) -> Any:
     return graph
 
 
-def _picture(graph: Any, x: str | None, y: str | None, compare: list[str] | None) -> Any:
+def _picture(graph: Any, x: str | None, y: str | None, compare: list[str] | None, study: Any) -> Any:
     if graph.attractors:
         from contvines.plots.atlas import plot_atlas
 
         return plot_atlas(graph, x, y)
     from contvines.command.compare import compared
 
-    return compared(graph, compare, x, y)
+    figure = compared(graph, compare, x, y)
+    if graph.looked and x in (None, graph.parameter) and _shows_oscillator(graph, y):
+        _add_simulated(figure.axes[0], graph, study)
+    return figure
+
+
+def _shows_oscillator(graph: Any, y: str | None) -> bool:
+    """Whether the picture shows a response of which simulations tell the band."""
+    from contvines.graph.measures import default_measure
+
+    return default_measure(graph) == "max_abs_q1" and y in (None, "max_abs_q1")
+
+
+def _add_simulated(axes: Any, graph: Any, study: Any) -> None:
+    """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
+    from contvines.command.compose import population
+    from contvines.survey.simulated import simulated
+
+    met = simulated(graph, population(study))
+    plain = [one for one in met if one.low == one.high]
+    banded = [one for one in met if one.low < one.high]
+    if plain:
+        axes.plot(
+            [one.value for one in plain],
+            [one.high for one in plain],
+            ".",
+            color=SIMULATED,
+            zorder=1.6,
+            label="simulated",
+        )
+    if banded:
+        axes.vlines(
+            [one.value for one in banded],
+            [one.low for one in banded],
+            [one.high for one in banded],
+            color=SIMULATED,
+            alpha=0.35,
+            lw=2.5,
+            zorder=1.5,
+            label="modulated, by period",
+        )
+        axes.plot(
+            [one.value for one in banded], [one.mean for one in banded], "_", color=SIMULATED, zorder=1.6
+        )
+    old = axes.get_legend()
+    if met and old is not None:
+        handles, labels = axes.get_legend_handles_labels()
+        named = [text.get_text() for text in old.get_texts()]
+        more = [(handle, label) for handle, label in zip(handles, labels) if label not in named]
+        axes.legend(
+            [*old.legend_handles, *(handle for handle, _ in more)],
+            [*named, *(label for _, label in more)],
+            loc="best",
+            fontsize="small",
+        )

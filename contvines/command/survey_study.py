@@ -177,7 +177,8 @@ def units_of(study: Study, model: Any) -> dict[str, str]:
     if not units:
         return {}
     over, shown = units.get(study.parameter, ""), units.get(model.default_measure, "")
-    units |= dict.fromkeys(("peak", "lower_peak"), shown) | UNITS
+    bands = ("modulated_low", "modulated_mean", "modulated_high")
+    units |= dict.fromkeys(("peak", "lower_peak", *bands), shown) | UNITS
     units |= dict.fromkeys(
         ("peak_at", "lower_peak_at", "activation_from_below", "activation_from_above"), over
     )

@@ -18,6 +18,7 @@ from .stretches import LEAST, gaps, highest, stretches, unseen
 if TYPE_CHECKING:
     from .completion import Unbranched
 
+SILENT = 0.01  # of the forcing periods without an impact, at least, make a modulation strong
 GRID = 401  # values at which coexisting responses are compared
 KNOWN = 1.0 - LEAST  # share of the interval from which on the responses are known
 
@@ -142,6 +143,25 @@ def _judged(graph: Any) -> bool:
     return any(stable is not None for branch in graph.branches.values() for _, _, stable in branch.pieces())
 
 
+def modulated(found: Findings) -> dict[str, float]:
+    """Where no motion with a period is stable, and simulations do not recur: the share of the interval, and the response that is largest in the
+    mean: lowest, mean and highest of its largest displacements in a forcing period; the share of such motions whose impacts stop and begin
+    again (strong modulation)."""
+    low, high = found.graph.within
+    names = ("modulated_low", "modulated_mean", "modulated_high")
+    met = [one.measures for one in found.unbranched if np.isfinite(one.measures.get(names[1], np.nan))]
+    if not met:
+        return {"modulated": 0.0, **dict.fromkeys((*names, "modulated_strong"), np.nan)}
+    known = sum(b - a for a, b in gaps(found.graph)) - sum(b - a for a, b in _unknown_parts(found))
+    top = max(met, key=lambda measures: measures[names[1]])
+    strong = [SILENT <= measures["silent"] < 1.0 for measures in met]
+    return {
+        "modulated": known / (high - low),
+        **{name: top[name] for name in names},
+        "modulated_strong": float(np.mean(strong)),
+    }
+
+
 def activation(found: Findings) -> dict[str, float]:
     """Where impacts begin.
 
@@ -243,6 +263,7 @@ PLAIN: dict[str, Outcome] = {
     "covered": covered,
     "activation": activation,
     "coexisting": coexisting,
+    "modulated": modulated,
 }
 """Outcomes by name."""
 MADE: dict[str, Callable[..., Mapping[str, float]]] = {

@@ -1,0 +1,68 @@
+"""Responses by simulation where a graph has no stable branch: dots, and bands of those that do not recur."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..coexistence.population import Population
+from ..graph.graph import Graph
+from ..graph.measures import default_measure
+from .completion import FEW, ON_ITS_WAY
+from .stretches import gaps, spread
+
+VALUES = 5  # in the gaps, at least
+SILENT = 0.01  # of the forcing periods without an impact, at least, make a modulation strong
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A response.
+
+    Attributes
+    ----------
+    value : float
+        Of the parameter.
+    low, mean, high : float
+        Of its largest value in a forcing period; all the same for one that recurs.
+    kind : str
+        ``periodic``, ``weak modulation``, ``strong modulation`` (impacts stop and begin again); a chaotic one says so.
+    share : float
+        Of the starts at this value.
+    """
+
+    value: float
+    low: float
+    mean: float
+    high: float
+    kind: str
+    share: float
+
+
+def simulated(graph: Graph, population: Population, starts: int = FEW) -> list[Simulated]:
+    """What starts settle on at some values of every gap between the stable stretches of a graph.
+
+    Parameters
+    ----------
+    graph : Graph
+    population : Population
+    starts : int
+        At each value.
+    """
+    name, found = default_measure(graph), []
+    for p in spread(gaps(graph), graph.within, VALUES):
+        motions, index, _ = population.settle(population.starts(starts, 0, p), p)
+        for k, motion in enumerate(motions):
+            if motion.kind in ON_ITS_WAY or motion.state is None:
+                continue
+            measures = population.observed(motion.state, p)
+            high = measures.get(name, np.nan)
+            low, mean = (measures.get(f"modulated_{end}", high) for end in ("low", "mean"))
+            kind = "periodic"
+            if "silent" in measures:
+                kind = f"{'strong' if SILENT <= measures['silent'] < 1.0 else 'weak'} modulation"
+                kind += ", chaotic" if motion.kind == "chaotic" else ""
+            if np.isfinite(high):
+                found.append(Simulated(p, low, mean, high, kind, float(np.mean(index == k))))
+    return found
