@@ -139,6 +139,8 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
     low_margins = first + np.flatnonzero(scan.low)
     found = np.zeros((len(lengths), first + len(low_margins)), dtype=bool)
     for columns, places in ((low, low), (low_margins, slice(first, None))):
+        if not len(columns):
+            continue
         values = seen.distance(columns)
         three = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
         pair = three[:, :, columns == PAIR]

@@ -12,7 +12,6 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
 from ..journal import NullJournal
-from ..problems.abilities import Adaptive
 from .half_branch import HalfBranch, Piece, piece_of, single
 from .opening import SHORTER, opening, without_rounding
 from .records import pack, unpack
@@ -70,7 +69,7 @@ def trace_half(
     stop = real and engine.problem.n_margins > 0
     walk = chunks(engine, start, journal, key, stop, first_step)
     retrace = None
-    adaptive: Any = engine.problem if isinstance(engine.problem, Adaptive) else None
+    adaptive: Any = engine.problem if engine.adaptive else None
     for number in count_from(0):
         chunk = next(walk) if retrace is None else walk.send(retrace)
         name = f"{key}/{number}/events"

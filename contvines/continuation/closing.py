@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problems.abilities import Adaptive
 from .chunk import Chunk
 from .engine import Engine, Solved
 from .status import Status
@@ -23,7 +22,7 @@ class Closing:
     def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
         engine = self.engine
-        if isinstance(engine.problem, Adaptive):
+        if engine.adaptive:
             return self._on_other_meshes(chunk)
         if chunk.values[0] == self.start.p:
             changes = chunk.values[1:] - chunk.values[:-1]

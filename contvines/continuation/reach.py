@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problems.abilities import Adaptive
 from .chunk import Chunk
 from .engine import Engine, Solved
 
@@ -39,7 +38,7 @@ class Reach:
         self.engine, self.start = engine, start
         self.learned = engine.problem.scales_learned
         # cycles explode within next to no change of the parameter (canards) and stay bounded; their periods have a margin
-        self.bounded = isinstance(engine.problem, Adaptive)
+        self.bounded = engine.adaptive
         # largest distances so far, each twice the one before, and the extremes of the parameter since
         self.doubled = engine.settings.escape
         self.slow = 0  # points in a row that came next to nowhere

@@ -10,7 +10,6 @@ import numpy as np
 
 from ..interrupts import listening
 from ..journal import NullJournal
-from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from . import loop as source
 from .chunk import Chunk
@@ -70,8 +69,9 @@ def chunks(
     try:
         yield from _chunks(engine, start, journal, key, stop_at_border, first_step)
     finally:
-        if isinstance(engine.problem, Adaptive):
-            engine.problem.anchor(None)
+        if engine.adaptive:
+            problem: Any = engine.problem
+            problem.anchor(None)
 
 
 def _chunks(
@@ -86,7 +86,7 @@ def _chunks(
     n, capacity = engine.n, settings.first_chunk
     retrace: Retrace | None = None
     problem: Any = engine.problem
-    adaptive = isinstance(problem, Adaptive)
+    adaptive = engine.adaptive
     engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0
