@@ -69,7 +69,10 @@ EXPORT whole core_points(continuation::Frame* frame, whole what, const double* c
     return continuation::points(*frame, what, chord, start, length, places, count, border, along, max_sweeps, {u, tangents, rows, numbers}, *aim);
 }
 
-EXPORT whole core_scan(const continuation::Scanned* scanned) { return continuation::scan(*scanned); }
+EXPORT whole core_scan(const continuation::Scanner* scanner, whole count, double flat, const double* points, const double* values, const double* tangents,
+                       const double* rows, const double* signs, double* found) {
+    return continuation::scan({*scanner, count, flat, points, values, tangents, rows, signs, found});
+}
 
 // ---- algebra ---------------------------------------------------------------------------------------------------------------------
 EXPORT whole core_multipliers(const double* A, const double* D, whole length, whole n, double twist, double* re, double* im, double* scratch) {

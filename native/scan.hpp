@@ -6,16 +6,21 @@ namespace continuation {
 
 constexpr double PAST = 1e-10;  // multipliers of a conservative system lie on the circle up to roundoff
 
-// Signed permutations T: u - T(u) of column j is u[j] - (signs[j] u[orders[j]] + constants[j]), modulo `shift`.
-struct Scanned {
-    whole count, unknowns, row, multipliers, kind, symmetries;
+// Of one problem. Signed permutations T: u - T(u) of column j is u[j] - (signs[j] u[orders[j]] + constants[j]), modulo `shift`.
+struct Scanner {
+    whole unknowns, row, multipliers, kind, symmetries;
     Metric metric;
-    double flat;  // slopes up to this are rounding
-    const double *points, *values, *tangents, *rows, *determinants;
     const whole* orders;
     const double *signs, *constants, *shift;
-    double *room;  // (2, symmetries, unknowns)
-    double *lengths, *smallest, *near, *past, *pairs, *low, *sizes, *turns;
+    double* room;  // (2, symmetries, unknowns)
+};
+// A chunk, and what is found: one array after the other from `lengths` on.
+struct Scanned : Scanner {
+    whole count;
+    double flat;  // slopes up to this are rounding
+    const double *points, *values, *tangents, *rows, *determinants;
+    double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *past = near + 3 * count, *pairs = past + 3 * count,
+           *low = pairs + count, *sizes = low + row - 2 * multipliers, *turns = sizes + symmetries * count;
 };
 
 // Terms joined in four parts, so that the order is that of vector instructions whether there are any or not.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -16,7 +17,7 @@ from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicio
 from .kinks import kinked, nearest, pointed
 from .locate import locate
 from .located import NOWHERE, Located, Role
-from .scan import Scan, scan
+from .scan import Scan, scanner
 from .segment import Segment
 from .segment_search import SegmentSearch
 
@@ -30,9 +31,10 @@ NEXT = (
 class Detector(SegmentSearch):
     """What to look for along a branch: a search of segments, which is shown those that may hold something."""
 
-    def scan(self, chunk: Chunk) -> Scan:
+    @cached_property
+    def scan(self) -> Callable[[Chunk], Scan]:
         """One pass over a chunk, for `look`."""
-        return scan(self.engine, self.symmetries, chunk)
+        return scanner(self.engine, self.symmetries)
 
     def look(self, chunk: Chunk, scanned: Scan, real: bool = True) -> list[Located]:
         """All special points on a chunk, in order; what lies behind a border, a meeting, a leap or a landing is left out.

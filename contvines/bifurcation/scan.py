@@ -6,7 +6,7 @@ The native core does it for compiled problems (native/scan.hpp), numpy for other
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +15,8 @@ from ..continuation.aims import KINDS
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine
 from ..continuation.loop import MARGIN
-from ..core.library import POINTER, WHOLE, address, function
-from ..core.records import pack
+from ..core.library import NUMBER, POINTER, WHOLE, address, function
+from ..core.records import pack, place
 from .multiplier_counts import PAST, sizes_by_sort
 from .symmetry_test import SymmetryTest
 
@@ -69,10 +69,11 @@ class Scan(NamedTuple):
     quiet: bool = False
 
 
-def scan(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
-    """Scan a chunk."""
-    native = engine.compiled and engine.plain and all(test.affine is not None for test in symmetries)
-    return (in_native if native else with_arrays)(engine, symmetries, chunk)
+def scanner(engine: Engine, symmetries: Sequence[SymmetryTest]) -> Callable[[Chunk], Scan]:
+    """Scans chunks of one problem's branches."""
+    if engine.compiled and engine.plain and all(test.affine is not None for test in symmetries):
+        return NativeScan(engine, symmetries)
+    return partial(with_arrays, engine, symmetries)
 
 
 def spectra(engine: Engine, rows: np.ndarray) -> Spectra:
@@ -108,30 +109,44 @@ def with_arrays(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk
         )
 
 
-def in_native(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
+class NativeScan:
     """The same in the native core, for symmetries that are signed permutations."""
-    count, n, k, width = len(chunk), engine.n, len(symmetries), engine.row_size - 2 * engine.m
-    affine = [test.affine for test in symmetries if test.affine is not None]
-    orders = np.array([order for order, _, _ in affine], np.int64)
-    signs = np.array([sign for _, sign, _ in affine], float)
-    constants = np.array([constant for _, _, constant in affine], float)
-    found = Scan(
-        np.empty(count - 1),
-        np.empty(count),
-        Spectra(np.empty((3, count)), np.empty((3, count)), np.empty(count)),
-        np.empty(width),
-        np.empty((k, count)),
-        np.empty((k, count - 1)),
-    )
-    shift = np.zeros(n) if engine.shift is None else engine.shift
-    metric, room = (engine.metric.of_unknowns, engine.metric.of_parameter), np.empty((2, k, n))
-    scanned = pack(
-        count, n, engine.row_size, engine.m, KINDS[engine.detection], k, *map(float, metric), engine.upright(float(chunk.values[0])),
-        chunk.points, chunk.values, chunk.tangents, chunk.rows, chunk.signs, orders, signs, constants, shift, room, *found[:2], *found.spectra, *found[3:6],
-    )  # fmt: skip
-    return found._replace(quiet=bool(_native()(address(scanned))))
+
+    def __init__(self, engine: Engine, symmetries: Sequence[SymmetryTest]) -> None:
+        self.engine, k, n = engine, len(symmetries), engine.n
+        affine = [test.affine for test in symmetries if test.affine is not None]
+        self.kept = (
+            np.array([order for order, _, _ in affine], np.int64),
+            np.array([sign for _, sign, _ in affine], float),
+            np.array([constant for _, _, constant in affine], float),
+            np.zeros(n) if engine.shift is None else engine.shift,
+            np.empty((2, k, n)),
+        )
+        metric = float(engine.metric.of_unknowns), float(engine.metric.of_parameter)
+        self.frame = pack(n, engine.row_size, engine.m, KINDS[engine.detection], k, *metric, *self.kept)
+        self.symmetries, self.margins = k, engine.row_size - 2 * engine.m
+
+    def __call__(self, chunk: Chunk) -> Scan:
+        """Scan a chunk."""
+        n, k, w = len(chunk), self.symmetries, self.margins
+        found = np.empty(9 * n - 1 + w + k * (2 * n - 1))
+        quiet = _native()(
+            address(self.frame), n, self.engine.upright(float(chunk.values[0])), place(chunk.points), place(chunk.values),
+            place(chunk.tangents), place(chunk.rows), place(chunk.signs), address(found),
+        )  # fmt: skip
+        spectra, low = found[2 * n - 1 : 9 * n - 1], 9 * n - 1
+        sizes, turns = low + w, low + w + k * n
+        return Scan(
+            found[: n - 1],
+            found[n - 1 : 2 * n - 1],
+            Spectra(spectra[: 3 * n].reshape(3, n), spectra[3 * n : 6 * n].reshape(3, n), spectra[6 * n :]),
+            found[low:sizes],
+            found[sizes:turns].reshape(k, n),
+            found[turns:].reshape(k, n - 1),
+            bool(quiet),
+        )
 
 
 @cache
 def _native() -> Callable[..., int]:
-    return function("core_scan", WHOLE, POINTER)
+    return function("core_scan", WHOLE, POINTER, WHOLE, NUMBER, *[POINTER] * 6)

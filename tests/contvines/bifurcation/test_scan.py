@@ -9,13 +9,19 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from contvines.bifurcation.detect import Detector
-from contvines.bifurcation.scan import in_native, with_arrays
+from contvines.bifurcation.scan import NativeScan, with_arrays
 from contvines.bifurcation.symmetry_test import SymmetryTest
 from contvines.continuation.arrays import Metric
 from contvines.continuation.chunk import Chunk
 from contvines.continuation.rows import Rows
 from contvines.continuation.status import Status
 from contvines.core.library import native
+
+
+def in_native(engine, symmetries, chunk):
+    """The native core's scan."""
+    return NativeScan(engine, symmetries)(chunk)
+
 
 BOTH = [with_arrays, *([in_native] if native() else [])]
 TURN = 2.0 * np.pi
