@@ -20,7 +20,7 @@ TASKS = {
 }
 """Task -> commands, in the order in which they are wanted."""
 
-TOPICS = ("labels", "words")
+TOPICS = ("labels", "words", "cite")
 
 WORDS = """An orbit's word lists its events over one period, in order:
 
@@ -54,6 +54,8 @@ def help(
             typer.echo(own.get_help(context))
     elif name == "words":
         typer.echo(WORDS)
+    elif name == "cite":
+        typer.echo(_cite())
     elif name == "labels":
         typer.echo(_labels())
     elif name is None:
@@ -79,7 +81,8 @@ def _by_task() -> str:
             blocks.append("\n".join([task, *lines]))
     blocks.append(
         "Topics\n  labels      What LP, SB, PD, VG and the other labels mean.\n"
-        "  words       How a motion is written: LR, LRtt."
+        "  words       How a motion is written: LR, LRtt.\n"
+        "  cite        BibTeX of this version."
     )
     blocks.append(
         "A first study: contvines new absorber,\n"
@@ -87,6 +90,18 @@ def _by_task() -> str:
         "`contvines help COMMAND` explains one of them."
     )
     return "\n\n".join(blocks)
+
+
+def _cite() -> str:
+    from importlib.metadata import metadata
+
+    about = metadata("contvines")
+    author = about["Author"] or about["Author-email"] or "The contvines developers"
+    return f"""@software{{contvines,
+  title = {{contvines: continuation and bifurcation analysis of motions with impacts and friction}},
+  author = {{{{{author}}}}}, version = {{{about["Version"]}}}
+}}
+The model of the absorbers: Youssef, Karoui, Leine, doi:10.48550/arXiv.2505.04420."""
 
 
 def _labels() -> str:

@@ -90,12 +90,14 @@ def test_help_lists_each_command_once_and_explains_one(capsys):
     assert not call("help")
     lines = capsys.readouterr().out.splitlines()
     listed = [line.split()[0] for line in lines if line[:2] == "  " and line[2] != " "]
-    assert sorted(listed) == sorted([*COMMANDS, "labels", "words"])
+    assert sorted(listed) == sorted([*COMMANDS, "labels", "words", "cite"])
     assert not call("help", "diagram")
     assert "--plot" in capsys.readouterr().out
     assert not call("help", "labels")
     assert {line.split()[0] for line in capsys.readouterr().out.splitlines() if line[:2] == "  "} == set(
         LABELS.values()
     )
+    assert not call("help", "cite")
+    assert capsys.readouterr().out.startswith("@software{contvines,")
     assert call("help", "diagam") == 1
     assert "did you mean diagram?" in capsys.readouterr().err
