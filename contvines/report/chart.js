@@ -30,13 +30,18 @@ function traces() {
       while (last < locus.p.length - 1 && state(last) === state(first)) last += 1;
       const part = (v) => v.slice(first, last + 1);
       if (state(first) || $("virtual").checked)
-        found.push({ type: "scatter", mode: "lines+markers", x: part(locus.p), y: part(locus.q), name: locus.name, legendgroup: locus.name, showlegend: !seen.has(locus.name),
+        found.push({ type: "scatter", mode: "lines+markers", x: part(locus.p), y: part(locus.q), name: locus.name, legendgroup: locus.name, showlegend: false,
           line: { color: colorOf(locus), width: locus.border ? 1.4 : 2.4, dash: state(first) ? (locus.border ? "dash" : "solid") : "dot" }, marker: { size: 4, opacity: 0.01, color: colorOf(locus) },
           customdata: part(locus.p.map((_, i) => [locus.label, i])), hoverinfo: "text",
           text: part(locus.p.map((v, i) => `<b>${locus.label}</b> ${locus.name}<br>${p} = ${number(v, 8)}<br>${q} = ${number(locus.q[i], 8)}${locus.real[i] ? "" : "<br>virtual"}`)) });
-      seen.add(locus.name);
       first = last;
     }
+    // the kind's mark at a third and two thirds, for those who see no colours
+    const spots = [1 / 3, 2 / 3].map((share) => Math.round(share * (locus.p.length - 1))).filter((i) => locus.real[i]);
+    found.push({ type: "scatter", mode: "lines+markers", x: spots.flatMap((i) => [locus.p[i], null]), y: spots.flatMap((i) => [locus.q[i], null]), name: locus.name, legendgroup: locus.name,
+      showlegend: !seen.has(locus.name), line: { color: colorOf(locus), width: locus.border ? 1.4 : 2.4, dash: locus.border ? "dash" : "solid" }, hoverinfo: "skip",
+      marker: { size: 8, color: colorOf(locus), symbol: shapes[locus.marker] || "circle", line: { width: 1.4 } } });
+    seen.add(locus.name);
   }
   const marked = data.points.filter((point) => point.real || $("virtual").checked);
   found.push({ type: "scatter", mode: "markers+text", x: marked.map((m) => m.value[p]), y: marked.map((m) => m.value[q]), text: marked.map((m) => m.label), textposition: "top center",

@@ -65,6 +65,7 @@ def _locus(locus: Locus) -> dict[str, Any]:
     return {
         "label": locus.label,
         "name": MARKS.get(locus.kind, PLAIN).name,
+        "marker": MARKS.get(locus.kind, PLAIN).marker,
         "border": locus.kind not in COLORS,
         "word": None if word is None else short_word(str(word)),
         "p": shortened(locus.values[:, 0], 12),
