@@ -17,6 +17,7 @@ STUDIES = studies()
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 @pytest.mark.parametrize("name", STUDIES)
 def test_golden(name):
     golden = json.loads(file_of(name).read_text())
