@@ -21,8 +21,8 @@ def machine(study: Study) -> Any:
     """
     if study.sort is Sort.FLOW:
         raise ValueError(
-            f"{study.path}: this command needs a machine; of the flow {study.name!r} there are contvines diagram, trace, atlas, basins and "
-            "orbit, and of the file that they write plot, show, switch, locus, chart, circle, report and export"
+            f"{study.path}: this command needs a machine; of the flow {study.name!r} there are contvines diagram, trace, atlas, basins, "
+            "survey and orbit, and of the file that they write plot, show, switch, locus, chart, circle, report and export"
         )
     return study.model
 

@@ -167,6 +167,7 @@ class FlowSections(Section):
     start: FlowStart = FlowStart()
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     atlas: AtlasSection = AtlasSection()
+    survey: SurveySection = SurveySection()
 
 
 class _MachineSections(Section):

@@ -15,6 +15,7 @@ from contvines.shared.near_names import did_you_mean
 if TYPE_CHECKING:
     from contvines.survey.plan import Plan
 
+WRITTEN = (Sort.PAGE, Sort.FLOW)  # equations in a Python file
 TEXTS = ("within", "values", "normal", "uniform")
 
 
@@ -31,7 +32,7 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
     from orbits.machines.physical.quantities import near_quantity
 
     said = dict(study.survey.vary if vary is None else vary)
-    model = machine(study)
+    model = study.flow if study.sort is Sort.FLOW else machine(study)
     known = [*names_of(study), *study.conditions]
     follows = {table.parameter: table.condition for table in study.tables}
     for name in said:
@@ -62,6 +63,8 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
 
 def names_of(study: Study) -> Iterable[str]:
     """Names of all that may vary in the machine of a study."""
+    if study.sort is Sort.FLOW:
+        return study.parameters
     if study.sort is Sort.PAGE:
         return study.model.parameters
     if study.sort is Sort.PHYSICAL:
@@ -70,7 +73,12 @@ def names_of(study: Study) -> Iterable[str]:
 
 
 def family_of(study: Study, model: Any) -> Any:
-    """The machines of a study's survey."""
+    """The machines, or flows, of a study's survey."""
+    if study.sort is Sort.FLOW:
+        from contvines.flows.family import FlowFamily
+
+        file, name, _ = model.origin
+        return FlowFamily(file, name, study.parameter, study.parameters, study.state)
     from orbits.design import Family
 
     return Family(
@@ -110,10 +118,10 @@ def outcomes_of(study: Study) -> list[Any]:
             if file.endswith(".py"):
                 place = own_code(study.path, file, f"[survey] outcomes: {said!r}")
                 found.append(UserOutcome.of(place, function))
-            elif study.sort is Sort.PAGE and said in OWN:
+            elif study.sort in WRITTEN and said in OWN:
                 raise ValueError(
-                    f"[survey] outcomes: {said!r} is told by the built-in machines alone; for a page give a function of your "
-                    'own: "file.py:function"'
+                    f"[survey] outcomes: {said!r} is told by the built-in machines alone; for equations of your own give a "
+                    'function of your own: "file.py:function"'
                 )
             else:
                 found.append(outcome_named(said, OWN))
@@ -132,7 +140,7 @@ def _spelled(study: Study) -> list[str]:
     """
     from orbits.words import Word
 
-    if study.sort is Sort.PAGE:
+    if study.sort in WRITTEN:
         return list(study.survey.outcomes)
     found = []
     for said in study.survey.outcomes:
@@ -173,7 +181,7 @@ def units_of(study: Study, model: Any) -> dict[str, str]:
     """Units of parameters and outcomes."""
     from contvines.command.machine_outcomes import UNITS
 
-    units = dict(model.units)
+    units = {} if study.sort is Sort.FLOW else dict(model.units)
     if not units:
         return {}
     over, shown = units.get(study.parameter, ""), units.get(model.default_measure, "")

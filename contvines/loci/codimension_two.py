@@ -87,7 +87,10 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
                 if look is TOUCH:
                     point.coefficients = touching_form(plane, Place(point.u, *point.value), problem.index)
                 found.append((i, point))
-    found += _at_borders(locus, plane, places) + _where_born(problem, places)
+    born = _where_born(problem, places)
+    # where cycles begin other multipliers may be critical, too
+    found = [pair for pair in found if not any(_at_one_place(pair[1], own) for _, own in born)]
+    found += _at_borders(locus, plane, places) + born
     return sorted((pair for pair in found if not _at_end(locus, pair[1])), key=lambda pair: pair[0])
 
 
@@ -273,9 +276,11 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
 
 def same_point(one: PlanePoint, other: PlanePoint) -> bool:
     """Whether two points of one locus are one: of the same kind and at the same place."""
-    return one.kind == other.kind and all(
-        abs(a - b) <= 1e-7 * (1.0 + abs(a)) for a, b in zip(one.value, other.value)
-    )
+    return one.kind == other.kind and _at_one_place(one, other)
+
+
+def _at_one_place(one: PlanePoint, other: PlanePoint) -> bool:
+    return all(abs(a - b) <= NOISY * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
 
 
 #: what is followed -> kinds of the points at which it begins beside equilibria, and beside cycles of half the period

@@ -1,5 +1,8 @@
 """Studies of flows from the command line."""
 
+import json
+import math
+
 import pytest
 
 from contvines.command.entry import main
@@ -100,3 +103,24 @@ def test_what_is_done_with_a_file(study, monkeypatch, capsys):
     assert "u2" not in head
     assert not run(monkeypatch, "plot", "study.vines", "-y", "period", "--trust", "-o", "period.png")
     assert not run(monkeypatch, "report", "study.vines", "--trust", "-o", "study.html")
+
+
+@pytest.mark.slow
+def test_a_survey_of_flows(study, monkeypatch, capsys):
+    """Cycles of radius sqrt(m / c) and period 2 pi, from m = 0 on."""
+    (study.parent / "flow.py").write_text(
+        FILE.replace("- x[0] * (x", "- p.c * x[0] * (x")
+        .replace("- x[1] * (x", "- p.c * x[1] * (x")
+        .replace("-0.1}", '-0.1, "c": 1.0}')
+    )
+    study.write_text(
+        STUDY + '[survey]\nvary = { c = [1.0, 4.0] }\noutcomes = ["peak", "first:hopf", "largest:period"]\n'
+    )
+    assert not run(monkeypatch, "survey", "study.toml", "--workers", "1", "--json")
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert [row["c"] for row in rows] == [1.0, 4.0]
+    for row in rows:
+        assert row["peak"] == pytest.approx((0.3 / row["c"]) ** 0.5, abs=1e-7)
+        assert row["first_hopf"] == pytest.approx(0.0, abs=1e-12)
+        assert row["largest_period"] == pytest.approx(2.0 * math.pi, abs=1e-7)
+        assert row["covered"] == 1.0

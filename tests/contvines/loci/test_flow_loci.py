@@ -149,3 +149,89 @@ def test_neimark_sacker_points_touch_the_folds_of_cycles():
     (point,) = locus.points.values()
     assert point.kind == "fold-neimark-sacker"
     assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def twisted(x, z, growth, other):
+    """A band that turns half round while the ring turns once: along it w' = growth w - w |z|^2, across it at the rate `other`.
+
+    Multipliers are -exp(2 pi growth) and -exp(2 pi other).
+    """
+    radius = np.sqrt(x[0] ** 2 + x[1] ** 2)
+    c, s = x[0] / radius, x[1] / radius
+    mean, half, inward = 0.5 * (growth + other), 0.5 * (growth - other), z[0] ** 2 + z[1] ** 2
+    return [
+        (mean + half * c - inward) * z[0] + (half * s - 0.5) * z[1],
+        (half * s + 0.5) * z[0] + (mean - half * c - inward) * z[1],
+    ]
+
+
+def fold_and_flip(x, p):
+    """Cycles s = r^2 - 1 = +-sqrt a, with a multiplier -exp(2 pi (b + s))."""
+    s = x[0] ** 2 + x[1] ** 2 - 1.0
+    growth = p.a - s * s
+    return [growth * x[0] - x[1], x[0] + growth * x[1], *twisted(x, x[2:], p.b + s, -0.4)]
+
+
+def test_period_doublings_touch_the_folds_of_cycles():
+    flow = cv.FlowProblem(fold_and_flip, [1.0, 0, 0, 0], {"a": 0.25, "b": -0.2}, scale=1.0)
+    t = np.linspace(0.0, 2.0 * np.pi, 101)
+    circle = np.sqrt(1.5) * np.column_stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t])
+    graph = cv.diagram(flow.cycle(t, circle), over="a", within=(-0.5, 0.5), depth=0)
+    assert graph["PD1"].value == pytest.approx(0.04, abs=1e-10)
+    for label in ("PD1", "LP1"):
+        locus = cv.locus(graph[label], over="b", within=(-0.3, 0.1))
+        p, q = locus.values.T
+        assert np.abs(p - (q**2 if label == "PD1" else 0.0)).max() < 1e-10
+        (point,) = locus.points.values()
+        assert point.kind == "fold-flip"
+        assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def zero_hopf(x, p):
+    """w' = a + w^2 + |z|^2, z' = (b - w + w^2 + i) z: cycles whose pair has modulus one at b = 0, a < 0."""
+    w, square = x[0], x[1] ** 2 + x[2] ** 2
+    growth = p.b - w + w * w
+    return [p.a + w * w + square, growth * x[1] - x[2], x[1] + growth * x[2]]
+
+
+def double_hopf(x, p):
+    """r1' = r1 (a - r1^2 - r2^2 / 2), r2' = r2 (b - 3/2 r1^2 - r2^2): the first cycle, r1^2 = a, loses its stability at b = 3/2 a."""
+    one, two = x[0] ** 2 + x[1] ** 2, x[2] ** 2 + x[3] ** 2
+    first, second = p.a - one - 0.5 * two, p.b - 1.5 * one - two
+    return [
+        first * x[0] - x[1],
+        x[0] + first * x[1],
+        second * x[2] - 0.6 * x[3],
+        0.6 * x[2] + second * x[3],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("f", "x0", "cycle", "exact", "kind"),
+    [
+        (zero_hopf, [-0.3, 0, 0], lambda t: [0 * t, 0.3 * np.cos(t), 0.3 * np.sin(t)], 0.0, "zero-hopf"),
+        (
+            double_hopf,
+            [0, 0, 0, 0],
+            lambda t: [0.3 * np.cos(t), 0.3 * np.sin(t), 0 * t, 0 * t],
+            1.5,
+            "double-hopf",
+        ),
+    ],
+)
+def test_neimark_sacker_points_of_cycles_begin_at_equilibria(f, x0, cycle, exact, kind):
+    sign = -1.0 if f is zero_hopf else 1.0
+    flow = cv.FlowProblem(f, x0, {"b": 0.05, "a": sign * 0.09}, scale=1.0)
+    t = np.linspace(0.0, 2.0 * np.pi, 101)
+    graph = cv.diagram(flow.cycle(t, np.column_stack(cycle(t))), over="b", within=(-0.1, 0.3), depth=0)
+    assert graph["NS1"].value == pytest.approx(exact * 0.09, abs=1e-10)
+    locus = cv.locus(graph["NS1"], over="a", within=(-0.1, 0.2))
+    p, q = locus.values.T
+    assert np.abs(p - exact * q).max() < 1e-9
+    places = {point.kind: point.value for point in locus.points.values()}
+    assert places.pop(kind) == pytest.approx((0.0, 0.0), abs=1e-8)
+    # beside the cycle at zero-Hopf w'' = 2 a w: resonances where sqrt(-2 a) is 1/3, 1/4
+    resonances = {f"resonance-1-{n}": (0.0, -0.5 / n**2) for n in (3, 4)} if f is zero_hopf else {}
+    assert set(places) == set(resonances)
+    for name, value in resonances.items():
+        assert places[name] == pytest.approx(value, abs=1e-8)
