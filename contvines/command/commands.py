@@ -51,7 +51,11 @@ COMMANDS = {
     ),
     "transient": (
         "transient",
-        "A shock, a recorded base motion or a free decay, compared with the bare oscillator.",
+        "A start-up, a shock, a recorded base motion or a free decay, compared with the bare oscillator.",
+    ),
+    "random": (
+        "random_excitation",
+        "A random excitation by its spectral density: statistics with error bars, beside the bare and a tuned machine.",
     ),
     "design": (
         "design",

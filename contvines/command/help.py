@@ -16,7 +16,7 @@ TASKS = {
     "Look at a result": ("show", "plot", "orbit", "report", "export", "rerun"),
     "Two parameters": ("locus", "chart", "circle"),
     "How safe is a motion": ("basins", "robustness", "prove"),
-    "Design a device": ("design", "recommend", "survey", "transient", "calibrate"),
+    "Design a device": ("design", "recommend", "survey", "transient", "random", "calibrate"),
 }
 """Task -> commands, in the order in which they are wanted."""
 

@@ -96,7 +96,7 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     if usual is not None and usual in known:
         machine = machine.told_by(usual)
     for section, values in plain.items():
-        if isinstance(values, dict) and section not in ("start", "survey"):
+        if isinstance(values, dict) and section not in ("start", "survey", "random"):
             plain[section], refused = _numbers(machine, known, section, values, usual)
             wrong += refused
     return machine, plain, wrong

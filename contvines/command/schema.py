@@ -161,6 +161,19 @@ class SurveySection(Section):
     atlas: Annotated[bool, text("true or false")] = False
 
 
+class RandomSection(Section):
+    """`[random]`, optional: the random excitation of `contvines random`."""
+
+    psd: Annotated[
+        list[Annotated[list[float], Field(min_length=2, max_length=2)]],
+        text("rows [frequency, density], for example [[2, 0.1], [20, 0.1]]", min_length=2),
+    ]
+    parameter: Annotated[str | None, text("the name of a parameter of a page")] = None
+    periods: Annotated[float, text("a number from 10 to 1e6, for example 2000", ge=10, le=1e6)] = 2000.0
+    records: Annotated[int, text("a whole number from 2 to 10000, for example 8", ge=2, le=10_000)] = 8
+    seed: Seed = 0
+
+
 class FlowSections(Section):
     """What a study of a flow has beside it."""
 
@@ -176,6 +189,7 @@ class _MachineSections(Section):
     atlas: AtlasSection = AtlasSection()
     chart: ChartSection | None = None
     survey: SurveySection = SurveySection()
+    random: RandomSection | None = None
 
 
 class StudySections(_MachineSections):

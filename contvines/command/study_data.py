@@ -9,7 +9,7 @@ from enum import Enum, auto
 from pathlib import Path
 from typing import Any
 
-from contvines.command.schema import AtlasSection, ChartSection, SurveySection, SweepSection
+from contvines.command.schema import AtlasSection, ChartSection, RandomSection, SurveySection, SweepSection
 from orbits.machines.conditions import Table
 
 SHOWN = 60  # letters of a word that a refusal repeats
@@ -44,7 +44,7 @@ class Study:
     flow : the flow; None for a machine.
     loose : parameters that are given to the machine with each orbit.
     box : ranges of many starts of a flow.
-    sweep, atlas, chart, survey : the sections of these names.
+    sweep, atlas, chart, survey, random : the sections of these names.
     text : the TOML text.
     conditions : values of what parameters depend on; their tables : of parameters over them.
     """
@@ -72,6 +72,7 @@ class Study:
     atlas: AtlasSection = field(default_factory=AtlasSection)
     chart: ChartSection | None = None
     survey: SurveySection = field(default_factory=SurveySection)
+    random: RandomSection | None = None
     text: str = ""
     conditions: dict[str, float] = field(default_factory=dict)
     tables: tuple[Table, ...] = ()
@@ -82,7 +83,7 @@ class Study:
     ) -> "Study":
         """A study from its sections; what is not among them is given."""
         go, start = file.continue_, file.start
-        names = ("sweep", "atlas", "chart", "survey")
+        names = ("sweep", "atlas", "chart", "survey", "random")
         first = ("word", "periods", "guess", "state", "box")
         sections = {key: getattr(file, key) for key in names if hasattr(file, key)}
         return cls(

@@ -77,6 +77,54 @@ def plot_transient(
 
 
 @hinting
+def plot_densities(
+    frequencies: np.ndarray,
+    unit: str,
+    densities: Mapping[str, tuple[np.ndarray, str]],
+    *,
+    axes: Axes | None = None,
+    figsize: tuple[float, float] | None = None,
+    style: str | Mapping[str, Any] | None = None,
+) -> Figure:
+    """Draw spectral densities of responses over the frequency, logarithmically.
+
+    Parameters
+    ----------
+    frequencies : float array (k,)
+    unit : str
+        Of these.
+    densities : mapping
+        Name -> values (k,) and unit; "bare" and "tuned" are lines to compare with.
+    axes, figsize, style
+        As for `plot_transient`.
+    """
+    looks = {
+        "bare": (BARE, (0, (4, 1.5)), "without absorber"),
+        "tuned": (DATA, (0, (1, 1)), "tuned absorber"),
+    }
+    with styled(style):
+        own = axes is None
+        figure, axes = new_axes(axes, figsize=figsize)
+        colors = iter([OURS, "#2e7d32", "#8e5a00", "#6a1b9a"] * len(densities))
+        for name, (values, _) in densities.items():
+            color, line, label = looks.get(name) or (
+                next(colors),
+                "-",
+                "with absorber" if name == "oscillator" else name,
+            )
+            axes.plot(frequencies, values, color=color, linestyle=line, label=label)
+        units = {shown for _, shown in densities.values()}
+        axes.set(
+            yscale="log",
+            xlabel=with_unit("frequency", unit),
+            ylabel=with_unit("density of the response", units.pop() if len(units) == 1 else ""),
+        )
+        axes.margins(x=0.0)
+        _finish(figure, axes, True, own)
+    return figure
+
+
+@hinting
 def plot_calibration(
     places: np.ndarray,
     residuals: np.ndarray,

@@ -101,6 +101,10 @@ def recorded(
     numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
     if "damping" not in numbers:
         raise ParameterError(f"the machine {model.name!r} has no oscillator")
+    if numbers.get("slope", 0.0) != 0.0:
+        raise ParameterError(
+            "a recorded motion of the base is followed for level cavities only: slope = 0 would do"
+        )
     if tail > 0.0:
         times = np.append(times, [times[-1] + 1e-9, times[-1] + tail])
         acceleration = np.append(acceleration, [0.0, 0.0])

@@ -57,6 +57,14 @@ class Stepper:
         self._hop = 0.0  # time to the top of a short hop from a wall
 
     # ------------------------------------------------------------------ beginning
+    def renew(self, params: np.ndarray) -> None:
+        """Go on with other parameters, on which neither gaps nor surfaces nor velocities of contacts depend; what sticks may begin to slide."""
+        self.params = params
+        self._cache.clear()
+        frictions = [j for j, contact in enumerate(self.machine.contacts) if isinstance(contact, DryFriction)]
+        if any(self.modes[j] == STUCK for j in frictions):
+            self.start(self.state, self.base + self.clock)
+
     def start(self, state: np.ndarray, clock: float, modes: tuple[int, ...] | None = None) -> None:
         """Begin at a state; the modes follow from it unless they are given.
 

@@ -1,0 +1,212 @@
+"""`contvines random STUDY.toml`: the answer to a random excitation by its spectral density, beside the bare and the tuned machine."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from contvines.command.frame import check_plot, draw, say, tell
+from contvines.command.options import JsonOption, PlotOption, SizeOption
+from contvines.command.study_data import Sort, Study
+
+if TYPE_CHECKING:
+    from orbits.design.random_excitation import RandomResponse
+
+WORDS = {
+    "oscillator": "displacement of the oscillator from its base",
+    "bare": "the same without absorber",
+    "tuned": "the same with a tuned absorber of the same mass",
+    "relative": "displacement of the oscillator against the absorber",
+}
+KINDS = {"rms": "standard deviation", "peak": "largest in a record, mean over the records", "mean": "mean"}
+OWN = {
+    "impact_rate": "impacts per unit of time",
+    "absorber_power": "power that impacts and friction take",
+    "absorber_share": "of what is dissipated: by impacts and friction",
+}
+EXAMPLE = "[random] psd = [[2, 0.1], [20, 0.1]]"
+
+
+def random(
+    study: Annotated[
+        Path,
+        typer.Argument(metavar="STUDY.toml", help="The study, with a section [random] (coupled, or a page)."),
+    ],
+    seed: Annotated[
+        int | None, typer.Option("--seed", metavar="N", min=0, help="Of the draws, in place of the study's.")
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE.csv", help="The densities of the responses over the frequency."
+        ),
+    ] = None,
+    plot: PlotOption = None,
+    size: SizeOption = None,
+    json_: JsonOption = False,
+) -> None:
+    """The answer to a random base motion with a spectral density: statistics with error bars, densities.
+
+    [random] psd = [[2, 0.1], [20, 0.1]] are frequencies [Hz] and densities of the base's acceleration [(m/s^2)^2/Hz], linear between; of a study without units
+    frequencies in omega_0 and densities per omega_0. Of a page name the parameter that is random, too. The same seed gives the same numbers.
+    """
+    from contvines.command.compose import machine
+    from contvines.command.study import read_study
+    from contvines.export import check_target
+
+    if output is not None:
+        check_target(output, "csv")
+    check_plot(plot, size)
+    read = read_study(study)
+    machine(read)
+    found = _computed(read, seed)
+    tell(found, found.as_json() if json_ else None)
+    if output is not None:
+        found.write(output)
+        say(f"kept in {output}", json_)
+    draw(plot, lambda: found.draw(size), json_)
+
+
+@dataclass
+class Found:
+    """A random response in the study's units."""
+
+    title: str
+    rows: list[tuple[str, float, float, str, str]]
+    frequencies: Any
+    unit: str
+    densities: dict[str, tuple[Any, str]]
+
+    def as_json(self) -> dict[str, Any]:
+        """Values and standard errors by name, and their units."""
+        return {
+            **{name: {"value": value, "error": error} for name, value, error, _, _ in self.rows},
+            "units": {name: unit for name, _, _, unit, _ in self.rows if unit},
+        }
+
+    def __str__(self) -> str:
+        from contvines.text_table import Table, fitted, terminal_width
+
+        rows = [(name, *_rounded(value, error), unit, words) for name, value, error, unit, words in self.rows]
+        table = Table(("figure", "value", "+-", "unit", "what it is"), rows)
+        return "\n".join([fitted(self.title), "", *table.lines(terminal_width())])
+
+    def write(self, path: Path) -> None:
+        """The densities as a CSV."""
+        import csv
+
+        from contvines.graph.table import with_unit
+
+        heads = [
+            with_unit("frequency", self.unit),
+            *(with_unit(name, unit) for name, (_, unit) in self.densities.items()),
+        ]
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(heads)
+            columns = (self.frequencies, *(values for values, _ in self.densities.values()))
+            writer.writerows([repr(float(x)) for x in row] for row in zip(*columns))
+
+    def draw(self, size: tuple[float, float] | None) -> Any:
+        """The densities over the frequency."""
+        from contvines.plots.measured import plot_densities
+
+        return plot_densities(self.frequencies, self.unit, self.densities, figsize=size)
+
+
+def _rounded(value: float, error: float) -> tuple[str, str]:
+    """A number to the second digit of its error, and the error."""
+    if not (error > 0.0 and math.isfinite(error)) or error < 1e-9 * abs(value):
+        return f"{value:.4g}", "" if math.isnan(error) else "0"
+    digits = max(2, min(6, math.ceil(math.log10(max(abs(value), error) / error)) + 2))
+    return f"{value:.{digits}g}", f"{error:.2g}"
+
+
+def _computed(study: Study, seed: int | None) -> Found:
+    from orbits.design.random_excitation import Density, random_base, random_page
+
+    said = study.random
+    if said is None:
+        raise ValueError(f"{study.path}: the section [random] is missing; {EXAMPLE} would do.")
+    import numpy as np
+
+    model, params = study.model, study.model.vector(study.loose)
+    page = study.sort is Sort.PAGE
+    if page != (said.parameter is not None):
+        way = (
+            f"name the parameter that is random, one of {', '.join(model.parameter_names)}"
+            if page
+            else "leave it out: the base is what moves"
+        )
+        raise ValueError(f"{study.path}: [random] parameter: {way}.")
+    frequencies, values = np.array(said.psd, dtype=float).T
+    options: dict[str, Any] = {
+        "periods": said.periods,
+        "records": said.records,
+        "seed": said.seed if seed is None else seed,
+    }
+    hertz = bool(model.units)
+    turn = 2.0 * math.pi if hertz else 1.0
+    try:
+        if said.parameter is not None:
+            psd = Density(frequencies * turn, values / turn)
+            response = random_page(model, params, said.parameter, psd, start=study.state, **options)
+        else:
+            rate, acceleration = _scales(model, params)
+            psd = Density(frequencies * turn / rate, values * rate / turn / acceleration**2)
+            response = random_base(model, params, psd, **options)
+    except (ValueError, KeyError) as error:
+        raise ValueError(f"{study.path}: [random] {str(error).rstrip('.')}.") from None
+    return _in_units(study, params, response, hertz)
+
+
+def _scales(model: Any, params: Any) -> tuple[float, float]:
+    """omega_0 in 1/s, and b omega_0^2 in m/s^2; 1 where there are no units."""
+    from contvines.command.measured import scales
+    from orbits.machines.physical import units
+
+    length, unit, seconds, _ = scales(model, params)
+    metre = units.size(unit, "m") if unit else 1.0
+    return 1.0 / seconds, (metre or 1.0) * length / seconds**2
+
+
+def _in_units(study: Study, params: Any, response: RandomResponse, hertz: bool) -> Found:
+    model, page = study.model, study.sort is Sort.PAGE
+    shown, turn = model.units, 2.0 * math.pi if hertz else 1.0
+    kinds = {} if page else {"impact_rate": "rate", "absorber_power": "power", "absorber_share": ""}
+    gauges = {} if page or not shown else model.tables.GAUGES
+    from orbits.machines.physical import units
+
+    def unit_of(kind: str) -> str:
+        return units.unit_of(gauges[kind]) if kind in gauges else ""
+
+    rows = []
+    for name, (value, error) in response.numbers.items():
+        sort, _, what = name.partition("_")
+        if name in OWN:
+            factor = float(model.gauge(kinds[name], params)) if kinds.get(name) else 1.0
+            if name == "absorber_power" and not page:
+                factor /= float(model.column(params, "mass_ratio"))
+            unit, words = unit_of(kinds.get(name, "")) or ("Hz" if page and shown else ""), OWN[name]
+        elif page:
+            factor, unit, words = 1.0, shown.get(what, ""), f"{KINDS[sort]} of {what}"
+        else:
+            factor, unit, words = (
+                float(model.gauge("length", params)),
+                unit_of("length"),
+                f"{KINDS[sort]}: {WORDS[what]}",
+            )
+        rows.append((name, factor * value, factor * error, unit, words))
+    rate = 1.0 if page else _scales(model, params)[0]
+    densities = {}
+    for name, values in response.densities.items():
+        factor = 1.0 if page else float(model.gauge("length", params))
+        unit = shown.get(name, "") if page else unit_of("length")
+        densities[name] = (values * factor**2 * turn / rate, f"{unit}^2/Hz" if unit else "")
+    seconds = response.duration / rate
+    title = f"{study.path.name} under random excitation: {response.records} records of {seconds:.4g} {'s' if hertz else 'units of time'}"
+    return Found(title, rows, response.omega * rate / turn, "Hz" if hertz else "", densities)
