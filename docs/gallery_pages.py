@@ -15,6 +15,7 @@ GROUPS = {
     "Studies": ("", "What `contvines diagram` reads."),
     "Scripts": ("", "From Python."),
     "Machines": ("machines", "One file of Python each: equations of motion and contacts."),
+    "Structures": ("structures", "Matrices of mass, damping and stiffness, with contacts."),
     "Design": ("design", "In kilograms and hertz."),
     "Compiled": ("compiled", "Right-hand sides in C."),
     "A paper's figures": (

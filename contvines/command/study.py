@@ -24,6 +24,11 @@ def read_study(path: str | Path) -> Study:
         If the file cannot be read, is not TOML, or holds a value that cannot be used.
     """
     path = Path(path)
+    if path.suffix == ".py" and path.is_file():
+        raise StudyError(
+            f"{path}: this is a file of Python: run it with python, or name it in a study, [model] name = "
+            f'"{path.name}:NAME"; contvines new flow writes one.'
+        )
     try:
         return study_of(path.read_text(encoding="utf-8"), path)
     except FileNotFoundError:

@@ -101,3 +101,10 @@ def test_help_lists_each_command_once_and_explains_one(capsys):
     assert capsys.readouterr().out.startswith("@software{contvines,")
     assert call("help", "diagam") == 1
     assert "did you mean diagram?" in capsys.readouterr().err
+
+
+def test_a_file_of_python_is_no_study(tmp_path, capsys):
+    script = tmp_path / "mine.py"
+    script.write_text("import contvines\n")
+    assert call("diagram", script) == 1
+    assert "this is a file of Python: run it with python" in capsys.readouterr().err
