@@ -57,8 +57,8 @@ def simulations(rounds, count=20000):
     return found
 
 
-def survey_in_diagrams(machines=24):
-    """A machine of a survey in times of a single warm diagram of it."""
+def survey_in_diagrams(machines=6):
+    """A machine of a survey, which looks for motions without a branch, too, in times of a single warm diagram of it."""
     warm_diagrams(3)
     single, begun = warm_diagrams(machines), time.process_time()
     found = survey(family(), plan(machines), **ASKED, outcomes=OUTCOMES, gaps=0, workers=1)
@@ -92,7 +92,12 @@ def measured(rounds):
     starts = many_starts(rounds, 2000)
     found.append(("a start in a batch / in the simulator", None, starts["one batch"] / starts["one by one"]))
     found.append(("a start of a basin picture / of a census", None, starts["basin"] / starts["census"]))
-    found.append(("a machine of a survey / a warm diagram", None, survey_in_diagrams()))
+    found.append(
+        ("a machine of a survey of branches / a warm diagram", None, survey_in_diagrams(OUTCOMES[-1:]))
+    )
+    found.append(
+        ("the same with peaks, which simulate what has no branch", None, survey_in_diagrams(OUTCOMES))
+    )
     found.append(("a chart / a diagram", None, chart_in_diagrams(1)))
     points = 40
     found.append(
