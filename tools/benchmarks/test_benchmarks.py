@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tools.benchmarks import case, flows, run, scripts
+from tools.benchmarks import case, figures, flows, run, scripts
 from tools.benchmarks.auto import Auto
 from tools.benchmarks.flights import MODELS, Flights
 from tools.benchmarks.floor import FORWARD, ORTHOGONAL, PLAIN, VECTOR, Floor, library
@@ -101,6 +101,12 @@ def test_loci_of_a_word_written_17_times_are_those_of_the_word():
     for kind in once.starts:
         found = [runs.locus(kind, 40.0).at(0.3) for runs in (once, many)]
         assert len(found[0]) == 1 and found[1] == pytest.approx(found[0], abs=1e-10)
+
+
+@needs_compiler
+def test_figures_are_positive():
+    assert set(figures.simulations(1, 200)) == set(MODELS) == set(figures.SIMULATED)
+    assert figures.second_diagram(1) > 0.0
 
 
 def test_ratios_of_loci_are_counted():
