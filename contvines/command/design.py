@@ -43,6 +43,16 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
             f"{study.path}: [model] name = {study.name!r}: design figures are closed forms of the built-in absorbers; "
             "contvines survey asks many machines of a page."
         )
+    slope = (
+        float(study.model.column(study.model.vector(study.loose), "slope"))
+        if "slope" in study.model.parameter_names
+        else 0.0
+    )
+    if slope:
+        raise StudyError(
+            f"{study.path}: slope = {slope:g} rad: design figures are closed forms of level cavities; slope = 0 would do, and contvines survey "
+            "or transient for the inclined one."
+        )
     if study.sort is Sort.PHYSICAL:
         return _physical(study, cavity, natural_frequency)
     values = study.parameters

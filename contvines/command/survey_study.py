@@ -180,11 +180,12 @@ def options_of(study: Study) -> dict[str, Any]:
 def units_of(study: Study, model: Any) -> dict[str, str]:
     """Units of parameters and outcomes."""
     from contvines.command.machine_outcomes import UNITS
+    from orbits.flows.catalogue import flow_of
 
     units = {} if study.sort is Sort.FLOW else dict(model.units)
     if not units:
         return {}
-    over, shown = units.get(study.parameter, ""), units.get(model.default_measure, "")
+    over, shown = units.get(study.parameter, ""), units.get(flow_of(model).default_measure(model), "")
     bands = ("modulated_low", "modulated_mean", "modulated_high")
     units |= dict.fromkeys(("peak", "lower_peak", *bands), shown) | UNITS
     units |= dict.fromkeys(

@@ -35,7 +35,11 @@ SURE = 1e-7  # a state so near to a known motion, relative to 1 + states, lies o
 NEAR = 1e-2  # so near, and nearer by half at the next look, it is falling onto it
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
 WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
-BRIEF = (3, 6)  # values, and starts at each, of a brief look: flights of a page are integrated one by one
+BRIEF = (3, 6)  # values, and starts at each, of a brief look: flights of a page are integrated one by one,
+LARGE, FEW = (
+    5,
+    2,
+)  # of a machine with so many states only so many starts: their words are long, and each is followed for seconds
 TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
 WANDERING = ("chaotic", "quasi-periodic", "slow")
 RELEASED = 1e-6  # difference of the clocks of two releases that are one
@@ -45,7 +49,6 @@ class PageStarts:
     """What `orbits.population.population.Population` asks of the starts of a machine on a page."""
 
     across = 60
-    brief = BRIEF
     longest = EMBEDDED
     notation: ClassVar = {"phase": STARTS["phase"]}  # states are shown by the names on the page
     leftward = ""
@@ -55,6 +58,7 @@ class PageStarts:
         self.parameters = {k: float(v) for k, v in parameters.items()}
         self.vector(machine.parameters.get(parameter, 1.0))
         self._boxes: dict[float, np.ndarray] = {}
+        self.brief = BRIEF if machine.size < LARGE else (BRIEF[0], FEW)
         self.names = (*(["phase"] if machine.forced else []), *machine.states)
 
     def vector(self, p: float) -> np.ndarray:

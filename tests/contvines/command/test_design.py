@@ -58,6 +58,17 @@ def test_json_in_si_units(study):
     assert found["xi"]["value"] == pytest.approx(np.sqrt(0.5282903 / 0.0637942), rel=1e-6)
 
 
+def test_an_inclined_cavity_is_refused(study, tmp_path):
+    (tmp_path / "inclined.toml").write_text(
+        '[model]\nname = "coupled"\nrestitution = 0.7\nfriction = 0.1\ngravity = 0.2\nmass_ratio = 0.01\nslope = 0.1\n[start]\nforcing = 3.0\n'
+        '[continue]\nparameter = "frequency"\nwithin = [0.9, 1.1]\n'
+    )
+    result = run(tmp_path / "inclined.toml")
+    assert isinstance(result.exception, ValueError) and "closed forms of level cavities" in str(
+        result.exception
+    )
+
+
 def test_picture(study, tmp_path):
     target = tmp_path / "map.png"
     assert run(study, "--plot", target).exit_code == 0

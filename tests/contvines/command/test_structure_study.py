@@ -34,3 +34,19 @@ def test_studies_name_the_field(tmp_path):
         (tmp_path / "s.toml").write_text(text.replace(before, after))
         with pytest.raises(StudyError, match=says):
             read_study(tmp_path / "s.toml")
+
+
+def test_a_survey_of_a_page_has_its_units(tmp_path):
+    from contvines.command.survey_study import units_of
+
+    (tmp_path / "two.toml").write_text(
+        '[model]\nname = "coupled_two"\n[continue]\nparameter = "frequency"\nwithin = [7.6, 8.4]\n[survey]\nvary.friction_1 = [0.1]\n'
+        'outcomes = ["largest:peak_force", "largest:max_q"]\n'
+    )
+    study = read_study(tmp_path / "two.toml")
+    units = units_of(study, study.model)
+    assert (
+        units["largest_peak_force"] == "N"
+        and units["largest_max_q"] == "mm"
+        and units["largest_max_q_at"] == "Hz"
+    )
