@@ -231,7 +231,7 @@ def _told(
     import numpy as np
 
     def shown(name: str, value: float) -> str:
-        return f"{value:.6g} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"
+        return f"{value:.4g} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"
 
     lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
     lines.append(f"{outcome} = {shown(outcome, choice.outcome)}, {wish}")
@@ -246,6 +246,6 @@ def _told(
         for name, value in choice.others.items():
             column = found.columns.get(name)
             known = column[np.isfinite(column)] if column is not None else np.array([])
-            span = f"  ({known.min():.6g} to {known.max():.6g})" if known.size else ""
+            span = f"  ({known.min():.4g} to {known.max():.4g})" if known.size else ""
             lines.append(f"  {name} = {shown(name, value)}{span}")
     return "\n".join(lines)

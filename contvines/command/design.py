@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 DAMPING = 0.9  # the reduced model has none; the coupled model's default
 HALF_WIDTH = 0.02  # metres, of a dimensionless machine without a scale
+LEVELS = 10  # contours of a map, about
+DECADES = 8.0  # how many times the largest number is the smallest where contours go by decades
 
 
 def machine(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
@@ -157,7 +159,7 @@ def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, 
         given.append(
             (line.name, line.symbol, value, "mm" if length else line.unit.replace("1", ""), line.meaning)
         )
-    return [(name, symbol, f"{value:.5g}", unit, meaning) for name, symbol, value, unit, meaning in given]
+    return [(name, symbol, f"{value:.4g}", unit, meaning) for name, symbol, value, unit, meaning in given]
 
 
 def table(title: str, lines: list[tuple[str, str, str, str, str]], assumed: Iterable[str] = ()) -> str:
@@ -257,13 +259,22 @@ def _bounds(axes: Any, design: Design, over: tuple[Any, str, float, str, float],
     axes.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
 
 
+def _round_levels(low: float, high: float) -> Any:
+    """Round values from below the lowest number to above the highest: in even steps, by decades (1, 2, 5) where they differ much."""
+    from matplotlib.ticker import LogLocator, MaxNLocator
+
+    if high > DECADES * low > 0.0:
+        return LogLocator(subs=(1.0, 2.0, 5.0), numticks=LEVELS).tick_values(low, high)
+    return MaxNLocator(nbins=LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+
+
 def _map(panel: Any, mu: Any, b: Any, values: Any, here: tuple[float, float], title: str) -> None:
     """A quantity over friction and half-width, as contours."""
     import numpy as np
 
     known = values[np.isfinite(values)]  # elastic walls without friction: no threshold, no ratio
     if known.size and known.max() > 1.001 * known.min():
-        levels = np.geomspace(known.min(), known.max(), 12)
+        levels = _round_levels(float(known.min()), float(known.max()))
         shown = np.ma.masked_invalid(values)
         panel.contourf(mu, 1e3 * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
         lines = panel.contour(mu, 1e3 * b, shown, levels=levels, colors="#0b3c6f", linewidths=0.9)

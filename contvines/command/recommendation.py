@@ -107,7 +107,7 @@ class Recommendation:
     loads : dict
         Largest over the stable motions and samples, by measure.
     checked : (float, float) or None
-        Largest response of the study's machine at the choice by the diagram and by simulation up and down.
+        Largest response of the study's machine at the choice by the diagram and by simulation.
     start_up : Start or None
     machine : dict
         The study's quantities by name, as text with units and with what is uncertain of them.
@@ -339,6 +339,12 @@ class Recommendation:
         return self.shown("time", value) if math.isfinite(value) else "does not"
 
     @property
+    def first_unknown(self) -> list[str]:
+        """The first sentences on what is not known, and how many more there are."""
+        more = len(self.unknown) - MOST
+        return [*self.unknown[:MOST], *([f"{more} more, in the JSON"] if more > 0 else [])]
+
+    @property
     def start_up_at(self) -> str:
         """Under which excitation it is."""
         said = next((text for text in self.assumed if text.startswith("start-up")), "")
@@ -368,11 +374,9 @@ class Recommendation:
             lines += [
                 "",
                 fitted(
-                    f"Checked by simulation up and down: {self.shown('peak', simulated)}, beside {self.shown('peak', by)} of the diagram."
+                    f"Checked by simulation at the largest response: {self.shown('peak', simulated)}, beside {self.shown('peak', by)} of the diagram."
                 ),
             ]
-        more = len(self.unknown) - MOST
-        unknown = [*self.unknown[:MOST], *([f"{more} more, in --json"] if more > 0 else [])]
-        for head, said in (("assumed", self.assumed), ("not known", unknown)):
+        for head, said in (("assumed", self.assumed), ("not known", self.first_unknown)):
             lines += [fitted(f"{head}: {sentence}") for sentence in said]
         return "\n".join(lines)

@@ -36,6 +36,7 @@ REPLAYED, LONGEST = (
     400,
     24,
 )  # forcing periods of a motion that is simulated from itself, and of the longest that may recur
+AGREES = 0.01  # of the diagram's largest response: simulations up and down that exceed it by more are told
 CHECK = 61  # values of the simulation up and down
 SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
 ABOUT, FINE = (
@@ -248,7 +249,7 @@ class _Work:
                 + f", {SPREAD[0]:g} to {SPREAD[1]:g} times the widest by theory"
             )
         own = self.own()
-        if own is not None and not low <= own <= high:
+        if own is not None and self.plan.axes and not low <= own <= high:
             own = None
         return sorted({*map(_tidy, values), *([] if own is None else [own])})
 
@@ -364,7 +365,8 @@ class _Work:
         return peaks_compared(model, self.study.parameter, self.study.within, KINDS)
 
     def _checked(self, value: float, model: Any) -> tuple[tuple[float, float] | None, list[Curve]]:
-        """The largest response of the study's own machine at the choice, by its diagram and by simulation up and down; its responses."""
+        """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value just
+        before the motion ends, if it is largest there); of simulations up and down, if these meet more. The responses."""
         from contvines.command.survey_study import options_of
         from contvines.survey.outcomes import peak
         from contvines.survey.stretches import highest, stretches
@@ -373,7 +375,7 @@ class _Work:
 
         over, (low, high) = self.study.parameter, self.study.within
         seen: list[Curve] = []
-        simulated: list[float] = []
+        compared: list[tuple[float, float]] = []
         measure = model.default_measure
 
         def keep(found: Findings) -> dict[str, float]:
@@ -384,7 +386,8 @@ class _Work:
                 inner = min(
                     max(index, part.first + 1), max(part.last - 1, part.first)
                 )  # at an end it is about to be left
-                simulated.append(_simulated(part.branch.orbit(inner), measure))
+                near = inner - part.first
+                compared.append((float(part.response[near]), _simulated(part.branch.orbit(inner), measure)))
             return peak(found)
 
         job = Job(self.family, over, (low, high), (keep,), options={**options_of(self.study), "depth": 0})
@@ -398,7 +401,10 @@ class _Work:
         for run in (grid, grid[::-1]):
             rows = sweep(model, over, run, nudge=0.0, **loose)
             seen.append(Curve("simulated", [r.value for r in rows], [r.measures[measure] for r in rows]))
-        return (row.columns["peak"], max([*simulated, *seen[-2].y, *seen[-1].y])), seen
+        most = max(*seen[-2].y, *seen[-1].y)
+        if not compared or most > (1.0 + AGREES) * row.columns["peak"]:
+            return (row.columns["peak"], most), seen
+        return compared[0], seen
 
     def _lines(self, model: Any) -> list[Curve]:
         """Responses of the machines to compare with."""

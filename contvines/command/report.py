@@ -98,7 +98,7 @@ def _answer(file: Path) -> Any:
     if found.checked is not None:
         by, simulated = (found.shown("peak", value) for value in found.checked)
         checked = [f"Checked by simulation: {simulated} beside {by} of the diagram."]
-    lists = [("Assumed", found.assumed), ("Not known", found.unknown or ["nothing that was asked"])]
+    lists = [("Assumed", found.assumed), ("Not known", found.first_unknown or ["nothing that was asked"])]
     return Answer(
         f"{found.title}: {found.name.replace('_', ' ')}",
         found.headline,

@@ -211,7 +211,7 @@ class Survey(Resumable):
         rows: list[tuple[str, ...]] = []
         for name, values in self.columns.items():
             known = values[np.isfinite(values)]
-            numbers = [f"{f(known):.6g}" if known.size else "-" for f in (np.min, np.median, np.max)]
+            numbers = [f"{f(known):.4g}" if known.size else "-" for f in (np.min, np.median, np.max)]
             rows.append((name, *numbers, self.units.get(name, "")))
         return Table(("outcome", "smallest", "median", "largest", "unit"), rows)
 

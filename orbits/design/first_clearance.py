@@ -40,7 +40,7 @@ class FirstClearance:
 
 
 def first_clearance(model: Any, params: np.ndarray) -> FirstClearance | None:
-    """Half-widths by theory; None for a machine without an oscillator or damping, or whose absorber loses nothing at the walls.
+    """Half-widths by theory; None for a machine without an oscillator or damping, with an inclined cavity, or whose absorber loses nothing at the walls.
 
     With F/k = eps G and 2 D = eps lambda/sqrt(1 + eps) the linear peak is F/(2 D k) = G sqrt(1 + eps)/lambda half-widths; it does not
     depend on the half-width in lengths. Friction is left out.
@@ -52,7 +52,9 @@ def first_clearance(model: Any, params: np.ndarray) -> FirstClearance | None:
     """
     numbers = dict(zip(model.parameter_names, map(float, params)))
     damping, forcing = numbers.get("damping", 0.0), numbers.get("forcing", 0.0)
-    if not (damping > 0.0 and forcing > 0.0 and 0.0 < numbers["restitution"] < 1.0):
+    if numbers.get("slope", 0.0) != 0.0 or not (
+        damping > 0.0 and forcing > 0.0 and 0.0 < numbers["restitution"] < 1.0
+    ):
         return None
     eps = numbers["mass_ratio"]
     flow = SlowFlow(restitution=numbers["restitution"], friction=0.0, mass_ratio=eps, damping=damping)

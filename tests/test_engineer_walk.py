@@ -1,0 +1,51 @@
+"""docs/design.md: its study is the example, and its commands and snippet run as they stand, with a smaller study in its place."""
+
+import re
+import shlex
+import shutil
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from contvines.command.cli import main
+
+TOP = Path(__file__).parents[1]
+PAGE = (TOP / "docs" / "design.md").read_text(encoding="utf-8")
+STUDY = (TOP / "examples" / "design" / "machine.toml").read_text(encoding="utf-8")
+
+
+def test_the_study_of_the_page_is_the_example():
+    block = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)[0]
+    assert tomllib.loads(block) == tomllib.loads(STUDY)
+
+
+@pytest.mark.slow
+def test_the_commands_and_the_snippet_of_the_page_run(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    place = tmp_path / "examples" / "design" / "machine.toml"
+    place.parent.mkdir(parents=True)
+    small = STUDY.replace(
+        "samples = 6", 'samples = 1\nvary.half_width = { within = ["70 mm", "100 mm"], count = 5 }'
+    )
+    place.write_text(
+        small.replace('within = ["7 Hz", "9 Hz"]', 'within = ["7.8 Hz", "8.2 Hz"]').replace(
+            "depth = 1", "depth = 0"
+        )
+    )
+    lines = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
+    assert [shlex.split(line)[1] for line in lines] == ["diagram", "recommend", "report"]
+    for line in lines:
+        words = shlex.split(line)[1:]
+        if "--pdf" in words and not shutil.which("chromium"):
+            words = words[: words.index("--pdf")]
+        with pytest.raises(SystemExit) as ended:
+            main(words)
+        assert ended.value.code == 0, line
+    for picture in ("response.png", "choice.png", "machine.html"):
+        assert (tmp_path / picture).exists()
+    names: dict = {}
+    exec(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)[0], names)
+    found = names["found"]
+    assert 70.0 <= found.value <= 100.0 and found.loads["impulse"] > 0.0
+    capsys.readouterr()
