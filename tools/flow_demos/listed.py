@@ -282,6 +282,7 @@ DEMOS = [
         settles=True,
         mirror=-np.eye(2),
     ),
+    CycleDemo("canard", "COCO canard", fields.canard, [0.0, 0.0], -1.1, (-1.1, 1.1), "a"),
 ]
 UNFINISHED = [
     CycleDemo(
@@ -308,7 +309,6 @@ UNFINISHED = [
         mirror=OTHER_PENDULUM,
         depth=3,
     ),
-    CycleDemo("canard", "COCO canard", fields.canard, [0.0, 0.0], -1.1, (-1.1, 1.1), "a"),
     CycleDemo(
         "predator and prey, forced",
         "BifurcationKit, MatCont",

@@ -165,11 +165,25 @@ def twisted(x, z, growth, other):
     ]
 
 
+def flip_and_pair(x, p):
+    """Beside the ring: multipliers -exp(2 pi a), and a pair of modulus exp(2 pi (b + a / 2))."""
+    return [*ring(x), *twisted(x, x[2:], p.a, -0.4), *spiral(x[4:], p.b + 0.5 * p.a, 0.7)]
+
+
 def fold_and_flip(x, p):
     """Cycles s = r^2 - 1 = +-sqrt a, with a multiplier -exp(2 pi (b + s))."""
     s = x[0] ** 2 + x[1] ** 2 - 1.0
     growth = p.a - s * s
     return [growth * x[0] - x[1], x[0] + growth * x[1], *twisted(x, x[2:], p.b + s, -0.4)]
+
+
+@pytest.mark.parametrize("label", ["PD1", "NS1"])
+def test_a_flip_and_a_pair_beside_a_ring(label):
+    flow = cv.FlowProblem(flip_and_pair, [1.0, 0, 0, 0, 0, 0], {"a": -0.3, "b": 0.12}, scale=1.0)
+    graph = cv.diagram(ring_orbit(flow, 0.0, 0.0, 0.0, 0.0), over="a", within=(-0.5, 0.05), depth=0)
+    locus = cv.locus(graph[label], over="b", within=(-0.2, 0.2))
+    (point,) = (point for point in locus.points.values() if point.kind == "flip-neimark-sacker")
+    assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def test_period_doublings_touch_the_folds_of_cycles():
