@@ -86,10 +86,15 @@ def write(target: Path) -> None:
     _keep(target / "index.md", "\n".join(lines))
 
 
+def verb_of(study: Path) -> str:
+    """The command that a study is an example of."""
+    return "random" if "\n[random]" in study.read_text(encoding="utf-8") else "diagram"
+
+
 def _page(one: Example, target: Path) -> None:
     path = one.path.relative_to(FOLDER.parent)
     run = (
-        f"contvines diagram {path} --plot picture.png"
+        f"contvines {verb_of(one.path)} {path} --plot picture.png"
         if path.suffix == ".toml"
         else f"python examples/machines/draw.py pictures {path.stem}"
         if path.parent.name == "machines"

@@ -17,6 +17,7 @@ matplotlib.use("Agg")
 
 TOP = Path(__file__).parents[1]
 EXAMPLES, PICTURES = TOP / "examples", TOP / "docs" / "gallery"
+sys.path.insert(0, str(TOP / "docs"))  # gallery_pages
 WIDTH = 760  # pixels
 SIZE = (5.2, 3.4)  # inches, of pictures that have no size of their own
 
@@ -34,8 +35,13 @@ def _script(path: Path, *words: str) -> None:
 
 
 def _study(path: Path) -> None:
+    from gallery_pages import verb_of
+
     contvines = [sys.executable, "-m", "contvines.command"]
     size = ["--size", *map(str, SIZE), *(["-y", "phase"] if path.stem == "bouncing_ball" else [])]
+    if verb_of(path) != "diagram":
+        subprocess.run([*contvines, verb_of(path), str(path), "--plot", "a.png"], check=True)
+        return
     subprocess.run([*contvines, "diagram", str(path), "--quiet"], check=True, stdout=subprocess.DEVNULL)
     subprocess.run([*contvines, "plot", f"{path.stem}.vines", *size, "--trust", "-o", "a.png"], check=True)
 
@@ -70,7 +76,6 @@ def main(names: list[str]) -> None:
     import os
     import time
 
-    sys.path.insert(0, str(TOP / "docs"))
     from gallery_pages import listed
 
     PICTURES.mkdir(exist_ok=True)
