@@ -47,7 +47,7 @@ class TableKernels:
 
     compiled = True
     column = 3
-    matrix: None = None
+    matrix: Callable[..., np.ndarray] | None = None
 
     def __init__(self, table: int) -> None:
         self.table = table

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
@@ -46,7 +46,7 @@ class Motions(Protocol):
     @property
     def dimension(self) -> int: ...
     @property
-    def path(self) -> tuple[np.ndarray, np.ndarray]: ...
+    def path(self) -> Iterable[np.ndarray]: ...
     def orbit(self, u: np.ndarray, p: float) -> Cycle: ...
     def expand(self, u: np.ndarray, p: float) -> np.ndarray: ...
 
