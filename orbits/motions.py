@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,11 +12,15 @@ from orbits.simulation.runs import simulator_of
 from orbits.simulation.section import Section
 from orbits.words import Word
 
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
+    from orbits.orbit import Orbit
+
 
 class Simulated:
     """Answers of a problem that knows its machine, word, periods, equations and parameter vector."""
 
-    model: Any
+    model: Varying
     flow: Flow
     word: Word
     periods: int
@@ -27,7 +31,7 @@ class Simulated:
         """The parameter vector at parameter value `p`."""
         raise TypeError("a problem says what its parameters are")
 
-    def orbit(self, u: np.ndarray, p: float) -> Any:
+    def orbit(self, u: np.ndarray, p: float) -> Orbit:
         """A solution as an orbit."""
         raise TypeError("a problem says what its orbits are")
 

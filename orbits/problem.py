@@ -7,7 +7,7 @@ breaking (there a multiplier of the half map passes -1), and a classification th
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +25,10 @@ from orbits.protocol import Answers
 from orbits.relatives import Relatives
 from orbits.words import Word
 from orbits.words.margins import border_kind
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
+    from orbits.protocol import BorderPoint, Seed
 
 
 class OrbitProblem(Simulated, Relatives, Answers):
@@ -56,8 +60,8 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def __init__(
         self,
-        model: Any,
-        word: Any,
+        model: Varying,
+        word: Word,
         periods: int,
         parameter: str,
         params: np.ndarray,
@@ -81,7 +85,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     # ------------------------------------------------------------------ numerics
     @property
-    def kernels(self) -> Any:
+    def kernels(self):
         """linearise, bordered, inspect: compiled, but for the empty word."""
         return self.equations.kernels
 
@@ -171,21 +175,21 @@ class OrbitProblem(Simulated, Relatives, Answers):
         return found, found.reduce(root.nodes)
 
     def sibling(
-        self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None
+        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> OrbitProblem:
         """The problem of another word of the same machine against the same parameter; on half the word only where the machine has a mirror image."""
         own, half = self.params if params is None else params, symmetric and self.mirrored
         return OrbitProblem(self.model, word, periods, self.parameter, own, half, self.units)
 
-    def beyond(self, point: Any) -> Sequence[Any]:
+    def beyond(self, point: BorderPoint) -> Sequence[Seed]:
         """The orbits on the other side of a border, with the words that physics writes."""
         return [self._smoothly(seed) for seed in cross(self, point)]
 
-    def onward(self, point: Any) -> Sequence[Any]:
+    def onward(self, point: BorderPoint) -> Sequence[Seed]:
         """Of these what needs no switch alone; orbits of another period or symmetry only where nothing else is found."""
         return [self._smoothly(seed) for seed in cross(self, point, every=False)]
 
-    def _smoothly(self, seed: Any) -> Any:
+    def _smoothly(self, seed: Seed) -> Seed:
         """The seed; self-excited motions without events go on as cycles of a smooth flow."""
         if self.forced or len(seed.problem.word) or not seed.problem.word.modes:
             return seed
@@ -198,7 +202,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         )
         return seed._replace(problem=problem, u=cycle.u, tangent=tangent)
 
-    def dead_end(self, point: Any) -> str:
+    def dead_end(self, point: BorderPoint) -> str:
         """Why no motion was found on the other side of a border; empty where the reason is not known."""
         return dead_end(self, point)
 
@@ -260,7 +264,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         nodes = self.expand(np.atleast_2d(u), p)
         return self.flow.measures(self.model, self.word, self.periods, nodes, self.values(p), names)
 
-    def orbit(self, u: np.ndarray, p: float) -> Any:
+    def orbit(self, u: np.ndarray, p: float) -> Orbit:
         """The solution as an `orbits.orbit.Orbit`."""
         return Orbit(self.model, self.word, self.periods, self.expand(u, p), self.values(p))
 
@@ -272,9 +276,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """Largest deviation of the event-driven simulation from the orbit over its period."""
         return self.orbit(u, p).replay()
 
-    def prove(
-        self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
-    ) -> Any:
+    def prove(self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None):
         """Prove a special point of this problem; see `orbits.proofs.subjects.of_point`."""
         from orbits.proofs.subjects import of_point
 
@@ -284,7 +286,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """What one of these coordinates of a motion (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; empty for a machine of plain numbers."""
         return self.model.gauges(names, self.values(p))
 
-    def population(self, over: str | None = None, **parameters: float) -> Any:
+    def population(self, over: str | None = None, **parameters: float):
         """Starts of this machine and what they settle on; see `orbits.population.Population`."""
         over = over or self.parameter
         numbers = dict(zip(self.model.parameter_names, map(float, self.params), strict=True))
@@ -313,7 +315,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         marks: Sequence[int] = (),
         within: tuple[float, float] | None = None,
         special: Mapping[int, Any] | None = None,
-    ) -> Any:
+    ):
         """Prove a branch of this problem's orbits; see `orbits.proofs.subjects.of_branch`."""
         from orbits.proofs.subjects import of_branch
 

@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from orbits.flows.protocol import Equations
 from orbits.orbit import Orbit
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from orbits.words import Word
+
+
+class BorderPoint(Protocol):
+    """What a problem is told of a special point at a border."""
+
+    @property
+    def u(self) -> np.ndarray: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def tangent(self) -> np.ndarray: ...
+    @property
+    def margin_index(self) -> Any: ...
+
 
 class CycleProblem(Protocol):
     """What borders ask of the problem of the cycles with one word (`orbits.problem.OrbitProblem`)."""
 
     model: Any
-    word: Any
+    word: Word
     periods: int
     parameter: str
     params: np.ndarray
@@ -35,7 +53,7 @@ class CycleProblem(Protocol):
     @property
     def scratch(self) -> Any: ...
 
-    def values(self, p: Any) -> np.ndarray: ...
+    def values(self, p: float | np.ndarray) -> np.ndarray: ...
 
     def value(self, params: np.ndarray) -> float: ...
 
@@ -45,7 +63,9 @@ class CycleProblem(Protocol):
 
     def orbit(self, u: np.ndarray, p: float) -> Orbit: ...
 
-    def sibling(self, word: Any, periods: int, symmetric: bool, params: np.ndarray | None = None) -> Any: ...
+    def sibling(
+        self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
+    ) -> CycleProblem: ...
 
 
 class Answers:
@@ -77,7 +97,7 @@ class Answers:
         """The margin to follow along a locus where margin `j` vanishes."""
         return j
 
-    def dead_end(self, point: Any) -> str:
+    def dead_end(self, point: BorderPoint) -> str:
         """Why no motion was found on the other side of a border; empty where the reason is not known."""
         return ""
 
@@ -106,10 +126,10 @@ class Symmetry(NamedTuple):
     """
 
     kind: str
-    apply: Any
-    root: Any
-    kind_at: Any = None
-    offset: Any = None
+    apply: Callable[[np.ndarray], np.ndarray]
+    root: Callable[[np.ndarray], tuple[Any, np.ndarray]] | None
+    kind_at: Callable[[np.ndarray], str] | None = None
+    offset: Callable[[float], np.ndarray] | None = None
 
 
 class Embedding(NamedTuple):

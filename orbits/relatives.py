@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, cached_property
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
@@ -29,7 +29,7 @@ class Relatives:
         Phase from the first node to the one after the last.
     """
 
-    word: Any
+    word: Word
     periods: int
     length: int
     symmetric: bool

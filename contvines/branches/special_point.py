@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,9 +12,6 @@ from ..continuation.hints import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
 from .lazy_field import Later
-
-if TYPE_CHECKING:
-    pass
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
 

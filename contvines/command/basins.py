@@ -1,13 +1,16 @@
 """`contvines basins`: which start reaches which motion."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from contvines.command.amounts import inside
 from contvines.command.frame import check_plot, draw, tell
 from contvines.command.options import JsonOption, PlotOption, SizeOption, StudyArgument
+
+if TYPE_CHECKING:
+    from ..graph.graph import Graph
 
 
 def basins(
@@ -47,7 +50,7 @@ def basins(
     starts = population(asked)
     units = getattr(starts, "units", {})
     value = inside("--at", at, asked.parameter, asked.within, units, f"{study}: [continue] within")
-    graph: Any = None if saddles is None else contvines.load(saddles)
+    graph: Graph | None = None if saddles is None else contvines.load(saddles)
     found = contvines.basins(starts, at=value, plane=plane, points=points, saddles=graph)
     tell(found, found.to_dict() if json else None)
     draw(plot, lambda: found.plot(figsize=size))

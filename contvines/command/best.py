@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -14,8 +14,11 @@ from contvines.command.study_data import Sort, Study
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
-    from contvines.survey import Survey
+    from matplotlib.figure import Figure
+
     from orbits.design import Choice
+
+    from ..survey import Survey
 
 LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
 WORST = ("worst-case", "worst", "robust")
@@ -151,7 +154,7 @@ def choose(
         draw(plot, lambda: figure, quiet)
 
 
-def _comes(outcome: str, study: Any) -> bool:
+def _comes(outcome: str, study: Study) -> bool:
     """Whether an outcome of the study has this column beside its own name."""
     belongs = {"activation": ("activation_from_below", "activation_from_above"), "dissipation": ("impact_power", "friction_power"), "pumping": ("pumping_time", "pumped_share")}  # fmt: skip
     prefix = [said.replace(":", "_") for said in study.survey.outcomes if ":" in said]
@@ -201,7 +204,7 @@ def _wish(largest: bool, quantile: float | None, samples: int) -> str:
     return f"{over} over {samples} samples, the {which} that was found"
 
 
-def _draw(figure: Any, choice: Any, names: list[str], over: str) -> None:
+def _draw(figure: Figure, choice: Choice, names: list[str], over: str) -> None:
     """Mark the choice in the survey's picture, and what was tried on the way to it."""
     axes = figure.axes[0]
     red = "#b5121b"

@@ -13,7 +13,10 @@ from contvines.command.study_data import Sort, Study
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from orbits.design.calibration import Calibration
+    from orbits.machines.base import Model
 
 CLOSE = 0.95  # correlation of two estimates from which on it is told
 
@@ -190,7 +193,7 @@ def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
     return model, {name: float(values[name]) for name in names}
 
 
-def _limits(said: list[str], names: list[str], model: Any) -> dict[str, tuple[float, float]]:
+def _limits(said: list[str], names: list[str], model: Model) -> dict[str, tuple[float, float]]:
     found = {}
     for text in said:
         name, _, ends = text.partition("=")
@@ -208,7 +211,7 @@ def _limits(said: list[str], names: list[str], model: Any) -> dict[str, tuple[fl
     return found
 
 
-def _limit(text: str, name: str, said: str, model: Any) -> float:
+def _limit(text: str, name: str, said: str, model: Model) -> float:
     """One end of an interval in which an estimate may lie, in the machine's unit."""
     from contvines.command.amounts import amount
     from contvines.command.physical_study import number_of
@@ -230,10 +233,10 @@ def _limit(text: str, name: str, said: str, model: Any) -> float:
 
 def _from_impacts(
     study: Study,
-    model: Any,
+    model: Model,
     path: Path,
     guesses: dict[str, float],
-    bounds: Any,
+    bounds: Mapping[str, tuple[float, float]],
     release: str | None,
     confidence: float,
 ) -> tuple[Calibration, tuple[Any, ...]]:
@@ -265,10 +268,10 @@ def _from_impacts(
 
 def _from_sweep(
     study: Study,
-    model: Any,
+    model: Model,
     path: Path,
     guesses: dict[str, float],
-    bounds: Any,
+    bounds: Mapping[str, tuple[float, float]],
     measure: str | None,
     confidence: float,
 ) -> tuple[Calibration, tuple[Any, ...]]:

@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -29,6 +29,10 @@ from contvines.command.options import (
     TrustOption,
     VirtualOption,
 )
+
+if TYPE_CHECKING:
+    from ..graph.graph import Graph
+    from ..loci.chart import Chart
 
 OutputOption = Annotated[
     Path | None,
@@ -115,7 +119,7 @@ def chart(
     _tell(found, target, plot, quiet)
 
 
-def _tell(found: Any, target: Path, plot: Path | None, quiet: bool) -> None:
+def _tell(found: "Chart", target: Path, plot: Path | None, quiet: bool) -> None:
     """Say where a chart is kept, print it, draw it."""
     say(f"kept in {target}", quiet)
     if not quiet:
@@ -124,14 +128,14 @@ def _tell(found: Any, target: Path, plot: Path | None, quiet: bool) -> None:
 
 
 def chart_of(
-    graph: Any,
+    graph: "Graph",
     over: str,
     ends: tuple[float, float],
     virtual: bool,
     target: Path,
     quiet: bool,
     source: dict[str, Any] | None,
-) -> Any:
+):
     """The chart of a diagram: from its file if that is finished, computed else; `source` is kept for `contvines rerun`."""
     from contvines.loci.charting import chart as make
     from contvines.store import Store
@@ -196,7 +200,7 @@ def _source(
     return {**kept, "study": place, "chart": [over, *ends], "virtual": virtual}
 
 
-def fingerprint_of(graph: Any, over: str, within: tuple[float, float], virtual: bool) -> str:
+def fingerprint_of(graph: "Graph", over: str, within: tuple[float, float], virtual: bool) -> str:
     import hashlib
     import json
 

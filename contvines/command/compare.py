@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import numpy as np
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..graph.graph import Graph
 
 LOOKS = {
     "bare": ("0.35", (0, (1, 1.2))),
@@ -39,8 +42,8 @@ def check_compared(kinds: list[str] | None, drawn: bool) -> None:
 
 
 def compared(
-    graph: Any, kinds: list[str] | None, x: str | None = None, y: str | None = None, **options: Any
-) -> Any:
+    graph: Graph, kinds: list[str] | None, x: str | None = None, y: str | None = None, **options: Any
+) -> Figure:
     """The picture of a graph with the lines to compare it with; options as for `contvines.plots.diagram.plot_diagram`."""
     from contvines.plots.diagram import draw_diagram, plot_diagram
     from contvines.plots.figures import new_axes, styled
@@ -55,7 +58,7 @@ def compared(
         return figure
 
 
-def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: str | None) -> None:
+def draw_compared(axes: Axes, graph: Graph, kinds: list[str], x: str | None, y: str | None) -> None:
     """Draw the lines on axes on which the graph is drawn next.
 
     Raises
@@ -73,7 +76,7 @@ def draw_compared(axes: Axes, graph: Any, kinds: list[str], x: str | None, y: st
 
 
 def _lines(
-    graph: Any, kinds: list[str], x: str | None, y: str | None
+    graph: Graph, kinds: list[str], x: str | None, y: str | None
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Values of the parameter and responses there, of each kind."""
     import numpy as np

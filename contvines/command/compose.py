@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from contvines.command.study_data import Sort, Study, without_word
 
 if TYPE_CHECKING:
-    from contvines.graph.graph import Graph
+    from ..graph.graph import Graph
 
 
-def machine(study: Study) -> Any:
+def machine(study: Study):
     """The machine of a study, `[start]`'s overrides included.
 
     Raises
@@ -50,7 +50,7 @@ def check_shaken(study: Study, vary: Iterable[str] = ()) -> None:
         )
 
 
-def population(study: Study) -> Any:
+def population(study: Study):
     """Starts of a study's machine or flow, and what they settle on, over its parameter."""
     own = study.parameters if study.sort is Sort.FLOW else study.loose
     fixed = {name: value for name, value in own.items() if name != study.parameter}
@@ -61,7 +61,7 @@ def population(study: Study) -> Any:
     return population_of(study.model, study.parameter, **fixed)
 
 
-def first_orbit(study: Study) -> Any:
+def first_orbit(study: Study):
     """The study's start, solved.
 
     Raises
@@ -94,7 +94,7 @@ def first_orbit(study: Study) -> Any:
         raise ValueError(f"{study.path}: [start] {without_word(study, error)}") from error
 
 
-def _page_start(study: Study) -> Any:
+def _page_start(study: Study):
     """What the study's state leads to; of a self-excited machine that comes to rest, or with the word "", the equilibrium near it."""
     model, state = study.model, study.state
     if study.word == "" and model.forced:
@@ -107,7 +107,7 @@ def _page_start(study: Study) -> Any:
     return model.smooth(state, **study.loose).equilibria(study.parameter)
 
 
-def _settled(study: Study) -> Any:
+def _settled(study: Study):
     """The motion that settles from rest, where the study begins or elsewhere in its interval; told on stderr."""
     from contvines.graph.shortening import short_word
     from orbits.design import Family

@@ -15,6 +15,7 @@ from contvines.command.options import JsonOption, StudyArgument
 from contvines.command.study_data import Sort, Study
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from orbits.design.figures import Design
@@ -238,7 +239,7 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     return figure
 
 
-def _bounds(axes: Any, design: Design, over: tuple[Any, str, float, str, float], room: float) -> None:
+def _bounds(axes: Axes, design: Design, over: tuple[Any, str, float, str, float], room: float) -> None:
     """Between which amplitudes of the oscillator two symmetric impacts are, and where the absorber sticks; `room` for a legend."""
     import numpy as np
 

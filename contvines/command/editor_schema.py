@@ -144,7 +144,7 @@ def inlined(model: Any) -> dict[str, Any]:
     made = model.model_json_schema(by_alias=True)
     shared = made.pop("$defs", {})
 
-    def told(value: Any) -> Any:
+    def told(value: object) -> Any:
         if isinstance(value, list):
             return [told(entry) for entry in value]
         if not isinstance(value, dict):
@@ -162,14 +162,14 @@ def inlined(model: Any) -> dict[str, Any]:
     return told(made)
 
 
-def _said_already(key: str, value: Any) -> bool:
+def _said_already(key: str, value: object) -> bool:
     """Whether an entry says nothing to an editor: titles made from names, defaults that are none or whole sections."""
     return (key == "title" and isinstance(value, str)) or (
         key == "default" and (value is None or isinstance(value, dict))
     )
 
 
-def _with_units(value: Any) -> Any:
+def _with_units(value: object) -> Any:
     """Lists of numbers become lists of numbers or of text with a unit."""
     if isinstance(value, list):
         return [_with_units(entry) for entry in value]

@@ -4,11 +4,14 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from contvines.text_table import fitted
+
+if TYPE_CHECKING:
+    from ..graph.graph import Graph
 
 
 class Interrupted(Exception):
@@ -153,7 +156,7 @@ def load_file(file: Path, trust: bool = False, problems: bool = True, charts: bo
     return graph
 
 
-def check_special(graph: Any, file: Path, label: str) -> None:
+def check_special(graph: "Graph", file: Path, label: str) -> None:
     """Refuse a label that is not that of a special point."""
     if label not in graph.special:
         what = "is a branch" if label in graph.branches else "is no label of it"
@@ -162,7 +165,7 @@ def check_special(graph: Any, file: Path, label: str) -> None:
         )
 
 
-def refuse_detached(graph: Any, *labels: str) -> None:
+def refuse_detached(graph: "Graph", *labels: str) -> None:
     """Special points whose problem is not at hand, before work starts: a sentence that says why, and what would do."""
     from contvines.problems.registry import without_problem
 
@@ -173,13 +176,13 @@ def refuse_detached(graph: Any, *labels: str) -> None:
             raise ValueError(without_problem(label, None if branch is None else branch.description))
 
 
-def refuse_unfinished(graph: Any, file: Path) -> None:
+def refuse_unfinished(graph: "Graph", file: Path) -> None:
     """Work on a result begins when that is finished."""
     if not graph.finished:
         raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
 
 
-def say_state(graph: Any, file: Path, problems: bool = True) -> None:
+def say_state(graph: "Graph", file: Path, problems: bool = True) -> None:
     """Branches that were loaded as numbers only, and why; whether the run goes on."""
     from contvines.problems.registry import without_problem
 

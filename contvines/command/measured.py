@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import numpy as np
 
+
 _UNIT = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|/\s*([^/]+)$")
 STANDARD_GRAVITY = 9.80665  # m/s^2; in the head of an acceleration, g is this and no gram
 
@@ -104,7 +105,7 @@ def length_on_line(text: str, option: str, unit: str) -> float:
     return number * factor
 
 
-def scales(model: Any, params: Any) -> tuple[float, str, float, str]:
+def scales(model: Any, params: np.ndarray) -> tuple[float, str, float, str]:
     """What a dimensionless length and time are in the units that a study shows, and these units ("" for plain numbers)."""
     if not model.units or model.flow == "page":
         return 1.0, "", 1.0, model.units.get("time", "")

@@ -189,7 +189,7 @@ def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
             )
 
 
-def _given(value: Any) -> str:
+def _given(value: object) -> str:
     """An option's value as it was typed; nothing for a switch."""
     if isinstance(value, bool) or value == "":
         return ""

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from contvines.command.frame import beside, check_plot, draw, held, interruptible, refuse_source, say, tell
 from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption
 from contvines.command.recommendation import Recommendation
+
+if TYPE_CHECKING:
+    from .study_data import Study
 
 
 def recommend(
@@ -131,7 +134,7 @@ def kept(place: Path) -> dict[str, Any]:
     return found
 
 
-def _target(text: str, study: Any) -> float:
+def _target(text: str, study: Study) -> float:
     from contvines.command.amounts import amount
 
     model = study.model

@@ -2,7 +2,7 @@
 
 import warnings
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -30,6 +30,12 @@ from contvines.command.options import (
     StudyArgument,
     TrustOption,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..graph.graph import Graph
+    from .study_data import Study
 
 SIMULATED = "#2f6f3e"
 MANY = 30  # branches; of a larger graph `diagram` tells the stable motions alone
@@ -212,7 +218,7 @@ def _tell(graph: Any, target: Path, summarised: bool, details: bool) -> None:
     typer.echo(str(graph))
 
 
-def graph_of(study: Any, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Any:
+def graph_of(study: "Study", command: str, target: Path, quiet: bool, *, problems: bool, look: bool):
     """The graph of a study: from its file if that is finished, computed else."""
     from contvines.command.compose import first_orbit, population, run_atlas, run_diagram
     from contvines.store import Store
@@ -234,7 +240,7 @@ def graph_of(study: Any, command: str, target: Path, quiet: bool, *, problems: b
     return _look(study, target) if look and not graph.looked else graph
 
 
-def _look(study: Any, target: Path) -> Any:
+def _look(study: "Study", target: Path):
     """A few simulated starts after a diagram; what they reach beside it is kept in the file.
 
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
@@ -254,7 +260,9 @@ def _look(study: Any, target: Path) -> Any:
     return graph
 
 
-def _picture(graph: Any, x: str | None, y: str | None, compare: list[str] | None, study: Any) -> Any:
+def _picture(
+    graph: "Graph", x: str | None, y: str | None, compare: list[str] | None, study: "Study"
+) -> "Figure":
     if graph.attractors:
         from contvines.plots.atlas import plot_atlas
 

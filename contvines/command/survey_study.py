@@ -72,7 +72,7 @@ def names_of(study: Study) -> Iterable[str]:
     return [entry.name for entry in study.model.settable]
 
 
-def family_of(study: Study, model: Any) -> Any:
+def family_of(study: Study, model: Any):
     """The machines, or flows, of a study's survey."""
     if study.sort is Sort.FLOW:
         from contvines.flows.family import FlowFamily

@@ -18,8 +18,8 @@ from contvines.command.options import FreshOption, PlotOption, QuietOption, Size
 from contvines.text_table import Table, terminal_width
 
 if TYPE_CHECKING:
-    from contvines.command.study import Study
-    from contvines.command.sweep_rows import Kept
+    from .study import Study
+    from .sweep_rows import Kept
 
 
 def sweep(

@@ -9,7 +9,8 @@ from contvines.command.study_data import Sort, Study
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from contvines.command.sweep_rows import Kept
+    from ..graph.graph import Graph
+    from .sweep_rows import Kept
 
 
 def graph_beneath(path: Path, study: Study) -> Any:
@@ -39,7 +40,7 @@ def graph_beneath(path: Path, study: Study) -> Any:
     return graph
 
 
-def _graph_machine(graph: Any) -> dict[str, Any]:
+def _graph_machine(graph: "Graph") -> dict[str, Any]:
     """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
     from orbits.machines.building import build
     from orbits.machines.catalogue import NAMES
@@ -69,12 +70,12 @@ def _same(a: Any, b: Any) -> bool:
     return math.isclose(a, b, rel_tol=1e-12, abs_tol=1e-300)
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     return repr(value) if isinstance(value, str) else f"{value:.15g}"
 
 
 def picture(
-    rows: "list[Kept]", study: Study, graph: Any, size: tuple[float, float] | None = None
+    rows: "list[Kept]", study: Study, graph: "Graph", size: tuple[float, float] | None = None
 ) -> "Figure":
     """The attractors of a sweep as dots, over a graph if there is one."""
     from contvines.plots.sweep import plot_sweep
@@ -104,7 +105,7 @@ def picture(
     return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, **look)
 
 
-def _lines(graph: Any) -> list[tuple[Any, Any, Any]]:
+def _lines(graph: "Graph") -> list[tuple[Any, Any, Any]]:
     """Word, parameter values and B at the word's first impact of every branch that has one."""
     from contvines.graph.measures import measured
     from orbits.words import Word

@@ -142,7 +142,7 @@ class Rows:
             self._note(vars(row))
         self.rows.append(row)
 
-    def __exit__(self, kind: Any, *_: object) -> None:
+    def __exit__(self, kind: object, *_: object) -> None:
         self._close()
         if kind is None and self.lasting:
             self.journal.unlink(missing_ok=True)

@@ -47,7 +47,7 @@ def toml_data(text: str) -> dict[str, Any]:
     return data
 
 
-def _deeper_than(value: Any, levels: int) -> bool:
+def _deeper_than(value: object, levels: int) -> bool:
     """Whether there are more levels than that; without recursion, which they may exhaust."""
     level = [value]
     for _ in range(levels + 1):

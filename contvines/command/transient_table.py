@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.figure import Figure
 
 
 class Told:
@@ -63,7 +64,7 @@ class Told:
                 [repr(float(x)) for x in row] for row in zip(*(values for _, _, values in self.series))
             )
 
-    def draw(self, size: tuple[float, float] | None = None) -> Any:
+    def draw(self, size: tuple[float, float] | None = None) -> Figure:
         """The motion, or the energy, with the absorber and without; impacts as ticks."""
         from contvines.plots.measured import plot_transient
 

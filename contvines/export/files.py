@@ -113,7 +113,7 @@ def _csv(graph: "Graph", path: Path) -> None:
             writer.writerow([_written(value) for value in row])
 
 
-def _written(value: Any) -> Any:
+def _written(value: object) -> object:
     """A number at full precision, nothing where there is none."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
@@ -218,7 +218,7 @@ def _fields(data: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _mat_value(value: Any) -> Any:
+def _mat_value(value: object) -> object:
     if isinstance(value, Mapping):
         return _fields(value)
     if isinstance(value, list | tuple):

@@ -10,6 +10,11 @@ import numpy as np
 from .columns import branch_columns, graph_columns, measures_of, parameter_head
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
+    from pandas import DataFrame
+    from xarray import Dataset
+
     from ..branches.branch import Branch
     from ..graph.graph import Graph
     from ..loci.chart import Chart
@@ -17,7 +22,7 @@ if TYPE_CHECKING:
 MISSING = "this needs {0}: pip install 'contvines[tables]'"
 
 
-def graph_frame(graph: Graph) -> Any:
+def graph_frame(graph: Graph) -> DataFrame:
     """All points of all branches, indexed by branch and point; the columns of the csv file.
 
     Raises
@@ -28,7 +33,7 @@ def graph_frame(graph: Graph) -> Any:
     return _pandas().DataFrame(graph_columns(graph)).set_index(["branch", "index"])
 
 
-def points_frame(graph: Graph) -> Any:
+def points_frame(graph: Graph) -> DataFrame:
     """The special points, indexed by label: kind, branch, value of the parameter, whether real, criticality, and the branches they lead to.
 
     Raises
@@ -53,7 +58,7 @@ def points_frame(graph: Graph) -> Any:
     return _pandas().DataFrame(rows, columns=names).set_index("label")
 
 
-def graph_dataset(graph: Graph) -> Any:
+def graph_dataset(graph: Graph) -> Dataset:
     """All points of all branches as a data set over the dimension ``row``, whose coordinates are branch and index.
 
     Raises
@@ -66,7 +71,7 @@ def graph_dataset(graph: Graph) -> Any:
     return found
 
 
-def chart_frame(chart: Chart) -> Any:
+def chart_frame(chart: Chart) -> DataFrame:
     """All points of all loci, indexed by locus and point: kind, word, both parameters, and whether the motion is real.
 
     Raises
@@ -92,7 +97,7 @@ def chart_frame(chart: Chart) -> Any:
     return _pandas().DataFrame(parts, columns=names).set_index(["locus", "index"])
 
 
-def chart_dataset(chart: Chart) -> Any:
+def chart_dataset(chart: Chart) -> Dataset:
     """All points of all loci as a data set over the dimension ``row``, whose coordinates are locus and index.
 
     Raises
@@ -105,13 +110,13 @@ def chart_dataset(chart: Chart) -> Any:
     return found
 
 
-def branch_frame(branch: Branch) -> Any:
+def branch_frame(branch: Branch) -> DataFrame:
     """The points of one branch, indexed by their number."""
     units = dict(branch.description.get("units") or {})
     return _pandas().DataFrame(branch_columns(branch, units)).set_index("index").drop(columns="branch")
 
 
-def branch_dataset(branch: Branch) -> Any:
+def branch_dataset(branch: Branch) -> Dataset:
     """One branch as a data set: points, multipliers, stability (where it is computed) and measures over the dimension ``point``.
 
     Raises
@@ -144,7 +149,7 @@ def branch_dataset(branch: Branch) -> Any:
     return xarray.Dataset(variables, coordinates, about)
 
 
-def _dataset(frame: Any, units: Mapping[str, str]) -> Any:
+def _dataset(frame: DataFrame, units: Mapping[str, str]) -> Dataset:
     """A frame as a data set over the dimension ``row``; what indexed the frame are coordinates."""
     _xarray()
     keys = list(frame.index.names)
@@ -157,7 +162,7 @@ def _dataset(frame: Any, units: Mapping[str, str]) -> Any:
     return found
 
 
-def _xarray() -> Any:
+def _xarray() -> ModuleType:
     try:
         import xarray
     except ImportError:
@@ -165,7 +170,7 @@ def _xarray() -> Any:
     return xarray
 
 
-def _pandas() -> Any:
+def _pandas() -> ModuleType:
     try:
         import pandas
     except ImportError:

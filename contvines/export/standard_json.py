@@ -2,17 +2,16 @@
 
 import json
 import math
-from typing import Any
 
 import numpy as np
 
 
-def json_text(data: Any, *, indent: int | None = 2) -> str:
+def json_text(data: object, *, indent: int | None = 2) -> str:
     """Standard JSON at full precision; numbers that JSON lacks (nan, infinities) become null."""
     return json.dumps(_finite(data), indent=indent, allow_nan=False, ensure_ascii=False)
 
 
-def _finite(data: Any) -> Any:
+def _finite(data: object) -> object:
     if isinstance(data, dict):
         return {str(k): _finite(v) for k, v in data.items()}
     if isinstance(data, np.ndarray):

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .simulation import rates
+
+if TYPE_CHECKING:
+    from .field import Field
 
 RECURS = 1e-4  # distance of two returns, relative to the size of the motion, that count as one
 NEARLY = 1e-2  # ... after which it is worth simulating more exactly
@@ -40,7 +43,7 @@ class Irregular(ValueError):
 
 
 def recurrence(
-    field: Any,
+    field: Field,
     p: float,
     x: np.ndarray,
     transient: float | None,
@@ -60,7 +63,7 @@ def recurrence(
 
 
 def _run(
-    field: Any, p: float, x: np.ndarray, start: float, stop: float, dense: bool = False, rough: bool = False
+    field: Field, p: float, x: np.ndarray, start: float, stop: float, dense: bool = False, rough: bool = False
 ) -> Any:
     from scipy.integrate import solve_ivp
 
@@ -88,7 +91,7 @@ def _run(
 
 
 def _forced(
-    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
+    field: Field, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
 ) -> tuple[np.ndarray, np.ndarray, int]:
     period = float(field.length_of_period(p))
     count = 100 if transient is None else max(1, int(np.ceil(transient / period)))
@@ -115,7 +118,7 @@ def _forced(
 
 
 def _free(
-    field: Any, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
+    field: Field, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
 ) -> tuple[np.ndarray, np.ndarray, int]:
     rate = rates(field, p)
     matrix = field.jacobian(x[None, :], p)[0]

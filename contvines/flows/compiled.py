@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..problems.parameters import Parameters
 
 _FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_int64, *[ctypes.c_void_p] * 4)
 
@@ -50,7 +55,12 @@ class CompiledRates:
         self.f, self.dfdx, self.dfdp = calls
 
     def at_points(
-        self, call: Any, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]
+        self,
+        call: Callable[..., Any],
+        x: np.ndarray,
+        parameters: Parameters | complex,
+        t: Any,
+        shape: tuple[int, ...],
     ) -> np.ndarray:
         """One of the three functions at points (n, d), with result of shape (n, *shape)."""
         x = np.ascontiguousarray(x, dtype=float)
@@ -68,7 +78,14 @@ class CompiledRates:
         )
         return out
 
-    def _one(self, call: Any, x: Any, parameters: Any, t: Any, shape: tuple[int, ...]) -> np.ndarray:
+    def _one(
+        self,
+        call: Callable[..., Any],
+        x: np.ndarray,
+        parameters: Parameters | complex,
+        t: Any,
+        shape: tuple[int, ...],
+    ) -> np.ndarray:
         """For arguments as functions in Python have them: a point (d,), or points (d, n)."""
         x = np.asarray(x)
         if np.iscomplexobj(x):
@@ -76,11 +93,15 @@ class CompiledRates:
         found = self.at_points(call, x.T if x.ndim == 2 else x[None, :], parameters, t, shape)
         return np.moveaxis(found, 0, -1) if x.ndim == 2 else found[0]
 
-    def __call__(self, x: Any, parameters: Any, t: Any = None) -> np.ndarray:
+    def __call__(
+        self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
+    ) -> np.ndarray:
         """f."""
         return self._one(self.f, x, parameters, t, (len(x),))
 
-    def jacobian(self, x: Any, parameters: Any, t: Any = None) -> np.ndarray:
+    def jacobian(
+        self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
+    ) -> np.ndarray:
         """df/dx."""
         return self._one(self.dfdx, x, parameters, t, (len(x), len(x)))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from copy import copy
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from .section import FlowSection
 from .sparse import LEADING, SparseEquations
 from .sparse import distance_to_rest as rest_of_sparse
 from .witness import Witnessed
+
+if TYPE_CHECKING:
+    from ..problems.protocol import BorderPoint
 
 SAME = 1e-7  # points closer than this, in units of the scale, are one
 AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
@@ -353,7 +356,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         place = self._closest(u, p)[1][k : k + 1]
         return mesh.evaluate(self.rule, widths, x, place)[0], float(place[0] * period)
 
-    def touch_error(self, point: Any) -> float:
+    def touch_error(self, point: BorderPoint) -> float:
         """By how much the parameter at which a cycle touches an event may be off."""
         k = int(point.margin_index) - 2 * self.free_period
         missed = self._missed(point.u, float(point.value), k)
@@ -387,12 +390,12 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         own = 2 * self.free_period
         return "homoclinic" if j < own else self.flow.border_kind(j - own)
 
-    def beyond(self, point: Any) -> list[Seed]:
+    def beyond(self, point: BorderPoint) -> list[Seed]:
         """Nothing goes on from a homoclinic orbit; at an event the flow says what does."""
         k = int(point.margin_index) - 2 * self.free_period
         return [] if k < 0 else self.flow.beyond(self, point, k)
 
-    def dead_end(self, point: Any) -> str:
+    def dead_end(self, point: BorderPoint) -> str:
         """The equilibrium to which an orbit is homoclinic, and its eigenvalues; or the event that stops the motion."""
         k = int(point.margin_index) - 2 * self.free_period
         if k >= 0:
@@ -590,7 +593,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
             return None
         return found if np.isfinite(found).all() else None
 
-    def population(self, over: str | None = None, **options: Any) -> Any:
+    def population(self, over: str | None = None, **options: Any):
         """Starts round this cycle, and what they settle on."""
         states = self.u0[: self.states].reshape(-1, self.node)
         return self.flow.population(over or self.parameter, around=states, **{**self.parameters, **options})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import issparse
@@ -13,6 +13,9 @@ from ..problems.functions import NotEvaluable
 from ..problems.protocol import Embedding, Seed
 from . import mesh
 from .witness import Witnessed
+
+if TYPE_CHECKING:
+    from ..problems.protocol import BorderPoint
 
 CRITICAL = 1e-8  # real part of an eigenvalue, relative to the largest one, that is zero
 FIRST = 20  # intervals of a cycle that has just been born
@@ -89,11 +92,11 @@ class Equilibria(Witnessed, AlgebraicProblem):
         """The equilibrium itself."""
         return u[: self.node], None
 
-    def beyond(self, point: Any) -> list[Seed]:
+    def beyond(self, point: BorderPoint) -> list[Seed]:
         """See :meth:`FlowProblem.beyond`."""
         return self.flow.beyond(self, point, int(point.margin_index))
 
-    def dead_end(self, point: Any) -> str:
+    def dead_end(self, point: BorderPoint) -> str:
         """See :meth:`FlowProblem.dead_end`."""
         return self.flow.dead_end(self, point, int(point.margin_index))
 
@@ -115,7 +118,7 @@ class Equilibria(Witnessed, AlgebraicProblem):
         critical = [upper[k] for k in order if k == order[0] or distances[k] < CRITICAL * size]
         return [cycles_at(self, u, p, float(values[k].imag), vectors[:, k]) for k in critical]
 
-    def population(self, over: str | None = None, **options: Any) -> Any:
+    def population(self, over: str | None = None, **options: Any):
         """Starts round the flow's start, and what they settle on."""
         return self.flow.population(over or self.parameter, **{**self.values.values, **options})
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..problems.functions import NotEvaluable
 from ..problems.parameters import ParameterSet
+
+if TYPE_CHECKING:
+    from ..problems.parameters import Parameters
 
 FINER = 4  # places between two nodes at which the smallest value is looked for first
 ROUNDS = 3  # each of which looks ...
@@ -59,7 +62,9 @@ class Events:
     def __len__(self) -> int:
         return len(self.given)
 
-    def __call__(self, x: np.ndarray, parameters: Any, t: np.ndarray | None = None) -> np.ndarray:
+    def __call__(
+        self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
+    ) -> np.ndarray:
         """Values at points (n, d), positive where motions are, shape (n, events).
 
         Raises
@@ -75,7 +80,9 @@ class Events:
                 raise NotEvaluable(f"the event {name} fails: {error}") from error
         return found * self.signs
 
-    def _many(self, function: Callable, x: np.ndarray, parameters: Any, t: np.ndarray | None) -> Any:
+    def _many(
+        self, function: Callable, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None
+    ) -> Any:
         def one(y: np.ndarray, s: Any) -> float:
             return float(function(y, parameters, s) if self.forced else function(y, parameters))
 
@@ -91,7 +98,11 @@ class Events:
         return [one(y, s) for y, s in zip(x, times, strict=True)]
 
     def closest(
-        self, motion: Callable[[np.ndarray], np.ndarray], edges: np.ndarray, period: float, parameters: Any
+        self,
+        motion: Callable[[np.ndarray], np.ndarray],
+        edges: np.ndarray,
+        period: float,
+        parameters: Parameters | complex,
     ) -> tuple[np.ndarray, np.ndarray]:
         """The smallest value of each along a periodic motion, and the place where it has it, in units of the period.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from copy import copy
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import issparse
@@ -16,6 +16,9 @@ from ..problems.parameters import ParameterSet
 from .compiled import CompiledRates
 from .events import Events
 from .sparse import LARGE, found_sparsity
+
+if TYPE_CHECKING:
+    from ..problems.parameters import Parameters
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so 1e-14 of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
@@ -118,10 +121,12 @@ class Field:
             [self._one(self.f, y, parameters, s, (self.node,)) for y, s in zip(x, times, strict=True)]
         )
 
-    def _arguments(self, x: np.ndarray, parameters: Any, t: Any) -> tuple[Any, ...]:
+    def _arguments(self, x: np.ndarray, parameters: Parameters | complex, t: Any) -> tuple[Any, ...]:
         return (x, parameters) if self.period is None else (x, parameters, t)
 
-    def _one(self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]) -> np.ndarray:
+    def _one(
+        self, f: Callable, x: np.ndarray, parameters: Parameters | complex, t: Any, shape: tuple[int, ...]
+    ) -> np.ndarray:
         try:
             value = f(*self._arguments(x.copy(), parameters, t))
             value = value.toarray() if issparse(value) else np.array(value)
@@ -132,7 +137,7 @@ class Field:
         return value
 
     def _stacked(
-        self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]
+        self, f: Callable, x: np.ndarray, parameters: Parameters | complex, t: Any, shape: tuple[int, ...]
     ) -> np.ndarray:
         try:
             given = f(*self._arguments(x.T.copy(), parameters, t))
@@ -152,7 +157,9 @@ class Field:
                 shape = (self.node, self.node)
                 self.many_jacobian = self._agrees(self.given_jacobian, x, parameters, t, shape)
 
-    def _agrees(self, f: Callable, x: np.ndarray, parameters: Any, t: Any, shape: tuple[int, ...]) -> bool:
+    def _agrees(
+        self, f: Callable, x: np.ndarray, parameters: Parameters | complex, t: Any, shape: tuple[int, ...]
+    ) -> bool:
         times = [None] * len(x) if t is None else t
         try:
             single = np.array([self._one(f, y, parameters, s, shape) for y, s in zip(x, times, strict=True)])
@@ -170,7 +177,7 @@ class Field:
         t = np.array([0.3 * self.length_of_period(p)]) if self.forced else None
         given, parameters = self.given_jacobian, self.values.at(p)
 
-        def jacobian(x: np.ndarray) -> Any:
+        def jacobian(x: np.ndarray):
             if given is None:
                 return self.jacobian(x[None, :], p, t)[0]
             return given(*self._arguments(x, parameters, None if t is None else t[0]))

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from ..problems.registry import find_callables
 from .cycles import CycleProblem
 from .expressions import read_text
 from .problem import FlowProblem
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 
 _known: dict[str, FlowProblem] = {}  # branches of one graph share their flow
 
@@ -51,7 +55,9 @@ def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Any:
     )
 
 
-def read_ode(path: str | Path, x0: Any = None, **options: Any) -> FlowProblem:
+def read_ode(
+    path: str | Path, x0: Sequence[float] | np.ndarray | float | None = None, **options: Any
+) -> FlowProblem:
     """A flow from an .ode file of XPP: equations, parameters, functions and fixed quantities; see :mod:`contvines.flows.expressions`.
 
     Nothing of the file is run but arithmetic.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -15,8 +15,40 @@ from .elimination import condense, multipliers_of, solve_collocation
 from .mesh import closed
 from .sparse import SparseEquations, leading_multipliers, solve_bordered
 
+if TYPE_CHECKING:
+    from ..problems.parameters import ParameterSet
+    from .collocation import Rule
+
 LARGEST = 707.0  # logarithms of multipliers are clamped here, where floats end
 STILL = 1e-12  # speeds of a cycle that is an equilibrium
+
+
+class Collocated(Protocol):
+    """What the kernels read of a problem, their `data` (`contvines.flows.cycles.CycleProblem`)."""
+
+    column_scale: np.ndarray
+    dimension: int
+    field: Any
+    free_period: int
+    intervals: int
+    missed: float
+    n_margins: int
+    n_multipliers: int
+    node: int
+    node_scale: np.ndarray
+    parameter_scale: float
+    row_scale: np.ndarray
+    rule: Rule
+    sparse: SparseEquations | None
+    states: int
+    trouble: str
+    values: ParameterSet
+
+    @property
+    def parameter(self) -> str: ...
+
+    def evaluate(self, u: np.ndarray, p: float, work: CycleWork) -> None: ...
+    def margins(self, u: np.ndarray, work: CycleWork) -> np.ndarray: ...
 
 
 class CycleWork:
@@ -27,7 +59,7 @@ class CycleWork:
     by the period, ``phase`` (N, m d) the row of the phase condition.
     """
 
-    def __init__(self, data: Any) -> None:
+    def __init__(self, data: Collocated) -> None:
         count, inner, d, free = data.intervals, data.rule.degree * data.node, data.node, data.free_period
         self.residual, self.derivative = np.zeros(data.dimension), np.zeros(data.dimension)
         self.sparse: SparseEquations | None = data.sparse
@@ -48,7 +80,7 @@ class CycleWork:
         return (self.residual, self.derivative)[i]
 
 
-def linearise(data: Any, u: np.ndarray, p: float, work: CycleWork) -> float:
+def linearise(data: Collocated, u: np.ndarray, p: float, work: CycleWork) -> float:
     """Residual and derivatives of the collocation equations; the largest residual in units of the rows."""
     work.mesh, work.full, work.closure, work.corner = None, None, 1.0, 0.0
     with np.errstate(all="ignore"):
@@ -64,7 +96,7 @@ def linearise(data: Any, u: np.ndarray, p: float, work: CycleWork) -> float:
 
 
 def bordered(
-    data: Any, work: CycleWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
+    data: Collocated, work: CycleWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant."""
     core = work.core
@@ -89,7 +121,7 @@ def bordered(
 
 
 def _solve(
-    data: Any, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
+    data: Collocated, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """In units of the scales, by elimination interval by interval."""
     count, m, d, free = data.intervals, data.rule.degree, data.node, data.free_period
@@ -126,7 +158,7 @@ def _solve(
     return _placed(data, solved.states.reshape(states, 2), solved.shared, widths), solved.sign
 
 
-def _placed(data: Any, states: np.ndarray, shared: np.ndarray, widths: np.ndarray) -> np.ndarray:
+def _placed(data: Collocated, states: np.ndarray, shared: np.ndarray, widths: np.ndarray) -> np.ndarray:
     """Solutions in the order of the unknowns, the parameter last."""
     found = np.empty((data.dimension + 1, 2))
     found[: data.states] = states
@@ -137,7 +169,7 @@ def _placed(data: Any, states: np.ndarray, shared: np.ndarray, widths: np.ndarra
 
 
 def _solve_full(
-    data: Any, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
+    data: Collocated, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
 ) -> tuple[np.ndarray, float]:
     from scipy.sparse import bmat
     from scipy.sparse.linalg import splu
@@ -149,7 +181,7 @@ def _solve_full(
         raise np.linalg.LinAlgError(str(error)) from error
 
 
-def condensed(data: Any, work: CycleWork) -> tuple[np.ndarray, np.ndarray]:
+def condensed(data: Collocated, work: CycleWork) -> tuple[np.ndarray, np.ndarray]:
     """What is left of the equations between neighbouring mesh points, L x_i + R x_(i + 1): L and R, shape (N, d, d), in units of the scales."""
     if work.mesh is None:
         nothing = np.zeros((data.intervals, data.rule.degree * data.node, 0))
@@ -158,7 +190,7 @@ def condensed(data: Any, work: CycleWork) -> tuple[np.ndarray, np.ndarray]:
     return work.mesh
 
 
-def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
+def spectrum(data: Collocated, work: CycleWork) -> tuple[np.ndarray, float]:
     """Multipliers, of autonomous flows without the trivial one, and by how much that one, as computed, misses 1."""
     if work.sparse is not None:
         points, p, _, _ = work.along
@@ -183,13 +215,13 @@ def spectrum(data: Any, work: CycleWork) -> tuple[np.ndarray, float]:
     return multipliers_of(maps, np.broadcast_to(-np.eye(maps.shape[1]), maps.shape)), abs(product - 1.0)
 
 
-def growth_of_volume(data: Any, work: CycleWork) -> float:
+def growth_of_volume(data: Collocated, work: CycleWork) -> float:
     """Logarithm of the product of all multipliers: the integral of the trace of the Jacobian over the cycle (Liouville)."""
     _, _, jacobian, _ = work.along
     return float((work.steps[:, None] * data.rule.weights).reshape(-1) @ np.trace(jacobian, axis1=1, axis2=2))
 
 
-def _trivial_missed(data: Any, work: CycleWork, left: np.ndarray, right: np.ndarray) -> float:
+def _trivial_missed(data: Collocated, work: CycleWork, left: np.ndarray, right: np.ndarray) -> float:
     if not data.free_period:
         return 0.0
     points, p, _, _ = work.along
@@ -211,7 +243,7 @@ def planes(left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.
     return np.matmul(there.transpose(0, 2, 1), np.matmul(steps, here)), float(np.prod(growth))
 
 
-def inspect(data: Any, u: np.ndarray, p: float, work: CycleWork, row: np.ndarray) -> None:
+def inspect(data: Collocated, u: np.ndarray, p: float, work: CycleWork, row: np.ndarray) -> None:
     """Multipliers, then margins."""
     with np.errstate(all="ignore"):
         try:
@@ -223,17 +255,17 @@ def inspect(data: Any, u: np.ndarray, p: float, work: CycleWork, row: np.ndarray
             row[2 * len(values) :] = data.margins(u, work)
 
 
-def matrix(data: Any, work: CycleWork) -> np.ndarray:
+def matrix(data: Collocated, work: CycleWork) -> np.ndarray:
     """F_u written out."""
     return full_matrix(data, work) * data.row_scale[:, None] / data.column_scale
 
 
-def full_matrix(data: Any, work: CycleWork) -> np.ndarray:
+def full_matrix(data: Collocated, work: CycleWork) -> np.ndarray:
     """F_u written out, in units of the scales."""
     return _sparse(data, work).toarray()
 
 
-def _sparse(data: Any, work: CycleWork) -> Any:
+def _sparse(data: Collocated, work: CycleWork) -> Any:
     """F_u as a sparse matrix, in units of the scales."""
     from scipy.sparse import coo_array
 
@@ -256,7 +288,7 @@ def _sparse(data: Any, work: CycleWork) -> Any:
     return coo_array((parts[0], (parts[1], parts[2])), shape=(size, size)).tocsc()
 
 
-def flip(data: Any, work: CycleWork, sign: float) -> None:
+def flip(data: Collocated, work: CycleWork, sign: float) -> None:
     """Turn the closure of the cycle round (sign = -1), and back (sign = 1): no phase and no period belong to such perturbations."""
     work.closure, work.full = sign, None
     if not data.free_period:
@@ -269,7 +301,7 @@ def flip(data: Any, work: CycleWork, sign: float) -> None:
     work.corner = 1.0 if sign < 0.0 else 0.0
 
 
-def transpose(data: Any, work: CycleWork, column: np.ndarray, other: CycleWork) -> None:
+def transpose(data: Collocated, work: CycleWork, column: np.ndarray, other: CycleWork) -> None:
     """The transposed F_u, with another last column, into another workspace."""
     from scipy.sparse import diags_array
 
@@ -279,7 +311,7 @@ def transpose(data: Any, work: CycleWork, column: np.ndarray, other: CycleWork) 
     other.derivative[:] = column
 
 
-def assign(data: Any, other: Any, value: float) -> None:
+def assign(data: Collocated, other: Collocated, value: float) -> None:
     """Give the parameter that varies in ``other`` a value in ``data``, in place."""
     data.values.assign(other.parameter, value)
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.integrate import RK45
 
 from ..problems.functions import NotEvaluable
+
+if TYPE_CHECKING:
+    from .field import Field
 
 RELATIVE = 1e-7  # error of a step, relative to the state
 ABSOLUTE = 1e-9  # ... and relative to the size of the box
@@ -27,7 +30,7 @@ class March:
         What counts as large in each coordinate.
     """
 
-    def __init__(self, field: Any, p: float, x: np.ndarray, size: np.ndarray) -> None:
+    def __init__(self, field: Field, p: float, x: np.ndarray, size: np.ndarray) -> None:
         self.field, self.p, self.size = field, p, size
         self.x, self.t = np.array(x, dtype=float), np.zeros(len(x))
         self.slope = self._rates(self.x, self.t)

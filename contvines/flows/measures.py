@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import mesh
 from .orbit import CycleOrbit
+
+if TYPE_CHECKING:
+    from .collocation import Rule
 
 FINER = 4  # places between two nodes at which the largest value is looked for
 
@@ -17,7 +20,7 @@ class CycleMeasures:
     """Largest and smallest values of the coordinates, norm, period."""
 
     node: int
-    rule: Any
+    rule: Rule
     parts: Any
     flow: Any
 

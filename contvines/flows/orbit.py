@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from . import mesh
 from .kernels import growth_of_volume, linearise, spectrum
 from .newton import solved
 from .simulation import integrated, variational
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
 
@@ -131,7 +134,7 @@ class CycleOrbit:
         return self._problem.estimated_error(self.u)
 
     # ------------------------------------------------------------------ as a seed
-    def problem(self, parameter: str) -> Any:
+    def problem(self, parameter: str):
         """The cycles that go on from this one when a parameter varies."""
         return self._problem.against(parameter, self.parameters)
 
@@ -159,13 +162,13 @@ class CycleOrbit:
         return np.linalg.eigvals(product)
 
     # ------------------------------------------------------------------ pictures
-    def plot(self, **options: Any) -> Any:
+    def plot(self, **options: Any):
         """Phase portrait and time series; see :func:`contvines.plots.cycles.plot_cycle`."""
         from ..plots.cycles import plot_cycle
 
         return plot_cycle(self, **options)
 
-    def animate(self, path: Any = None, **options: Any) -> Any:
+    def animate(self, path: str | Path | None = None, **options: Any):
         """The cycle in motion, written to a gif, mp4 or html file if a path is given; see :func:`contvines.plots.cycles.animate_cycle`."""
         from ..plots.cycles import animate_cycle
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,11 @@ from .names import OF_STATES, checked_names
 from .newton import settled
 from .orbit import CycleOrbit
 from .population import FlowPopulation
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ..problems.protocol import BorderPoint
 
 INTERVALS = 40  # of a cycle from data, to begin with
 MIRRORED = 1e-8
@@ -91,7 +96,7 @@ class FlowProblem:
         derivative: Callable | Mapping[str, Callable] | None = None,
         degree: int = 4,
         error: float = 1e-6,
-        scale: Any = None,
+        scale: ArrayLike | None = None,
         states: Sequence[str] | None = None,
         events: Mapping[str, Callable] | None = None,
         parameter: str = "p",
@@ -203,7 +208,7 @@ class FlowProblem:
         )
 
     # ------------------------------------------------------------------ as a seed
-    def problem(self, parameter: str | None = None) -> Any:
+    def problem(self, parameter: str | None = None):
         """Equilibria (cycles, of forced flows) when a parameter varies."""
         parameter = self.values.varying if parameter is None else parameter
         if self._equilibria is not None:
@@ -214,7 +219,7 @@ class FlowProblem:
         """The start of such a problem."""
         return problem.u0, problem.p0
 
-    def equilibria(self, parameter: str | None = None, values: Mapping[str, float] | None = None) -> Any:
+    def equilibria(self, parameter: str | None = None, values: Mapping[str, float] | None = None):
         """The problem of the equilibria.
 
         Raises
@@ -246,7 +251,7 @@ class FlowProblem:
     @hinting
     def attractor(
         self,
-        x0: Any = None,
+        x0: ArrayLike | None = None,
         *,
         transient: float | None = None,
         longest: int = 64,
@@ -291,7 +296,9 @@ class FlowProblem:
         return self._cycle(times, states, parameters, rounds)
 
     @hinting
-    def cycle(self, times: Any, states: Any, *, rounds: int | None = None, **values: float) -> CycleOrbit:
+    def cycle(
+        self, times: ArrayLike, states: ArrayLike, *, rounds: int | None = None, **values: float
+    ) -> CycleOrbit:
         """The cycle near given states at given times, from the first time to one period later.
 
         Parameters
@@ -427,11 +434,11 @@ class FlowProblem:
         """The kind of border at which a motion touches event k."""
         return "event"
 
-    def beyond(self, problem: Any, point: Any, k: int) -> list[Seed]:
+    def beyond(self, problem: Any, point: BorderPoint, k: int) -> list[Seed]:
         """The motions that go on where one touches event k: none."""
         return []
 
-    def dead_end(self, problem: Any, point: Any, k: int) -> str:
+    def dead_end(self, problem: Any, point: BorderPoint, k: int) -> str:
         """What stops motions at event k, in words."""
         x, when = problem.touching(point.u, point.value, k)
         place = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.states, x, strict=True))

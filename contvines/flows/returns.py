@@ -9,12 +9,15 @@ the plane.
 from __future__ import annotations
 
 import contextlib
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..problems.functions import NotEvaluable
 from . import mesh
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 SWEEPS = 14  # of Newton's method in an interval
 EXACT = 1e-14  # corrections, in units of the scale and of the state, below which it has converged
@@ -209,7 +212,7 @@ class ReturnMap:
         return self._evaluated(lambda y, t: self.field.jacobian(y, p, t), x, times, (self.node, self.node))
 
     def _evaluated(
-        self, f: Any, x: np.ndarray, times: np.ndarray | None, shape: tuple[int, ...]
+        self, f: Callable, x: np.ndarray, times: np.ndarray | None, shape: tuple[int, ...]
     ) -> np.ndarray:
         """A function of states at those that are finite; NaN elsewhere."""
         good = np.isfinite(x).all(axis=1)

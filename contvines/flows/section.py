@@ -80,7 +80,7 @@ class FlowSection:
         from scipy.integrate import solve_ivp
 
         r, field, start = self.returns, self.returns.field, self._states(np.asarray(x, dtype=float))
-        options: Any = {"method": "DOP853", "rtol": RELATIVE, "atol": ABSOLUTE * r.scale}
+        options: dict[str, Any] = {"method": "DOP853", "rtol": RELATIVE, "atol": ABSOLUTE * r.scale}
         rate, lost = rates(field, self.p), np.full(len(self.kept), np.nan)
         if not np.isfinite(start).all():
             return lost

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..problems.functions import NotEvaluable
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .field import Field
+
 TIGHT = {"rtol": 1e-12, "method": "DOP853"}
 
 
-def rates(field: Any, p: float) -> Any:
+def rates(field: Field, p: float) -> Callable[[float, np.ndarray], np.ndarray]:
     """(t, x) -> x' for scipy."""
 
     f, parameters, forced = field.f, field.values.at(p), field.forced
@@ -26,7 +31,7 @@ def rates(field: Any, p: float) -> Any:
     return rate
 
 
-def integrated(field: Any, p: float, x: np.ndarray, start: float, stop: float) -> np.ndarray:
+def integrated(field: Field, p: float, x: np.ndarray, start: float, stop: float) -> np.ndarray:
     """The state at another time; NaN where the integrator fails."""
     from scipy.integrate import solve_ivp
 
@@ -36,7 +41,7 @@ def integrated(field: Any, p: float, x: np.ndarray, start: float, stop: float) -
 
 
 def variational(
-    field: Any, p: float, x: np.ndarray, start: float, stop: float
+    field: Field, p: float, x: np.ndarray, start: float, stop: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """The state at another time and its derivative by the first one."""
     from scipy.integrate import solve_ivp

@@ -5,7 +5,7 @@ A point costs as much as the factors of one matrix with N m d rows do; no matrix
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,6 +14,11 @@ from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator
 from ..problems.large.colouring import Colouring
 from ..problems.large.sparse_factors import SuperLUFactors
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .collocation import Rule
+
 LARGE = 30  # states from which on entries that are zero are looked for
 DENSE = 0.25  # part of the entries from which on a Jacobian counts as full
 LEADING = 10  # multipliers
@@ -21,7 +26,7 @@ ACCURATE = 1e-11  # of multipliers, relative
 SMALL = 1e-8  # size of the border rows: they are chosen as pivots last, and the factors stay sparse
 
 
-def found_sparsity(jacobian: Any, places: np.ndarray) -> Colouring | None:
+def found_sparsity(jacobian: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> Colouring | None:
     """Where a Jacobian has entries at some places, with groups of columns; None where it is not sparse.
 
     Parameters
@@ -52,7 +57,7 @@ class SparseEquations:
         Of intervals.
     """
 
-    def __init__(self, pattern: Colouring, rule: Any, count: int) -> None:
+    def __init__(self, pattern: Colouring, rule: Rule, count: int) -> None:
         m, d = rule.degree, pattern.n
         self.rule, self.count, self.node, self.pattern = rule, count, d, pattern
         self.states = count * m * d
@@ -161,7 +166,7 @@ def leading_multipliers(
         operator = LinearOperator((d, d), matvec=across, dtype=float)  # type: ignore[call-arg]
         v0 = np.random.default_rng(7).standard_normal(d)
         try:
-            options: Any = {"k": count, "v0": v0, "tol": ACCURATE, "return_eigenvectors": False}
+            options: dict[str, Any] = {"k": count, "v0": v0, "tol": ACCURATE, "return_eigenvectors": False}
             values = eigs(operator, **options)
         except ArpackNoConvergence as error:
             values = error.eigenvalues

@@ -15,10 +15,13 @@ from .legends import hold_legend, place_legend
 from .style import MARKS, PLAIN, axis_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
     from ..loci.chart import Chart
     from ..loci.locus import Locus
+    from ..loci.regions import Region
 
 #: kind of locus -> colour; borders share one family
 COLORS = {
@@ -49,7 +52,7 @@ LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
 @hinting
 def plot_chart(
     chart: Chart,
-    axes: Any = None,
+    axes: Axes | None = None,
     labels: bool = True,
     names: bool = True,
     legend: bool | str = True,
@@ -134,7 +137,7 @@ def _look(locus: Locus) -> dict[str, Any]:
     }
 
 
-def _draw(axes: Any, locus: Locus, handles: dict[str, Any]) -> None:
+def _draw(axes: Axes, locus: Locus, handles: dict[str, Any]) -> None:
     values, real = locus.values, locus.real
     solid, dotted = values.copy(), values.copy()
     both = real[:-1] & real[1:]
@@ -157,7 +160,7 @@ def _draw(axes: Any, locus: Locus, handles: dict[str, Any]) -> None:
     handles.setdefault(name, line)
 
 
-def _hatch(axes: Any, locus: Locus) -> None:
+def _hatch(axes: Axes, locus: Locus) -> None:
     """Short strokes on the side of a border where its motion cannot be."""
     side = -locus.beyond  # which is told with the second parameter to the right
     if side == 0:
@@ -186,7 +189,7 @@ def _hatch(axes: Any, locus: Locus) -> None:
         )
 
 
-def _label(axes: Any, chart: Chart, taken: list[Any]) -> None:
+def _label(axes: Axes, chart: Chart, taken: list[Any]) -> None:
     """Labels of the points, those at one place together, clear of the loci and of the regions' names."""
     import matplotlib as mpl
 
@@ -196,7 +199,7 @@ def _label(axes: Any, chart: Chart, taken: list[Any]) -> None:
     place_labels(axes, grouped(axes, wanted), np.vstack([np.empty((0, 2)), *lines]), size=size, taken=taken)
 
 
-def _tint(axes: Any, chart: Chart) -> None:
+def _tint(axes: Axes, chart: Chart) -> None:
     """Tint and hatch the regions, those alike in which the same is stable: told apart without colours, too."""
     seen: dict[tuple[str, ...], int] = {}
     for region in chart.regions:
@@ -215,7 +218,7 @@ def _tint(axes: Any, chart: Chart) -> None:
             lines.set(edgecolor=HATCHED, linewidth=0.0)
 
 
-def _name(axes: Any, chart: Chart, taken: list[Box]) -> list[Box]:
+def _name(axes: Axes, chart: Chart, taken: list[Box]) -> list[Box]:
     """Write into regions what is stable there, where the text has room; the boxes of the texts on the page.
 
     A name that would stand under the legend stands elsewhere in its region.
@@ -237,7 +240,7 @@ def _name(axes: Any, chart: Chart, taken: list[Box]) -> list[Box]:
     return boxes
 
 
-def _room_for(axes: Any, chart: Chart, region: Any, text: Any, taken: list[Box]) -> Box | None:
+def _room_for(axes: Axes, chart: Chart, region: Region, text: Text, taken: list[Box]) -> Box | None:
     """Leave or move a text to where it lies within its region and on nothing else; its box on the page, or None."""
     (plo, phi), (qlo, qhi) = chart.within
     places = [(*region.at, 0.0)]
@@ -258,7 +261,7 @@ def _room_for(axes: Any, chart: Chart, region: Any, text: Any, taken: list[Box])
     return None
 
 
-def _has_room(axes: Any, chart: Chart, region: Any, box: Any, share: float) -> bool:
+def _has_room(axes: Axes, chart: Chart, region: Region, box: Any, share: float) -> bool:
     """Whether a box on the page lies within a region, at least this share of it (its corners may be out)."""
     if not region.cells.size:
         return True

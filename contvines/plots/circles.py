@@ -86,7 +86,9 @@ def plot_circles(
     return figure
 
 
-def _panels(axes: Any, figsize: tuple[float, float] | None) -> tuple[Figure, list[Axes]]:
+def _panels(
+    axes: Axes | Sequence[Axes] | None, figsize: tuple[float, float] | None
+) -> tuple[Figure, list[Axes]]:
     """The axes given, or a new figure's: the section on the left, or above; alone in a small figure."""
     if axes is not None:
         given = list(np.atleast_1d(np.asarray(axes, dtype=object)))
@@ -122,7 +124,7 @@ def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
         axes.set_title("dashed: repelling", loc="left", fontsize="medium")
 
 
-def _colors(circles: Circles) -> Any:
+def _colors(circles: Circles):
     from matplotlib import colormaps
 
     return colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))

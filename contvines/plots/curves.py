@@ -11,6 +11,8 @@ from .wraps import angles_of, broken
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from ..branches.branch import Branch
+
 CORNER = 0.06  # radians: a turn between neighbouring segments on the page that the eye sees
 SHORT = 4.0  # pixels: a segment this short needs no refinement
 MOST = 40  # points put between two neighbours, at most
@@ -28,7 +30,7 @@ class Curve:
         Inclusive indices of the run.
     """
 
-    def __init__(self, branch: Any, x: str, y: str, first: int, last: int) -> None:
+    def __init__(self, branch: Branch, x: str, y: str, first: int, last: int) -> None:
         self.branch, self.x, self.y = branch, x, y
         self.first, self.last = first, last
         self.turning = (x in angles_of(branch), y in angles_of(branch))
@@ -68,7 +70,7 @@ class Curve:
 
 
 def between(
-    branch: Any, first: int, last: int, counts: np.ndarray
+    branch: Branch, first: int, last: int, counts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points of a branch and, between neighbours i and i + 1, `counts[i]` more on cubics through points and tangents.
 
@@ -128,7 +130,7 @@ def _ends(first: np.ndarray, last: np.ndarray, chord: np.ndarray) -> tuple[np.nd
 
 
 def _strands(
-    branch: Any, x: str, y: str, u: np.ndarray, p: np.ndarray
+    branch: Branch, x: str, y: str, u: np.ndarray, p: np.ndarray
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     columns = [_columns(branch, name, u, p) for name in (x, y)]
     count = max(c.shape[1] for c in columns)
@@ -136,7 +138,7 @@ def _strands(
     return [(xs[:, j], ys[:, j]) for j in range(count)]
 
 
-def _columns(branch: Any, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
+def _columns(branch: Branch, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray:
     """A measure of some solutions, shape (m, 1), or (m, n) where each point of an n-cycle has its own."""
     if name == branch.parameter:
         return np.asarray(p, dtype=float)[:, None]

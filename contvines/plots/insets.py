@@ -11,6 +11,8 @@ from .labels import Box, Ground
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.transforms import Bbox
+
 
 MANY = 6  # marks that hide one another ask for an inset,
 MOST = (
@@ -97,7 +99,7 @@ def find_room(axes: Axes, region: Region, obstacles: np.ndarray, taken: Sequence
     )
 
 
-def _places(frame: Any, wide: float, high: float) -> np.ndarray:
+def _places(frame: Bbox, wide: float, high: float) -> np.ndarray:
     """Boxes of a size all over the axes, shape (n, 4), from the lower left on."""
     edge = 0.012 * frame.width
     xs = np.linspace(frame.x0 + edge, frame.x1 - edge - wide, STEPS)

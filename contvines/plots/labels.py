@@ -9,6 +9,8 @@ import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.transforms import Bbox
+
 
 Box = tuple[float, float, float, float]
 
@@ -176,7 +178,7 @@ def text_widths(texts: set[str], size: float) -> dict[str, float]:
 class Ground:
     """How much of a box is covered by curves: sums over a raster of the axes."""
 
-    def __init__(self, frame: Any, points: np.ndarray) -> None:
+    def __init__(self, frame: Bbox, points: np.ndarray) -> None:
         self.x0, self.y0 = float(frame.x0), float(frame.y0)
         shape = (int(frame.height / CELL) + 2, int(frame.width / CELL) + 2)
         raster = np.zeros(shape)

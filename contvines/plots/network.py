@@ -12,7 +12,9 @@ from .figures import freeze, new_axes, settle, styled
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
+    from ..branches.branch import Branch
     from ..graph.graph import Graph
 
 COLUMNS = 6  # at most, side by side
@@ -136,7 +138,9 @@ def plot_network(
     return figure
 
 
-def _stand(written: Any, axes: "Axes", ends: np.ndarray, bend: float, aside: float, taken: list[Any]) -> None:
+def _stand(
+    written: "Text", axes: "Axes", ends: np.ndarray, bend: float, aside: float, taken: list[Any]
+) -> None:
     """Put a label on its arrow where it covers no box and no other label, else in the arrow's middle."""
     (ax, ay), (bx, by) = ends
     corner = np.array([(ax + bx) / 2 + bend * (by - ay), (ay + by) / 2 - bend * (bx - ax)])
@@ -248,7 +252,7 @@ def _range(low: float, high: float) -> str:
     return f"{low:.4g}"
 
 
-def _caption(branch: Any) -> str:
+def _caption(branch: "Branch") -> str:
     about = branch.description
     word = short_word(about["word"] or about.get("name", ""), 18) if "word" in about else ""
     periods = branch.description.get("periods")

@@ -319,5 +319,6 @@ class Picture:
 
 def _outer(axes: Axes) -> tuple[float, float, float, float]:
     """The box of axes on the page, with all that stands beside them."""
-    box: Any = axes.get_tightbbox()
+    box = axes.get_tightbbox()
+    assert box is not None
     return box.x0, box.y0, box.x1, box.y1

@@ -3,9 +3,12 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..bifurcation.kinds import BY_NAME
+
+if TYPE_CHECKING:
+    from ..graph.graph import Graph
 
 # line styles of the states of an orbit; what nobody has asked for is drawn solid, and named
 LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
@@ -35,7 +38,7 @@ PLAIN = Mark("special point", "o")
 UNRESOLVED = Mark("unresolved", "s")
 
 
-def mark_of(kind: str, graph: Any) -> Mark:
+def mark_of(kind: str, graph: "Graph") -> Mark:
     """How a kind of special point of a graph is drawn, one of the user's own included."""
     own = graph.own_kinds.get(kind)
     return Mark(own.text, own.marker, own.filled) if own else MARKS.get(kind, PLAIN)

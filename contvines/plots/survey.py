@@ -100,7 +100,9 @@ def _apart(figure: Figure, texts: list[Text]) -> None:
             kept.append(box)
 
 
-def _panels(axes: Any, count: int, figsize: tuple[float, float] | None) -> tuple[Figure, list[Axes]]:
+def _panels(
+    axes: Axes | Sequence[Axes] | None, count: int, figsize: tuple[float, float] | None
+) -> tuple[Figure, list[Axes]]:
     """The axes given, or those of a new figure, side by side."""
     if axes is not None:
         given = list(np.atleast_1d(np.asarray(axes, dtype=object)))
@@ -234,7 +236,9 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     return heights
 
 
-def _samples(survey: Survey, name: str, axes: Any, figsize: tuple[float, float] | None) -> Figure:
+def _samples(
+    survey: Survey, name: str, axes: Axes | Sequence[Axes] | None, figsize: tuple[float, float] | None
+) -> Figure:
     drawn = survey.plan.samples
     figure, panels = _panels(axes, len(drawn), figsize)
     for panel, (parameter, values) in zip(panels, drawn.items(), strict=True):

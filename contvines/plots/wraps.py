@@ -1,11 +1,14 @@
 """Curves of angles: where an angle passes the end of its turn, the line is broken, not drawn across the picture."""
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from ..branches.branch import Branch
 
-def angles_of(branch: Any) -> tuple[str, ...]:
+
+def angles_of(branch: "Branch") -> tuple[str, ...]:
     """Names of the measures of a branch that are angles (radians, modulo 2 pi), as its problem says."""
     return () if branch.problem is None else tuple(branch.problem.angles)
 

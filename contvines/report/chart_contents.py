@@ -15,6 +15,8 @@ from .numbers import plain_label, rounded, shortened, told_of
 if TYPE_CHECKING:
     from ..loci.chart import Chart
     from ..loci.locus import Locus
+    from ..loci.plane_point import PlanePoint
+    from ..loci.regions import Region
 
 RASTER = 180  # cells of the picture of the regions each way, at most
 MOTIONS = 24  # of each locus
@@ -76,7 +78,7 @@ def _locus(locus: Locus) -> dict[str, Any]:
     }
 
 
-def _point(point: Any) -> dict[str, Any]:
+def _point(point: PlanePoint) -> dict[str, Any]:
     told = point.to_dict()
     return told | {
         "name": point.kind.replace("-", " "),
@@ -87,7 +89,7 @@ def _point(point: Any) -> dict[str, Any]:
     }
 
 
-def _region(region: Any, parameters: tuple[str, str]) -> dict[str, Any]:
+def _region(region: Region, parameters: tuple[str, str]) -> dict[str, Any]:
     name = ", ".join(region.words) or "nothing was simulated here"
     short = "<br>".join(short_word(word, 16) for word in region.words[:4])
     told = region.to_dict(parameters)

@@ -155,5 +155,5 @@ def _scene(orbit: Any, samples: int) -> dict[str, Any] | None:
     return rounded(orbit.scene(samples)) if isinstance(orbit, Animated) else None
 
 
-def _pairs(values: Any) -> list[list[float]]:
+def _pairs(values: np.ndarray) -> list[list[float]]:
     return [[float(f"{v.real:.8g}"), float(f"{v.imag:.8g}")] for v in values if np.isfinite(v)]

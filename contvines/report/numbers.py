@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from pathlib import PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-def shortened(values: Any, digits: int = 9) -> list[float | None]:
+
+def shortened(values: ArrayLike, digits: int = 9) -> list[float | None]:
     """Numbers with so many digits; None for what is no finite number."""
     return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, dtype=float)]
 
 
-def rounded(value: Any) -> Any:
+def rounded(value: object) -> Any:
     """Arrays and numbers within dicts and lists with five digits."""
     if isinstance(value, np.ndarray):
         return shortened(value, 5)

@@ -49,7 +49,7 @@ def survey_contents(survey: Survey, source: str) -> dict[str, Any]:
     }
 
 
-def _told(value: Any) -> str:
+def _told(value: object) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{k}: {_told(v)}" for k, v in value.items())
     if isinstance(value, list | tuple):

@@ -192,7 +192,7 @@ class Store:
         from contvines.graph.persistence import graph_entries
 
         # some numbers are worked out when they are asked for: before the write, which nothing may interrupt
-        entries: Any = list(graph.entries() if hasattr(graph, "entries") else graph_entries(graph))
+        entries = list(graph.entries() if hasattr(graph, "entries") else graph_entries(graph))
         finished = bool(graph.finished)
         with self.transaction():
             if self.finished and not finished:

@@ -9,9 +9,13 @@ import hashlib
 import io
 import os
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .plan import PlanError
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
 
 FORMAT = "contvines survey 2"  # the first had no digest
 BLANK = b"0" * 64
@@ -19,7 +23,7 @@ MARK = b"sha256\0\0" + (2).to_bytes(4, "big") + len(BLANK).to_bytes(4, "big")
 """How the attribute begins in the file: its name, that it is text, and how long (NetCDF classic format, section on attributes)."""
 
 
-def write(data: Any, path: Path) -> None:
+def write(data: Dataset, path: Path) -> None:
     """Write a data set with its digest; a file of that name is replaced in one step.
 
     Parameters

@@ -16,6 +16,7 @@ from ..graph.measures import default_measure
 from .stretches import LEAST, gaps, highest, stretches, unseen
 
 if TYPE_CHECKING:
+    from ..graph.graph import Graph
     from .completion import Unbranched
 
 SILENT = 0.01  # of the forcing periods without an impact, at least, make a modulation strong
@@ -39,7 +40,7 @@ class Findings:
         Attractors that lie on no branch of the diagram, chaotic ones for example.
     """
 
-    graph: Any
+    graph: Graph
     seed: Any
     simulated: Sequence[tuple[float, Mapping[str, float], str]] = ()
     unbranched: Sequence[Unbranched] = ()
@@ -138,7 +139,7 @@ def unknown(found: Findings) -> str:
     return "; ".join(reasons)
 
 
-def _judged(graph: Any) -> bool:
+def _judged(graph: Graph) -> bool:
     """Whether the stability of any solution is computed."""
     return any(stable is not None for branch in graph.branches.values() for _, _, stable in branch.pieces())
 
@@ -217,7 +218,7 @@ def _united(parts: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return joined
 
 
-def _compared(graph: Any) -> tuple[np.ndarray, np.ndarray]:
+def _compared(graph: Graph) -> tuple[np.ndarray, np.ndarray]:
     """Values, shape (n,), and the responses of all stretches there, shape (m, n); no number beyond a stretch's ends."""
     grid = np.linspace(graph.within[0], graph.within[1], GRID)
     rows = []

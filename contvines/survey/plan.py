@@ -121,7 +121,7 @@ def planned(vary: Mapping[str, Any], sampling: str = "latin", samples: int = 32,
     return plan
 
 
-def _axis(name: str, said: Any) -> np.ndarray | None:
+def _axis(name: str, said: object) -> np.ndarray | None:
     """Values on an axis; None for an uncertain parameter."""
     place = f"[survey] vary.{name}"
     if isinstance(said, Mapping):
@@ -189,13 +189,13 @@ def _drawn(uncertain: dict[str, Any], sampling: str, samples: int, seed: int) ->
     return {name: np.asarray(law.ppf(places[:, i])) for i, (name, law) in enumerate(uncertain.items())}
 
 
-def _two(place: str, value: Any) -> tuple[float, float]:
+def _two(place: str, value: object) -> tuple[float, float]:
     if not isinstance(value, list | tuple) or len(value) != 2:
         raise PlanError(f"{place} = {value!r}: two numbers would do")
     return _number(f"{place}[0]", value[0]), _number(f"{place}[1]", value[1])
 
 
-def _number(place: str, value: Any) -> float:
+def _number(place: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not np.isfinite(value):
         raise PlanError(f"{place} = {value!r} is no finite number")
     return float(value)

@@ -115,7 +115,7 @@ class Survey(Resumable):
             return values
         return np.where(self["covered"] >= covered, values, np.nan)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self):
         """An `xarray.Dataset`: a variable per outcome over the plan's dimensions, with units and the systems' notes."""
         import xarray
 

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..graph.measures import default_measure
+
+if TYPE_CHECKING:
+    from ..branches.branch import Branch
+    from ..graph.graph import Graph
 
 SHARP = 1e-5  # of a step between two points: so closely a peak between them is located
 MEETING = 1e-9  # of the interval: stretches that end nearer to one another meet
@@ -31,7 +35,7 @@ class Stretch:
         The name of the response.
     """
 
-    branch: Any
+    branch: Branch
     first: int
     last: int
     values: np.ndarray
@@ -39,7 +43,7 @@ class Stretch:
     measure: str
 
 
-def stretches(graph: Any, measure: str | None = None) -> list[Stretch]:
+def stretches(graph: Graph, measure: str | None = None) -> list[Stretch]:
     """The stable responses of a diagram; `measure` is that of the picture by default."""
     name = measure or default_measure(graph)
     found = []
@@ -112,7 +116,7 @@ def _between(stretch: Stretch, a: int, b: int) -> Callable[[float], float] | Non
     return response
 
 
-def gaps(graph: Any) -> list[tuple[float, float]]:
+def gaps(graph: Graph) -> list[tuple[float, float]]:
     """Intervals of the parameter in which the diagram has no stable response."""
     start, end = (float(value) for value in graph.within)
     found, reached = [], start

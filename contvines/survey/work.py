@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .completion import complete
 from .outcomes import Findings, covered, unknown
 from .stretches import gaps, spread
+
+if TYPE_CHECKING:
+    from ..coexistence.population import Population
+    from ..graph.graph import Graph
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) ->
     return Row(index, columns, note)
 
 
-def _graph(job: Job, seed: Any) -> Any:
+def _graph(job: Job, seed: Any) -> Graph:
     """The diagram of a system, or its atlas."""
     from ..coexistence.build import atlas
     from ..graph.automatic import diagram
@@ -95,7 +99,7 @@ def _graph(job: Job, seed: Any) -> Any:
     return atlas(seed, over=job.over, within=job.within, **job.options, **job.atlas)
 
 
-def _population(job: Job, seed: Any) -> Any:
+def _population(job: Job, seed: Any) -> Population | None:
     """Starts of a system and what they settle on; None for equations that cannot be simulated from many."""
     from ..coexistence.population import population_of
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import LETTERS, Trajectory
 from orbits.words import Word
 from orbits.words.alphabet import shaken
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +55,7 @@ class Attractor(Settled):
         `orbits.attractors.observation` needs where nothing recurs.
     """
 
-    model: Any
+    model: Model
     params: np.ndarray
     machine: Machine
     kind: str

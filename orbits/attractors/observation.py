@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from orbits.machines.states import state_of
 from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS
 from orbits.simulation.driver import collect
 from orbits.simulation.trajectory import TWO_PI, Trajectory
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 FIRST = 4096
 """Forcing periods of the first window of a motion that does not recur; every later one doubles the whole."""
@@ -96,7 +99,7 @@ def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
     )
 
 
-def measure_names(model: Any) -> tuple[str, ...]:
+def measure_names(model: Model) -> tuple[str, ...]:
     """Measures in a sweep's rows.
 
     ``max_abs_w``; ``impact_speed``: fastest approach |w'-|; ``impacts_per_period``: per forcing period; in the coupled model

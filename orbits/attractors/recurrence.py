@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from orbits.simulation.driver import collect, skip
 from orbits.simulation.native import NativeSimulator
 from orbits.simulation.return_map import cyclic_distance
 from orbits.simulation.trajectory import TWO_PI
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 EVENTS_PER_PERIOD = 400
 TRANSIENT, PATIENCE = 300.0, 2  # forcing periods left out first, and how often they are prolonged fourfold
@@ -38,7 +41,7 @@ def attracted(
 
 
 def settle(
-    model: Any,
+    model: Model,
     engine: Machine,
     params: np.ndarray,
     state: np.ndarray,
@@ -112,7 +115,7 @@ def _comes_to_rest(engine: Machine, params: np.ndarray, state: np.ndarray) -> bo
     return True
 
 
-def _will_slip(model: Any, params: np.ndarray) -> bool:
+def _will_slip(model: Model, params: np.ndarray) -> bool:
     """Whether friction cannot hold the absorber once the oscillator has settled."""
     reserve = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params)))
     return bool(reserve <= -1e-9)
@@ -198,7 +201,7 @@ def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] |
 
 
 def _cycle(
-    model: Any,
+    model: Model,
     engine: Machine,
     params: np.ndarray,
     state: np.ndarray,
@@ -235,7 +238,7 @@ def _cycle(
 
 
 def recurring(
-    model: Any,
+    model: Model,
     engine: Machine,
     params: np.ndarray,
     codes: np.ndarray,
@@ -252,7 +255,7 @@ def recurring(
 
 
 def _attractor(
-    model: Any,
+    model: Model,
     engine: Machine,
     params: np.ndarray,
     kind: str,

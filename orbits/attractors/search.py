@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,8 +11,13 @@ from orbits.attractors import observation, recurrence
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.simulation.runs import simulator_of
 
+if TYPE_CHECKING:
+    from types import ModuleType
 
-def recognising(model: Any) -> Any:
+    from orbits.machines.varying import Varying
+
+
+def recognising(model: Varying) -> ModuleType:
     """The module that recognises what motions of a machine recur to."""
     if model.flow == "page":
         from orbits.attractors import page
@@ -21,7 +26,7 @@ def recognising(model: Any) -> Any:
     return recurrence
 
 
-def observing(model: Any) -> Any:
+def observing(model: Varying) -> ModuleType:
     """The module that tells of them in a sweep."""
     return recognising(model) if model.flow == "page" else observation
 
@@ -33,7 +38,7 @@ DRAWS = 200  # starts drawn at most to find one that can be simulated
 
 
 def find_attractor(
-    model: Any,
+    model: Varying,
     start: Mapping[str, float] | np.ndarray | None = None,
     *,
     transient: float | None = None,
@@ -42,7 +47,7 @@ def find_attractor(
     patience: int | None = None,
     observed: bool = True,
     **parameters: float,
-) -> Any:
+):
     """Simulate, leave out the transient, and recognise what is left.
 
     Parameters
@@ -85,7 +90,7 @@ def find_attractor(
     return observing(model).lasting(found) if observed else found
 
 
-def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0) -> Any:
+def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0):
     """The attractor of the motion on which a simulator is, which is moved on; None: as patient as a sweep."""
     how = recognising(simulator.model)
     tries = how.IN_SWEEPS if patience is None else patience
@@ -97,13 +102,13 @@ def described(found: Any) -> tuple[Any, dict[str, float]]:
     return observing(found.model).described(found)
 
 
-def measure_names(model: Any) -> tuple[str, ...]:
+def measure_names(model: Varying) -> tuple[str, ...]:
     """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
     return observing(model).measure_names(model)
 
 
 def different_attractors(
-    model: Any, count: int, seed: int = 0, size: float = 1.0, **options: Any
+    model: Varying, count: int, seed: int = 0, size: float = 1.0, **options: Any
 ) -> list[Any]:
     """The different attractors that `count` random starts lead to, in the order in which they are met; mirror images are one.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from contvines.shared.processes import ATTEMPTS, spread
 from orbits.attractors.search import described, find_attractor, goes_on, observing
 from orbits.flows.protocol import SimulationError
 from orbits.simulation.runs import simulator_of
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class SweepRow:
 
 
 def sweep(
-    model: Any,
+    model: Varying,
     over: str,
     values: Iterable[float],
     *,
@@ -121,7 +124,7 @@ def sweep(
 
 
 def find_attractors(
-    model: Any,
+    model: Varying,
     starts: Sequence[Mapping[str, float] | np.ndarray | None],
     *,
     workers: int = 1,
@@ -132,17 +135,17 @@ def find_attractors(
 
 
 def sweeps(
-    model: Any, over: str, runs: Sequence[Sequence[float]], *, workers: int = 1, **options: Any
+    model: Varying, over: str, runs: Sequence[Sequence[float]], *, workers: int = 1, **options: Any
 ) -> list[list[SweepRow]]:
     """`sweep` over several lists of values, such as one up and one down, in worker processes if asked for."""
     return _many(partial(_one_sweep, model, over, options), runs, workers)
 
 
-def _one_attractor(model: Any, options: dict[str, Any], start: Any) -> Any:
+def _one_attractor(model: Varying, options: dict[str, Any], start: Mapping[str, float] | np.ndarray | None):
     return find_attractor(model, start, **options)
 
 
-def _one_sweep(model: Any, over: str, options: dict[str, Any], values: Sequence[float]) -> list[SweepRow]:
+def _one_sweep(model: Varying, over: str, options: dict[str, Any], values: Sequence[float]) -> list[SweepRow]:
     return sweep(model, over, values, **options)
 
 
@@ -161,7 +164,7 @@ def _of_each(work: Callable[[Any], Any], jobs: Sequence[Any]) -> list[Any]:
     return [work(job) for job in jobs]
 
 
-def _lost(place: int) -> Any:
+def _lost(place: int):
     raise SimulationError(
         f"workers: the process that simulated was lost {ATTEMPTS} times: there may be too little memory for several, or a script that calls "
         "for them has no `if __name__ == '__main__':` before the call"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Iterator
 from itertools import chain, islice, product
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -42,6 +42,9 @@ from orbits.protocol import CycleProblem, Seed
 from orbits.words.edit import Edit
 from orbits.words.margins import approaches_of
 
+if TYPE_CHECKING:
+    from orbits.protocol import BorderPoint
+
 BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
 AWAY = (
     1e-6,
@@ -55,7 +58,7 @@ NEARER = (
 )  # parts of the way from the border at which a simulated orbit is solved for again
 
 
-def cross(problem: CycleProblem, point: Any, every: bool = True) -> list[Seed]:
+def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list[Seed]:
     """Seeds of the branches on the other side of a border.
 
     Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from orbits.contacts.letters import HIT, STICK, TURN
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
 from orbits.words.margins import border_kind, place_of
+
+if TYPE_CHECKING:
+    from orbits.protocol import BorderPoint
 
 SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
 UNRESOLVED = 1e-5  # the way after an impact that ends this slow, its square, is lost in that of the margins
@@ -40,7 +43,7 @@ ENDS = {
 """What simulation does where it finds no orbit."""
 
 
-def dead_end(problem: CycleProblem, point: Any) -> str:
+def dead_end(problem: CycleProblem, point: BorderPoint) -> str:
     """A sentence that says why no motion was found on the other side of a border."""
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     orbit = problem.orbit(u, p)

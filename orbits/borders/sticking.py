@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +12,13 @@ from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem, Seed
 from orbits.starts.find import StartError, find
 
+if TYPE_CHECKING:
+    from orbits.protocol import BorderPoint
+
 FOLLOWED = 1e-6  # largest replay error of a seed
 
 
-def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
+def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
     """The stick-slip motion just beyond the slip of a stuck one: closed form, or what the simulator finds."""
     p = float(point.value)
     for distance in (1e-4, 1e-3):
@@ -41,7 +44,7 @@ def from_rest(problem: CycleProblem, point: Any) -> list[Seed]:
     return []
 
 
-def to_rest(problem: CycleProblem, point: Any) -> list[Seed]:
+def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
     """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
     if problem.model.flow != "native" or sorted(problem.word.events) != ["s", "s", "u", "u"]:
         return []

@@ -36,7 +36,7 @@ class Cycle:
     """
 
     model: Any
-    word: Any
+    word: Word
     periods: int
     nodes: np.ndarray = field(repr=False)
     params: np.ndarray = field(repr=False)

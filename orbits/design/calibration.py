@@ -6,7 +6,7 @@ Least squares through simulated motions (`orbits.design.estimates`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,12 @@ from orbits.design.columns import read_columns
 from orbits.design.estimates import Calibration, fit
 from orbits.machines.base import ParameterError
 from orbits.machines.path import along
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from orbits.machines.base import Model
+    from orbits.machines.varying import Varying
 
 GRID = 900  # places at which the search for a guess looks
 CANDIDATES = 8  # of them that are followed
@@ -27,12 +33,12 @@ __all__ = ["Calibration", "fit", "from_impacts", "from_sweep", "read_columns"]
 
 
 def from_impacts(
-    machine: Any,
+    machine: Varying,
     times: Sequence[float] | np.ndarray,
     unknown: Mapping[str, float],
     *,
     start: Mapping[str, float] | None = None,
-    limits: Mapping[str, tuple[float, float]] | None = None,
+    limits: Any = None,
     fixed: Mapping[str, float] | None = None,
     confidence: float = 0.95,
 ) -> Calibration:
@@ -112,7 +118,7 @@ def _nearer(
     )
     sums = np.apply_along_axis(lambda x: float(np.square(residuals(x, few)).sum()), -1, places)
     tried = [np.array([*guess.values()], dtype=float), *_lowest(sums, places, CANDIDATES)]
-    options: Any = {"bounds": (low, high), "x_scale": high - low, "diff_step": 1e-5}
+    options: dict[str, Any] = {"bounds": (low, high), "x_scale": high - low, "diff_step": 1e-5}
 
     def followed(x: np.ndarray) -> tuple[float, np.ndarray]:
         used = few
@@ -136,14 +142,14 @@ def _lowest(sums: np.ndarray, places: np.ndarray, most: int) -> list[np.ndarray]
 
 
 def from_sweep(
-    machine: Any,
+    machine: Varying,
     over: str,
     values: Sequence[float] | np.ndarray,
     responses: Sequence[float] | np.ndarray,
     unknown: Mapping[str, float],
     *,
     measure: str = "max_abs_q1",
-    limits: Mapping[str, tuple[float, float]] | None = None,
+    limits: Any = None,
     fixed: Mapping[str, float] | None = None,
     transient: float = SETTLED,
     confidence: float = 0.95,
@@ -200,7 +206,7 @@ def _inside(share: np.ndarray, limits: Mapping[str, tuple[float, float]]) -> np.
     return np.array([low + x * (high - low) for x, (low, high) in zip(share, limits.values())])
 
 
-def _measured(times: Any) -> np.ndarray:
+def _measured(times: ArrayLike) -> np.ndarray:
     measured = np.asarray(times, dtype=float)
     if measured.ndim != 1 or measured.size < 3:
         raise ParameterError("too few impacts: give the instants of three or more")
@@ -213,7 +219,7 @@ def _measured(times: Any) -> np.ndarray:
     return measured
 
 
-def _with_amounts(machine: Any, unknown: Mapping[str, float]) -> Any:
+def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Any:
     """The machine told by what is to be estimated."""
     if not unknown:
         raise ParameterError(
@@ -227,14 +233,14 @@ def _with_amounts(machine: Any, unknown: Mapping[str, float]) -> Any:
     return machine
 
 
-def _vector(model: Any, values: Mapping[str, float], fixed: Mapping[str, float] | None) -> np.ndarray:
+def _vector(model: Model, values: Mapping[str, float], fixed: Mapping[str, float] | None) -> np.ndarray:
     params = model.vector(fixed)
     for name, value in values.items():
         params = along(model.path(name, params), params, float(value))
     return params
 
 
-def _limits(model: Any, unknown: Mapping[str, float], limits: Any) -> dict[str, tuple[float, float]]:
+def _limits(model: Model, unknown: Mapping[str, float], limits: Any) -> dict[str, tuple[float, float]]:
     usual = {"restitution": (0.01, 1.0), "friction": (0.0, 2.0)}
     return {
         name: tuple(limits[name])

@@ -91,7 +91,7 @@ def best(
     tried: dict[tuple[float, ...], float] = {}
     full: dict[tuple[float, ...], dict[str, float]] = {}
 
-    def value(point: Any) -> float:
+    def value(point: Sequence[float] | np.ndarray) -> float:
         key = tuple(min(max(float(x), low), high) for x, (low, high) in zip(point, over.values()))
         if key not in tried:
             tried[key], full[key] = _judged(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,11 +19,15 @@ from orbits.machines.conditions import Table, resolved
 from orbits.orbit import Orbit
 from orbits.starts.find import StartError, centred, find, polish
 
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
+    from orbits.machines.varying import Varying
+
 PLACES = 5  # where an orbit is looked for in the interval
 NARROW = 1.0 / 64.0  # the least part of the way that is tried
 
 
-def settled(model: Any, params: np.ndarray, state: Any = None) -> Any:
+def settled(model: Model, params: np.ndarray, state: Any = None) -> Any:
     """The orbit to which the machine settles from rest, or from a state; None where nothing recurs."""
     values: dict[str, Any] = dict(zip(model.parameter_names, (float(value) for value in params)))
     found = find_attractor(model, state, max_period=8, **values)
@@ -60,7 +64,7 @@ class Family:
         Parameters that depend on a condition; values may then name the condition.
     """
 
-    machine: Any
+    machine: Varying
     word: str | None = None
     periods: int = 1
     guess: Any = None
@@ -169,7 +173,7 @@ class Family:
         return found
 
     @staticmethod
-    def near(orbit: Any) -> tuple[Any, ...] | None:
+    def near(orbit: Orbit) -> tuple[Any, ...] | None:
         """What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
         word = orbit.word
         return (
@@ -192,7 +196,7 @@ class Family:
                 found.append(None)
         return found
 
-    def _carried(self, model: Any, params: np.ndarray, near: Any) -> Orbit | None:
+    def _carried(self, model: Model, params: np.ndarray, near: Any) -> Orbit | None:
         """The orbit at `params` from one nearby, both with the word of the latter."""
         nodes, here, events, modes, periods = near
         word = model.word_of(events, modes, params)

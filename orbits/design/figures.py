@@ -14,12 +14,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import wraps
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from orbits.theory.multiple_scales import manifolds
+
+if TYPE_CHECKING:
+    from orbits.numbers import Reals
 
 SCALE = (1e-9, 1e9)  # metres and hertz of a machine; squares and quotients stay far from overflow
 _AROUND = (1e-12, 1e12)  # of the maps drawn around it
@@ -64,13 +67,13 @@ class Design:
         If a value has no physical meaning; the message names the field.
     """
 
-    half_width: Any = 0.02
+    half_width: Reals = 0.02
     natural_frequency: Any = 7.666
-    restitution: Any = 0.76
-    friction: Any = 0.5
-    mass_ratio: Any = 0.006
-    damping: Any = 0.9
-    acceleration: Any = 9.81
+    restitution: Reals = 0.76
+    friction: Reals = 0.5
+    mass_ratio: Reals = 0.006
+    damping: Reals = 0.9
+    acceleration: Reals = 9.81
 
     def __post_init__(self) -> None:
         def scale(x: NDArray) -> NDArray:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.theory.multiple_scales import SlowFlow, best_clearance
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,7 @@ class FirstClearance:
         return min(self.widest, self.entered)
 
 
-def first_clearance(model: Any, params: np.ndarray) -> FirstClearance | None:
+def first_clearance(model: Model, params: np.ndarray) -> FirstClearance | None:
     """Half-widths by theory; None for a machine without an oscillator or damping, with an inclined cavity, or whose absorber loses nothing at the walls.
 
     With F/k = eps G and 2 D = eps lambda/sqrt(1 + eps) the linear peak is F/(2 D k) = G sqrt(1 + eps)/lambda half-widths; it does not

@@ -14,12 +14,15 @@ from __future__ import annotations
 import ctypes
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from contvines.core.library import NUMBER, POINTER, WHOLE, address, function, native
 from orbits.machines.base import ParameterError
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 SLOWEST = 1e-7  # speed of an impact, in half-widths times omega_0, below which the absorber stays on a wall that it is pressed to
 MOST_EVENTS = 20_000  # in a hundredth of the natural period
@@ -67,7 +70,7 @@ class Response:
 
 
 def recorded(
-    model: Any, params: np.ndarray, times: np.ndarray, acceleration: np.ndarray, tail: float = 0.0
+    model: Model, params: np.ndarray, times: np.ndarray, acceleration: np.ndarray, tail: float = 0.0
 ) -> Response:
     """The answer of the machine, from rest, to a recorded acceleration of its base.
 

@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from orbits.design.record import Response, recorded
 from orbits.machines.base import ParameterError
 from orbits.simulation.runs import simulate
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 NINE_TENTHS = 0.9
 LONGEST = 4000.0  # forcing periods of a free decay
@@ -51,7 +54,7 @@ class Decay:
         return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
 
 
-def free_decay(model: Any, params: np.ndarray, displacement: float, lost: float = NINE_TENTHS) -> Decay:
+def free_decay(model: Model, params: np.ndarray, displacement: float, lost: float = NINE_TENTHS) -> Decay:
     """The decay of the machine after the oscillator is let go, the absorber at rest in the middle of the cavity.
 
     Parameters
@@ -76,7 +79,7 @@ def free_decay(model: Any, params: np.ndarray, displacement: float, lost: float 
         raise ParameterError(f"displacement = {displacement!r}: give a number other than 0")
     numbers |= {"forcing": 0.0, "frequency": 1.0}
     eps, damping = numbers["mass_ratio"], numbers["damping"]
-    state: Any = {"q1": displacement, "q2": displacement}
+    state = {"q1": displacement, "q2": displacement}
     first = 0.5 * displacement**2  # of the spring; the energies below are in the same unit
     times, energy, parts = [0.0], [1.0], np.zeros(3)
     while energy[-1] > 1.0 - lost and len(times) <= LONGEST:
@@ -101,7 +104,7 @@ def free_decay(model: Any, params: np.ndarray, displacement: float, lost: float 
     return Decay(t, e, q * q + speed * speed, impacts, friction, damper, when, gone)
 
 
-def taken_share(model: Any, params: np.ndarray, displacement: float, time: float) -> float:
+def taken_share(model: Model, params: np.ndarray, displacement: float, time: float) -> float:
     """Share of the first energy that impacts and friction have taken in so much time [1/omega_0] of the free decay.
 
     Raises

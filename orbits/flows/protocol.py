@@ -42,12 +42,15 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 from orbits.contacts.changes import Change, Site
+
+if TYPE_CHECKING:
+    from orbits.words import Word
 
 
 class Motion(Protocol):
@@ -56,7 +59,7 @@ class Motion(Protocol):
     @property
     def model(self) -> Any: ...
     @property
-    def word(self) -> Any: ...
+    def word(self) -> Word: ...
     @property
     def periods(self) -> int: ...
     @property
@@ -147,7 +150,7 @@ class Simulator(Protocol):
 
     def image(self, point: np.ndarray) -> np.ndarray: ...
 
-    def start(self, point: np.ndarray, time: float = 0.0, modes: Any = None) -> None: ...
+    def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None: ...
 
     @property
     def state(self) -> np.ndarray: ...
@@ -160,7 +163,7 @@ class Simulator(Protocol):
 
     def run(self, periods: float, most: int) -> Any: ...
 
-    def begin(self, word: Any, node: np.ndarray) -> None:
+    def begin(self, word: Word, node: np.ndarray) -> None:
         """Put the motion just after the first event of a cycle with this word, of which `node` are the unknowns."""
         ...
 
@@ -172,7 +175,11 @@ class Simulator(Protocol):
 
 
 def later(
-    simulator: Simulator, point: np.ndarray, length: float, time: float = 0.0, modes: Any = None
+    simulator: Simulator,
+    point: np.ndarray,
+    length: float,
+    time: float = 0.0,
+    modes: tuple[int, ...] | None = None,
 ) -> np.ndarray:
     """Where the motion through a point is so much later; NaN where it does not get there."""
     try:
@@ -304,7 +311,7 @@ class Flow(Protocol):
     def equations(
         self,
         model: Any,
-        word: Any,
+        word: Word,
         periods: int,
         parameter: str,
         params: np.ndarray,
@@ -312,7 +319,7 @@ class Flow(Protocol):
         units: tuple[float, float] | None = None,
     ) -> Equations: ...
 
-    def loose(self, model: Any, word: Any) -> tuple[int, ...]: ...
+    def loose(self, model: Any, word: Word) -> tuple[int, ...]: ...
     def sample(self, motion: Motion, points: int) -> dict[str, np.ndarray]: ...
     def positions(self, motion: Motion, instants: int) -> np.ndarray: ...
     def image(self, motion: Motion) -> np.ndarray: ...
@@ -322,7 +329,7 @@ class Flow(Protocol):
     def measures(
         self,
         model: Any,
-        word: Any,
+        word: Word,
         periods: int,
         nodes: np.ndarray,
         params: np.ndarray,

@@ -17,6 +17,8 @@ from orbits.machines.parameters import Parameter, ParameterError
 from orbits.machines.path import single
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from orbits.numbers import Reals
     from orbits.words import Word
 
@@ -35,6 +37,26 @@ class Varying:
         name: str
         default_parameter: str
         parameter_names: tuple[str, ...]
+        flow: str
+        forced: bool
+        node: int
+        node_names: tuple[str, ...]
+        patience: int
+
+        # what both kinds of machines answer: `orbits.machines.mechanics`, `orbits.machines.page.machine`
+        def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool: ...
+        def phase_speed(self, params: np.ndarray) -> Any: ...
+        def check_value(self, name: str, value: float) -> None: ...
+        def settings(self, params: np.ndarray | None = None) -> dict[str, Any]: ...
+        def word(self, text: str | Word, params: np.ndarray) -> Word: ...
+        def unshaken(self, params: np.ndarray) -> tuple[str, str] | None: ...
+        def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]: ...
+        def random_nodes(
+            self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
+        ) -> np.ndarray | None: ...
+        def random_start(
+            self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
+        ) -> dict[str, float]: ...
 
         def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray: ...
 

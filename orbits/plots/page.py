@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import html
-from typing import Any
+from typing import TYPE_CHECKING
 
 from orbits.plots.portrait import title
 from orbits.plots.shown import quantities
 
+if TYPE_CHECKING:
+    from orbits.orbit import Orbit
 
-def page(orbit: Any) -> str:
+
+def page(orbit: Orbit) -> str:
     """What an orbit is, line by line: its motion in words, its parameters, multipliers and least margin.
 
     Parameters

@@ -139,7 +139,7 @@ def title(orbit: Orbit) -> str:
     return f"{word}, {orbit.impacts} {many} in {orbit.periods} {periods}, {kind}, {state}\n{here}"
 
 
-def key(figure: Any, panels: Sequence[Axes], own: bool, legend: bool | str) -> None:
+def key(figure: Figure, panels: Sequence[Axes], own: bool, legend: bool | str) -> None:
     """A legend under everything in a figure of ours, which makes room for it; under the axes in others; or where it is wanted."""
     if legend is False:
         return

@@ -11,6 +11,8 @@ from orbits.contacts.letters import NAMES
 from orbits.plots.track import track
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from orbits.orbit import Orbit
 
 LINE, CAVITY, ABSORBER = "#0b3c6f", "#6d6d6d", "#b5531c"
@@ -138,7 +140,9 @@ SHOWN = {"native": _of_cavity, "page": _of_states}
 """By the flow of the machine."""
 
 
-def _events(orbit: Orbit, at: Any, x: Any, y: Any, heights: Any) -> list[Happening]:
+def _events(
+    orbit: Orbit, at: np.ndarray, x: np.ndarray, y: np.ndarray, heights: Sequence[Any] | np.ndarray
+) -> list[Happening]:
     alphabet, sides = orbit.word.alphabet, {"L": " left", "R": " right"}
     marks = dict(zip(alphabet.letters, MARKS * 9))
     called = {

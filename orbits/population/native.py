@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from orbits.population.sorting import Sorting
 from orbits.simulation.driver import skip
 from orbits.simulation.native import NativeSimulator
 from orbits.starts.closed import closed_orbits
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 TRANSIENTS = (40.0, 160.0, 640.0, 2560.0)  # forcing periods, each for those that do not recur before
 LONGEST = 24  # forcing periods of the longest recurrence looked for
@@ -49,7 +52,7 @@ class NativeStarts:
     notation = STARTS
     leftward = "w"  # w = +1 is the left wall, and stands on the left
 
-    def __init__(self, model: Any, parameter: str, parameters: Mapping[str, float]) -> None:
+    def __init__(self, model: Model, parameter: str, parameters: Mapping[str, float]) -> None:
         if parameter not in model.amount_names:
             names = model.amount_names
             raise SimulationError(no_parameter(repr(parameter), f"the model {model.name!r}", names))
@@ -96,7 +99,7 @@ class NativeStarts:
     def solver(self, params: np.ndarray, wide: bool = False) -> Callable[[Record, int, int, int], Any]:
         """What makes a cycle of a piece of a record."""
 
-        def solve(record: Record, first: int, last: int, periods: int) -> Any:
+        def solve(record: Record, first: int, last: int, periods: int):
             codes, modes, rows = (part[first:last] for part in record.source)
             if not np.any(codes < 2):
                 return None
@@ -136,7 +139,7 @@ def cores() -> int:
 class NativeFleet:
     """Starts of a built-in machine, run all at once until they recur."""
 
-    def __init__(self, model: Any, params: np.ndarray, points: np.ndarray, workers: int) -> None:
+    def __init__(self, model: Model, params: np.ndarray, points: np.ndarray, workers: int) -> None:
         self.model, self.params, self.engine = model, params, machine(model.name)
         self.states = np.zeros((len(points), self.engine.state))
         self.states[:, [PSI, *self.engine.places]] = points
@@ -169,7 +172,7 @@ class NativeFleet:
         else:
             self._unsettled(i, sorting)
 
-    def _rest(self) -> Any:
+    def _rest(self):
         orbit = Orbit.at_rest(self.model, self.params)
         return orbit if orbit.real else None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from orbits.attractors.returning import returning_cycles
 from orbits.population.native import NativeStarts
 from orbits.population.sorting import Sorting
 from orbits.problem import rebuild
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
 
 DRAWS = 64  # times as many starts are drawn at most to find those outside the walls
 
@@ -40,14 +43,14 @@ class Population:
 
     def __init__(
         self,
-        model: Any,
+        model: Varying,
         parameter: str,
         parameters: Mapping[str, float] | None = None,
         workers: int | None = None,
     ) -> None:
         self.model, self.parameter = model, parameter
         self.parameters = {k: v for k, v in dict(parameters or {}).items() if k != parameter}
-        kind: Any = NativeStarts
+        kind: type = NativeStarts
         if model.flow == "page":
             from orbits.population.page import PageStarts as kind
         self._sort = kind(model, parameter, self.parameters)

@@ -47,7 +47,7 @@ class Sorting:
         place = np.argsort(order)
         return [self.motions[k] for k in order], place[self.index], self.mirrored
 
-    def plain(self, members: Any, kind: str, **facts: Any) -> None:
+    def plain(self, members: np.ndarray | int, kind: str, **facts: Any) -> None:
         """These starts reach the motion of a kind that is not told apart any further."""
         for k, motion in enumerate(self.motions):
             if motion.kind == kind and self._forms[k] is None and not motion.word:
@@ -76,7 +76,7 @@ class Sorting:
         self._forms.append(None if orbit is None else motion.problem.canonical(motion.u, self.p))
         return len(self.motions) - 1
 
-    def assign(self, members: Any, k: int, mirrored: Any = False) -> None:
+    def assign(self, members: np.ndarray | int, k: int, mirrored: np.ndarray | bool = False) -> None:
         """These starts, as far as they are free, reach motion k, or its mirror image."""
         here = np.zeros(len(self.index), dtype=bool)
         here[members] = True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -37,7 +37,7 @@ PLAIN = ("end", "user")  # kinds of special points where nothing happens
 class Motions(Protocol):
     """What a proof asks of the problem of a word's cycles (`orbits.problem.OrbitProblem`)."""
 
-    model: Model
+    model: Any
     word: Word
     periods: int
     symmetric: bool

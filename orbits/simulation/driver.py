@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.flows.protocol import SimulationError, told
 from orbits.machines.stepping import EVENTS_FULL, PSI, RATE, V_RATE, Machine, V, W
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 FIRST, CHUNK = 256, 16384
 MOST_EVENTS = 1_000_000
@@ -17,7 +20,7 @@ _BODIES = ("q1", "q2", "q1_rate", "q2_rate")
 
 
 def first_state(
-    model: Any, engine: Machine, params: np.ndarray, start: Mapping[str, float] | np.ndarray | None
+    model: Model, engine: Machine, params: np.ndarray, start: Mapping[str, float] | np.ndarray | None
 ) -> np.ndarray:
     """The state, shape (S,), that a start describes; `SimulationError` if it cannot be one."""
     state = np.zeros(engine.state)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,10 @@ from orbits.machines.states import event_states, state_of
 from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, TURNS, W
 from orbits.simulation.driver import MOST_EVENTS, buffers, collect, first_state, skip
 from orbits.simulation.trajectory import LETTERS, Trajectory
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
+    from orbits.words import Word
 
 PER_PERIOD = 400  # events
 FOREVER = 1e6  # periods: only a motion that keeps off the walls lasts so long without events
@@ -30,7 +34,7 @@ class NativeSimulator:
     forced = True
     watched = (2000.0, 800_000)
 
-    def __init__(self, model: Any, params: np.ndarray) -> None:
+    def __init__(self, model: Model, params: np.ndarray) -> None:
         self.model, self.params = model, np.asarray(params, dtype=float)
         self.engine = stepper(model.name)
         self.state = np.zeros(self.engine.state)
@@ -68,7 +72,7 @@ class NativeSimulator:
         """The coordinates."""
         return self.state[self._places]
 
-    def start(self, point: np.ndarray, time: float = 0.0, modes: Any = None) -> None:
+    def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None:
         """Begin at a point; the mode follows from it."""
         self.state = np.zeros(self.engine.state)
         self.state[PSI] = 2.0 * np.pi * time
@@ -95,7 +99,7 @@ class NativeSimulator:
             self.state[RATE] += nudge * np.sign(self.state[MODE])
         self.engine.launch(self.state, self.params)
 
-    def begin(self, word: Any, node: np.ndarray) -> None:
+    def begin(self, word: Word, node: np.ndarray) -> None:
         """Just after the first event of a cycle."""
         self.state = state_of(self.engine, self.params, int(word.codes[0]), int(word.mode_codes[0]), node)
         left, right = self.engine.walls(self.params)

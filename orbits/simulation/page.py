@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.protocol import Record, told
 from orbits.machines.page.machine import Machine
+
+if TYPE_CHECKING:
+    from orbits.words import Word
 
 REACHED, FULL, STILL = 0, 1, 2
 FOREVER = 1e5  # clock after which a run that waits for events gives up
@@ -202,7 +205,7 @@ class PageSimulator:
         """The states."""
         return self.stepper.state.copy()
 
-    def start(self, point: np.ndarray, time: float = 0.0, modes: Any = None) -> None:
+    def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None:
         """Begin at a point."""
         self.stepper.start(point, TWO_PI * time, modes)
 
@@ -230,7 +233,7 @@ class PageSimulator:
         self.stepper.start(outside(self.stepper, state[1:], clock), clock)
         self.stepper.state[-1] += nudge
 
-    def begin(self, word: Any, node: np.ndarray) -> None:
+    def begin(self, word: Word, node: np.ndarray) -> None:
         """Just after the first event of a cycle."""
         self.stepper.start(node[1:], float(node[0]) if self.forced else 0.0, word.modes[0])
 

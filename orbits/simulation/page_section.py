@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,6 +10,10 @@ from orbits.flows.page.variations import Variations
 from orbits.flows.protocol import SimulationError
 from orbits.simulation.page import TWO_PI, PageSimulator
 from orbits.simulation.section import Section
+
+if TYPE_CHECKING:
+    from orbits.flows.page.stepper import Stepper
+    from orbits.words import Word
 
 LONGEST = 1e3  # clock without the event of the section after which a motion does not come back
 
@@ -25,7 +29,7 @@ class VariedSection(Section):
 
     simulator: PageSimulator
 
-    def __init__(self, simulator: PageSimulator, word: Any, periods: int, index: int) -> None:
+    def __init__(self, simulator: PageSimulator, word: Word, periods: int, index: int) -> None:
         super().__init__(simulator, word, periods, np.ones(len(simulator.names) + 1))
         self.index = index
 
@@ -43,7 +47,7 @@ class VariedSection(Section):
     def _start(self, x: np.ndarray) -> None:
         self.simulator.start(x)
 
-    def _go(self, mover: Any) -> None:
+    def _go(self, mover: Variations | Stepper) -> None:
         """Move on by a period of the cycle."""
         while mover.advance(TWO_PI * self.periods) is not None:
             pass
@@ -52,7 +56,7 @@ class VariedSection(Section):
 class EventSection(VariedSection):
     """The section of a self-excited machine."""
 
-    def __init__(self, simulator: PageSimulator, word: Any, periods: int, index: int) -> None:
+    def __init__(self, simulator: PageSimulator, word: Word, periods: int, index: int) -> None:
         super().__init__(simulator, word, periods, index)
         letters = [word.letter(i) for i in range(len(word))]
         first = letters[0] if letters else None
@@ -75,7 +79,7 @@ class EventSection(VariedSection):
     def _start(self, x: np.ndarray) -> None:
         self.simulator.start(x, 0.0, self.word.modes[0])
 
-    def _go(self, mover: Any) -> None:
+    def _go(self, mover: Variations | Stepper) -> None:
         left = self.times
         while left:
             stepper = self.simulator.stepper
@@ -85,7 +89,7 @@ class EventSection(VariedSection):
             left -= found[:2] == self.event
 
 
-def section_of(model: Any, params: np.ndarray, word: Any, periods: int, index: int) -> VariedSection:
+def section_of(model: Any, params: np.ndarray, word: Word, periods: int, index: int) -> VariedSection:
     """The section of a cycle, with derivatives by the parameter `index` too."""
     simulator = PageSimulator(model, params)
     return (VariedSection if model.forced else EventSection)(simulator, word, periods, index)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,10 @@ from orbits.machines.stepping import EVENTS_FULL
 from orbits.simulation.driver import collect, skip
 from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
 from orbits.simulation.trajectory import TWO_PI, Trajectory
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
+    from orbits.machines.stepping import Machine
 
 DISPLACED, NEAR = 1e-6, 1e-8  # a start off an orbit, and when it counts as back
 ILL = 1e-6  # an orbit is known at least as well
@@ -87,7 +91,7 @@ def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int 
 
 
 def replay_nodes(
-    model: Any,
+    model: Model,
     params: np.ndarray,
     codes: np.ndarray,
     modes: np.ndarray,
@@ -136,7 +140,7 @@ def replay_nodes(
     return Replay(error, "", multipliers, tracked, float(expected), returned)
 
 
-def _stuck(model: Any, params: np.ndarray) -> Replay:
+def _stuck(model: Model, params: np.ndarray) -> Replay:
     """The empty word: the absorber must not slip."""
     held = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params))) >= 0.0
     sentence = "" if held else "friction does not hold the absorber"
@@ -144,8 +148,8 @@ def _stuck(model: Any, params: np.ndarray) -> Replay:
 
 
 def _motion(
-    model: Any,
-    engine: Any,
+    model: Model,
+    engine: Machine,
     params: np.ndarray,
     codes: np.ndarray,
     modes: np.ndarray,
@@ -180,7 +184,7 @@ def _freest(codes: np.ndarray) -> int:
 
 
 def _tracked(
-    engine: Any,
+    engine: Machine,
     params: np.ndarray,
     codes: np.ndarray,
     modes: np.ndarray,
@@ -203,7 +207,7 @@ def _tracked(
 
 
 def _returns(
-    engine: Any,
+    engine: Machine,
     params: np.ndarray,
     codes: np.ndarray,
     modes: np.ndarray,
@@ -241,7 +245,7 @@ def _returns(
 
 
 def _nearest(
-    engine: Any,
+    engine: Machine,
     params: np.ndarray,
     codes: np.ndarray,
     modes: np.ndarray,

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.simulation.driver import MOST_EVENTS
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
 
 
 def simulator_of(model: Any, params: np.ndarray) -> Simulator:
@@ -24,14 +27,14 @@ def simulator_of(model: Any, params: np.ndarray) -> Simulator:
 
 
 def simulate(
-    model: Any,
+    model: Varying,
     start: Mapping[str, float] | np.ndarray | None = None,
     *,
     periods: float | None = None,
     time: float | None = None,
     events: int | None = None,
     **parameters: float,
-) -> Any:
+):
     """Simulate the machine from event to event.
 
     Parameters

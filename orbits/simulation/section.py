@@ -6,11 +6,14 @@ The section is where the forcing passes phase zero; of a self-excited machine ju
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.flows.protocol import SimulationError, Simulator, later
+
+if TYPE_CHECKING:
+    from orbits.words import Word
 
 
 class Section:
@@ -27,7 +30,7 @@ class Section:
         What 1 is in each of the first node's unknowns, in the simulator's units.
     """
 
-    def __init__(self, simulator: Simulator, word: Any, periods: int, unit: np.ndarray) -> None:
+    def __init__(self, simulator: Simulator, word: Word, periods: int, unit: np.ndarray) -> None:
         self.simulator, self.word, self.periods, self.unit = simulator, word, periods, unit
 
     @property

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from orbits.machines.states import event_states
 from orbits.machines.stepping import HOLD, PSI, RATE, STATUS, TURNS, Machine
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 TWO_PI = 2.0 * np.pi
 LETTERS = "LRtsuH"
@@ -63,7 +66,7 @@ class Trajectory:
         Why the run ended; `ended` says it in words.
     """
 
-    model: Any
+    model: Model
     params: np.ndarray
     machine: Machine
     start: np.ndarray

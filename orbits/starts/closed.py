@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,8 +11,11 @@ from orbits.machines.base import Model
 from orbits.starts.find import polish
 from orbits.words import Word
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
-def closed_orbits(model: Model, params: np.ndarray, made: Any) -> Iterator[Any]:
+
+def closed_orbits(model: Model, params: np.ndarray, made: Callable[..., Any]) -> Iterator[Any]:
     """The real ones among rest and the orbits of `Model.closed_words`, stable or not.
 
     Parameters

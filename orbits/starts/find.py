@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from orbits.flows.protocol import SimulationError
 from orbits.flows.solving import solved_at
 from orbits.orbit import Orbit
 from orbits.starts.reading import DirectionError, directed, readings
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
+    from orbits.words import Word
 
 NEARBY = 0.1  # residual of a guess that may be read from another event than its word
 BETTER = 0.1  # part of the residual with which another reading is believed
@@ -48,7 +52,9 @@ def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     return replace(orbit, nodes=nodes)
 
 
-def check_guess(word: Any, names: Sequence[str], guess: Any) -> np.ndarray:
+def check_guess(
+    word: Word, names: Sequence[str], guess: Sequence[Sequence[float]] | np.ndarray | None
+) -> np.ndarray:
     """The guess as an array (L, n).
 
     Raises
@@ -75,7 +81,7 @@ def check_guess(word: Any, names: Sequence[str], guess: Any) -> np.ndarray:
 
 def find(
     model: Any,
-    word: Any,
+    word: str | Word,
     periods: int = 1,
     guess: Sequence[Sequence[float]] | np.ndarray | None = None,
     parameters: Mapping[str, float] | None = None,
@@ -166,7 +172,7 @@ def find(
     )
 
 
-def centred(model: Any, word: Any, nodes: np.ndarray) -> None:
+def centred(model: Varying, word: Word, nodes: np.ndarray) -> None:
     """Move nodes along what is free in any motion with the word: to the middle."""
     for j in flow_of(model).loose(model, word):
         nodes[:, j] -= 0.5 * (nodes[:, j].max() + nodes[:, j].min())
@@ -187,7 +193,7 @@ def _from_guess(first: Orbit) -> Orbit | None:
     return virtual
 
 
-def _warn(guess: Any, word: Any, instead: str) -> None:
+def _warn(guess: Sequence[Sequence[float]] | np.ndarray | None, word: Word, instead: str) -> None:
     if guess is not None:
         shown = word.text if len(word) <= LONG else f"{word.text[:LONG]}..."
         warnings.warn(
@@ -210,7 +216,9 @@ def _warn_virtual(orbit: Orbit) -> None:
     )
 
 
-def _repeated(model: Any, word: Any, periods: int, parameters: Mapping[str, float] | None) -> Orbit | None:
+def _repeated(
+    model: Varying, word: Word, periods: int, parameters: Mapping[str, float] | None
+) -> Orbit | None:
     """A shorter orbit written several times, where the word is a repetition and has no orbit of its own."""
     times = math.gcd(word.repetitions, periods)
     if times == 1:
@@ -237,7 +245,7 @@ def _proper(orbit: Orbit) -> bool:
     return bool(np.all(orbit.durations > -1e-9))
 
 
-def _simulated(model: Any, word: Any, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
+def _simulated(model: Varying, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     mirrored = model.has_mirror(params)
     target = word.canonical(mirrored)
@@ -270,7 +278,7 @@ def _simulated(model: Any, word: Any, periods: int, params: np.ndarray) -> tuple
     return None, nearest
 
 
-def _aligned(orbit: Orbit, word: Any) -> Orbit:
+def _aligned(orbit: Orbit, word: Word) -> Orbit:
     """The orbit in the rotation or mirror image that reads exactly `word`."""
     images = (orbit, orbit.mirror()) if orbit.model.has_mirror(orbit.params) else (orbit,)
     for candidate in images:
@@ -280,7 +288,7 @@ def _aligned(orbit: Orbit, word: Any) -> Orbit:
     return orbit
 
 
-def _random(model: Any, word: Any, periods: int, params: np.ndarray) -> Orbit | None:
+def _random(model: Varying, word: Word, periods: int, params: np.ndarray) -> Orbit | None:
     """Newton's method from random nodes, where the machine has any: the first real orbit found, else the first proper one."""
     if len(word) > LONGEST:
         return None

@@ -7,7 +7,7 @@ A symmetric cycle is solved for on half its word, closed by the mirror. The empt
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -97,7 +97,7 @@ class Equations:
             self.path = self.data.path
 
     @cached_property
-    def kernels(self) -> Any:
+    def kernels(self):
         """linearise, bordered, inspect, newton, examine of the model."""
         return assemble(self.model)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from orbits.machines import path
 from orbits.machines.base import Model
 from orbits.machines.reference.machine import Reference, reference
 from orbits.words.alphabet import CODES
+
+if TYPE_CHECKING:
+    from orbits.arguments import CycleData, Workspace
 
 STICK, SLIP = CODES["s"], CODES["u"]
 TABLES = {"absorber": 0, "cavity": 1, "coupled": 2}
@@ -54,7 +57,7 @@ class ReferenceKernels(PlainKernels):
     def __init__(self, maps: Reference) -> None:
         self.maps = maps
 
-    def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
+    def linearise(self, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:
         """Residual and derivatives into `work`; returns the largest residual, infinity where it cannot be evaluated."""
         with np.errstate(all="ignore"):
             try:
@@ -63,17 +66,23 @@ class ReferenceKernels(PlainKernels):
                 return math.inf
 
     def bordered(
-        self, data: Any, work: Any, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+        self,
+        data: CycleData,
+        work: Workspace,
+        border: np.ndarray,
+        target: float,
+        step: np.ndarray,
+        tangent: np.ndarray,
     ) -> float:
         """Block-cyclic elimination; see `orbits.elimination.block_cyclic`."""
         return bordered(data, work, border, target, step, tangent)
 
-    def flip(self, data: Any, work: Any, sign: float) -> None:
+    def flip(self, data: CycleData, work: Workspace, sign: float) -> None:
         """Turn the linearisation's closure round."""
         self.maps.unpin(data, work)
         rearranged.flip(data, work, sign)
 
-    def inspect(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+    def inspect(self, data: CycleData, u: np.ndarray, p: float, work: Workspace, row: np.ndarray) -> None:
         """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
         self.maps.unpin(data, work)
         A, D = work.A, work.D

@@ -263,7 +263,7 @@ class PageEquations:
         end[-1] = begin[0] + self.shift
         return begin, end
 
-    def clock_rate(self, numbers: np.ndarray) -> Any:
+    def clock_rate(self, numbers: np.ndarray) -> np.ndarray:
         """Clock per unit of time, from runtime numbers (L, ...)."""
         return self.machine.phase_speed(numbers)
 

@@ -12,13 +12,17 @@ c_{i+1} through its ends only: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
 from contvines.core.multipliers.periodic_schur import periodic_multipliers
 from orbits.integrators.engine import engine
+
+if TYPE_CHECKING:
+    from orbits.machines.page.machine import Machine
+    from orbits.words import Word
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
@@ -48,6 +52,46 @@ class Work(NamedTuple):
     turned: np.ndarray  # 1 where F_u stands for its transpose
 
 
+class Pieces(Protocol):
+    """What the kernels read of the equations, their `data` (`orbits.flows.page.cycle_equations.PageEquations`)."""
+
+    machine: Machine
+    word: Word
+    parameter: str
+    params: np.ndarray
+    path: np.ndarray
+    index: int
+    size: int
+    length: int
+    dimension: int
+    twist: float
+    shift: float
+    forced: bool
+    symmetric: bool
+    movable: bool
+    pinned: tuple[int, ...]
+    unit: np.ndarray
+    allowed: Any
+    base_numbers: np.ndarray
+    clocks: Any
+    contacts: int
+    event_groups: Any
+    flight_groups: Any
+    guard_groups: Any
+    identity: Any
+    letters: Any
+    minus: Any
+    n_multipliers: int
+    owned: Any
+    rate_groups: Any
+    sparsity: Any
+    still: Any
+    trivial: Any
+    turned: Any
+
+    def clock_rate(self, numbers: np.ndarray) -> Any: ...
+
+
 def workspace(length: int, states: int, numbers: int) -> Work:
     """Arrays for `length` nodes of `states` + 1 unknowns and one active parameter."""
     L, n, d = length, states, states + 1
@@ -68,7 +112,7 @@ def workspace(length: int, states: int, numbers: int) -> Work:
     )
 
 
-def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
+def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
     """F, its blocks and its parameter derivative, into `work`; returns the largest absolute residual (inf: not evaluable)."""
     n, length = data.size, data.length
     nodes = np.asarray(u).reshape(length, n + 1)
@@ -152,7 +196,7 @@ def linearise(data: Any, u: np.ndarray, p: float, work: Work) -> float:
     return size if math.isfinite(size) else math.inf
 
 
-def _fly(data: Any, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
+def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
     """Integrate every flight, into `work.flown`; False if one blows up."""
     numbers, flown = work.numbers, work.flown
     for flight, many, places in data.flight_groups:
@@ -172,7 +216,7 @@ def _fly(data: Any, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work:
 
 
 def bordered(
-    data: Any, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+    data: Pieces, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`; returns the determinant's sign."""
     size = data.dimension
@@ -202,7 +246,7 @@ def bordered(
     return sign
 
 
-def fill(data: Any, work: Work, matrix: np.ndarray) -> None:
+def fill(data: Pieces, work: Work, matrix: np.ndarray) -> None:
     """The blocks of F_u in a dense matrix."""
     d, length = data.size + 1, data.length
     last_own, last_following = closing(data, work)
@@ -221,7 +265,7 @@ def fill(data: Any, work: Work, matrix: np.ndarray) -> None:
         matrix[: length * d, : length * d] = matrix[: length * d, : length * d].T.copy()
 
 
-def closing(data: Any, work: Work) -> tuple[np.ndarray, np.ndarray]:
+def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
     """The blocks of the last row, closed by the mirror."""
     own, following = work.own[-1], work.following[-1] * data.turned
     for row, _ in data.still:
@@ -231,7 +275,7 @@ def closing(data: Any, work: Work) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _sparse(
-    data: Any, work: Work, border: np.ndarray, sides: np.ndarray, step: np.ndarray, tangent: np.ndarray
+    data: Pieces, work: Work, border: np.ndarray, sides: np.ndarray, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     from scipy.sparse import csc_matrix
     from scipy.sparse.linalg import splu
@@ -285,7 +329,7 @@ def sparsity(length: int, d: int) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def factors(data: Any, work: Work) -> np.ndarray:
+def factors(data: Pieces, work: Work) -> np.ndarray:
     """Derivatives of node i + 1 by node i, shape (L, m, m): with the clock for a forced machine, states alone otherwise."""
     own, following = work.own, work.following
     with np.errstate(all="ignore"):
@@ -303,7 +347,7 @@ def factors(data: Any, work: Work) -> np.ndarray:
     return result
 
 
-def multipliers(data: Any, work: Work) -> Any:
+def multipliers(data: Pieces, work: Work) -> Any:
     """Multipliers of the closed map between event surfaces, largest first; the one that is always zero is left out."""
     chain = factors(data, work)
     if not np.all(np.isfinite(chain)):

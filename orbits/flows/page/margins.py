@@ -7,7 +7,7 @@ the duration.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,13 +15,16 @@ from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN
 from orbits.flows.page.flights import Work
 from orbits.words import Word
 
+if TYPE_CHECKING:
+    from orbits.flows.page.flights import Pieces
+
 DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted closes
 OWN = (
     1e-9  # share of a flight next to its ends in which the guard of the event there has no minimum of its own
 )
 
 
-def fill_margins(data: Any, u: np.ndarray, work: Work, row: np.ndarray) -> None:
+def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> None:
     """All margins of a linearised solution, shape (L (contacts + 2),); infinity where one does not apply."""
     n, length, contacts = data.size, data.length, data.contacts
     nodes = np.asarray(u).reshape(length, n + 1)

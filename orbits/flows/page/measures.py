@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,13 @@ from orbits.machines.measures import way_out
 from orbits.machines.page.energies import CONTACT
 from orbits.words import Word
 
+if TYPE_CHECKING:
+    from orbits.machines.page.machine import Machine
+
 OF_STATES = ("max", "min", "first", "strobe")
 
 
-def names(machine: Any) -> tuple[str, ...]:
+def names(machine: Machine) -> tuple[str, ...]:
     """max_x, min_x (over the period), first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
     event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact); forces and energies at the contacts
     (`orbits.machines.page.energies`), the energies per period of the orbit."""
@@ -33,13 +36,13 @@ def names(machine: Any) -> tuple[str, ...]:
     )
 
 
-def shown_first(machine: Any) -> str:
+def shown_first(machine: Machine) -> str:
     """The measure that a diagram shows when none is asked for: impact speeds, or how far the first state goes."""
     return "approach_speed" if "approach_speed" in names(machine) else f"max_{machine.states[0]}"
 
 
 def measure(
-    machine: Any, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
+    machine: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
     """Values, each of shape (m,), of solutions with nodes (m, L, n + 1) and parameters (m, P).
 
@@ -84,7 +87,7 @@ _LOADS = frozenset(("impact", "impulse", "friction", "mean", "work", "peak"))  #
 
 
 def _loads(
-    machine: Any,
+    machine: Machine,
     word: Word,
     periods: int,
     nodes: np.ndarray,
@@ -122,13 +125,13 @@ def _loads(
     return found
 
 
-def _periods(machine: Any, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+def _periods(machine: Machine, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     if not machine.forced:
         return nodes[:, :, 0].sum(axis=1)
     return 2.0 * np.pi * periods / machine.phase_speed(params)
 
 
-def _spans(machine: Any, periods: int, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _spans(machine: Machine, periods: int, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Clock at the beginning and the end of every flight of one solution."""
     if not machine.forced:
         return np.zeros(len(nodes)), nodes[:, 0]
@@ -136,7 +139,7 @@ def _spans(machine: Any, periods: int, nodes: np.ndarray) -> tuple[np.ndarray, n
 
 
 def _extremes(
-    machine: Any, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
+    machine: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Largest and smallest value of every state over the period: at the events, and where a rate is zero between them."""
     compiled, e = machine.compiled, machine.equations
@@ -157,7 +160,7 @@ def _extremes(
     return largest, smallest
 
 
-def _strobed(machine: Any, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+def _strobed(machine: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     """States at the first passage of phase zero (a multiple of 2 pi) after the first event."""
     compiled, e = machine.compiled, machine.equations
     out = np.empty((len(nodes), machine.size))
@@ -174,7 +177,7 @@ def _strobed(machine: Any, word: Word, periods: int, nodes: np.ndarray, params: 
     return out
 
 
-def _approach_speeds(machine: Any, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+def _approach_speeds(machine: Machine, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     """Fastest approach at an impact: the gap's rate before it, from the one after it and the restitution."""
     compiled = machine.compiled
     best = np.zeros(len(nodes))

@@ -28,6 +28,9 @@ from orbits.words.margins import border_kind
 from orbits.words.word import Word
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from contvines.flows.cycles import CycleProblem
     from orbits.machines.page.machine import Machine
 
 SAMPLES = (
@@ -68,14 +71,14 @@ class WithoutEvents(FlowProblem):
         pattern, layout = e.pattern(e.pattern_key(mode)), e.layout
         signs, names = e.signs(mode), machine.parameter_names
 
-        def function(values: Any) -> Any:
+        def function(values: Sequence[Any]) -> Callable:
             code = written(layout, values, np)
             return lambda x, p: code(x, 0.0, [*(p[name] for name in names), *signs])
 
-        def rows(values: Any) -> Any:
+        def rows(values: Sequence[Any]) -> Callable:
             flat, count = function([entry for row in values for entry in row]), len(values[0])
 
-            def table(x: Any, p: Any) -> list[Any]:
+            def table(x: np.ndarray, p: np.ndarray) -> list[Any]:
                 found = flat(x, p)
                 return [found[i : i + count] for i in range(0, len(found), count)]
 
@@ -116,7 +119,7 @@ class WithoutEvents(FlowProblem):
         """Measures of the machine beside those of any flow."""
         return tuple(name for name in measures.names(self.machine) if name not in (*self.of_states, "period"))
 
-    def measure_own(self, name: str, problem: Any, u: np.ndarray, p: float) -> float:
+    def measure_own(self, name: str, problem: CycleProblem, u: np.ndarray, p: float) -> float:
         """One of these; an equilibrium has the values of a motion that lasts no time."""
         nodes = self.node(problem, u, p)[None] if problem.spectrum == "map" else np.append(np.nan, u)[None]
         params = np.array(
@@ -142,11 +145,11 @@ class WithoutEvents(FlowProblem):
             over, **{name: value for name, value in values.items() if name != over}
         )
 
-    def witness(self, problem: Any, p: float, starts: int) -> list[dict[str, Any]]:
+    def witness(self, problem: CycleProblem, p: float, starts: int) -> list[dict[str, Any]]:
         """What the machine settles on."""
         return self._orbits(problem, p).witness(p)
 
-    def known(self, problem: Any, u: np.ndarray, p: float) -> dict[str, Any]:
+    def known(self, problem: CycleProblem, u: np.ndarray, p: float) -> dict[str, Any]:
         """A stable motion as `witness` tells of it."""
         rest = {"word": None, "periods": 0, "kind": "rest"}
         return (
@@ -158,7 +161,7 @@ class WithoutEvents(FlowProblem):
         """That of the contact whose guard becomes zero."""
         return border_kind(self.word, self.contacts[k])
 
-    def beyond(self, problem: Any, point: Any, k: int) -> list[Any]:
+    def beyond(self, problem: CycleProblem, point: Any, k: int) -> list[Any]:
         """What goes on from a cycle that touches a contact, as the contacts' rules have it."""
         if problem.spectrum == "flow":
             return []
@@ -173,7 +176,7 @@ class WithoutEvents(FlowProblem):
             orbits.beyond(SimpleNamespace(u=u, value=p, tangent=tangent, margin_index=self.contacts[k]))
         )
 
-    def dead_end(self, problem: Any, point: Any, k: int) -> str:
+    def dead_end(self, problem: CycleProblem, point: Any, k: int) -> str:
         """Where the contact is touched."""
         return (
             super()
@@ -182,7 +185,7 @@ class WithoutEvents(FlowProblem):
             .replace(" stops the motion: it", " is touched: its guard")
         )
 
-    def _orbits(self, problem: Any, p: float) -> Any:
+    def _orbits(self, problem: CycleProblem, p: float) -> Any:
         """The same motions as orbits with the word ""."""
         from orbits.problem import OrbitProblem
 
@@ -190,7 +193,7 @@ class WithoutEvents(FlowProblem):
         params = np.array([values[name] for name in self.machine.parameter_names])
         return OrbitProblem(self.machine, self.word, 1, problem.parameter, params)
 
-    def node(self, problem: Any, u: np.ndarray, p: float) -> np.ndarray:
+    def node(self, problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
         """Period and state at the extreme of the first state that moves, shape (n + 1,)."""
         orbit = problem.orbit(u, p)
         return extreme_of(
@@ -198,7 +201,7 @@ class WithoutEvents(FlowProblem):
         )
 
 
-def function_of_one(f: Any) -> Any:
+def function_of_one(f: Callable) -> Callable:
     """The first of the values that a function returns."""
     return lambda x, p: f(x, p)[0] + 0.0 * x[0]
 
@@ -268,7 +271,7 @@ def beside(machine: Machine, state: Mapping[str, float] | None = None, **paramet
     return smooth(machine, mode, params, x)
 
 
-def cycles_of(orbit: Any) -> Any:
+def cycles_of(orbit: Any):
     """The cycle, by collocation, of a self-excited orbit without events.
 
     Raises
@@ -300,11 +303,11 @@ class Rest(NamedTuple):
     state: np.ndarray
     parameters: dict[str, float]
 
-    def problem(self, parameter: str) -> Any:
+    def problem(self, parameter: str):
         """Equilibria against a parameter."""
         return self.flow.equilibria(parameter, self.parameters)
 
-    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+    def seed(self, problem: CycleProblem) -> tuple[np.ndarray, float]:
         """The state, and the value of the parameter that varies."""
         return self.state, self.parameters[problem.parameter]
 

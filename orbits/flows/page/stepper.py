@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,11 @@ from orbits.contacts.wall import FREE, HELD, Wall
 from orbits.flows.protocol import SimulationError
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.singular import singular_at
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from orbits.machines.page.patterns import Guard
 
 TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
@@ -238,7 +243,7 @@ class Stepper:
                 return f"the motion of {name} cannot go on: {found}; start elsewhere, or write the formula so that it is a number there"
         return f"the motion of {name} left the range of numbers: give parameters and a start of moderate size"
 
-    def _leave(self, watch: Any, numbers: np.ndarray, end: float) -> None:
+    def _leave(self, watch: Callable[..., Any], numbers: np.ndarray, end: float) -> None:
         """Leave a surface on which a quantity starts without a rate, unless something else happens first."""
         if not end > self.clock:
             return
@@ -251,7 +256,7 @@ class Stepper:
                 self.state, self.clock = before, begin
                 return
 
-    def _rise(self, watch: Any, numbers: np.ndarray, end: float) -> None:
+    def _rise(self, watch: Callable[..., Any], numbers: np.ndarray, end: float) -> None:
         """Go to the top of a short hop: its end is then looked for from there, for beside a zero at the very beginning another one may be lost."""
         before, begin = self.state.copy(), self.clock
         for _ in range(HALVINGS):
@@ -305,7 +310,7 @@ class Stepper:
         self.state, self.clock = before, self.clock - OFF
         return False
 
-    def _happened(self, guard: Any) -> tuple[int, int, int] | None:
+    def _happened(self, guard: Guard) -> tuple[int, int, int] | None:
         j, kind = guard.contact, guard.kind
         if kind == HIT:
             return j, self._impact(j), 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.patterns import Equations
+
+if TYPE_CHECKING:
+    from orbits.symbols import Symbol
 
 DRAWS = 8  # random states at which formulas are compared
 SAME = 1e-9  # relative
@@ -29,7 +32,11 @@ class Draws:
         self.params = np.tile(params, (DRAWS, 1))
 
     def of(
-        self, values: Sequence[Any], states: Any = None, clock: Any = None, signs: Any = None
+        self,
+        values: Sequence[Any],
+        states: np.ndarray | None = None,
+        clock: np.ndarray | None = None,
+        signs: np.ndarray | None = None,
     ) -> np.ndarray:
         """Values, shape (DRAWS, count)."""
         numbers = np.hstack([self.params, self.signs if signs is None else signs])
@@ -82,7 +89,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
             )
         after = e.impact(j)
         (effects,) = derivatives([rate], e.x)
-        moved: Any = 0.0
+        moved: Symbol | float = 0.0
         for effect, push in zip(effects, e.push[j]):
             moved = effect * push + moved
         sizes = draws.of([moved])[:, 0]
@@ -155,7 +162,7 @@ def _check_surfaces(draws: Draws, rates: Sequence[Any]) -> None:
             )
 
 
-def _proportional(draws: Draws, one: Any, other: Any) -> bool:
+def _proportional(draws: Draws, one: Symbol, other: Symbol) -> bool:
     """Whether two quantities differ by a constant factor only."""
     table = draws.of([one, other])
     with np.errstate(all="ignore"):
@@ -185,7 +192,7 @@ def _inside(rates: Sequence[Any], name: str) -> set[str]:
     return {name} & set().union(*(variables_of(row[0]) for row in slopes))
 
 
-def _flip(draws: Draws, value: Any, table: np.ndarray) -> int | None:
+def _flip(draws: Draws, value: Symbol, table: np.ndarray) -> int | None:
     """0: the impact leaves the velocity (or surface) alone; -1, +1: its sign afterwards; None: it may change to either."""
     before = draws.of([value])[:, 0]
     after = draws.of([value], states=table[:, 3:])[:, 0]

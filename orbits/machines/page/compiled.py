@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from orbits.integrators.expressions import Values, derivatives, replaced, variab
 from orbits.machines.page.energies import friction_power, impact_mass
 from orbits.machines.page.patterns import Equations, PatternKey
 from orbits.symbols import Symbol
+
+T = TypeVar("T")
 
 
 class Compiled:
@@ -29,26 +31,26 @@ class Compiled:
         self._made: dict[Hashable, Any] = {}
         self.engine = engine()
 
-    def _once(self, key: Hashable, make: Callable[[], Any]) -> Any:
+    def _once(self, key: Hashable, make: Callable[[], T]) -> T:
         if key not in self._made:
             self._made[key] = make()
         return self._made[key]
 
-    def flight(self, key: PatternKey, active: tuple[int, ...]) -> Any:
+    def flight(self, key: PatternKey, active: tuple[int, ...]):
         """The flow with its sensitivities."""
         return self._once(
             ("flight", key, active),
             lambda: self.engine.Flight(self.layout, self.equations.pattern(key).clock_rates, active),
         )
 
-    def flights(self, key: PatternKey, active: tuple[int, ...]) -> Any:
+    def flights(self, key: PatternKey, active: tuple[int, ...]):
         """The same, several at once."""
         return self._once(
             ("flights", key, active),
             lambda: self.engine.Flights(self.layout, self.equations.pattern(key).clock_rates, active),
         )
 
-    def run(self, key: PatternKey) -> Any:
+    def run(self, key: PatternKey):
         """The flow up to the first guard that falls to zero."""
         pattern = self.equations.pattern(key)
         return self._once(
@@ -56,7 +58,7 @@ class Compiled:
             lambda: self.engine.Run(self.layout, pattern.clock_rates, [g.value for g in pattern.guards]),
         )
 
-    def watch(self, key: PatternKey) -> Any:
+    def watch(self, key: PatternKey):
         """The flow with every local minimum of every guard."""
         pattern = self.equations.pattern(key)
         return self._once(
@@ -66,7 +68,7 @@ class Compiled:
             ),
         )
 
-    def extremes(self, key: PatternKey) -> Any:
+    def extremes(self, key: PatternKey):
         """The flow with every extreme of every state: rises of the rates are minima, rises of minus the rates maxima."""
         rates = self.equations.pattern(key).clock_rates
         return self._once(
@@ -121,7 +123,7 @@ class Compiled:
 
         return self._once(("extreme", key, active), make)
 
-    def _zero(self, letter: Letter, sign: int, key: PatternKey) -> Any:
+    def _zero(self, letter: Letter, sign: int, key: PatternKey):
         e, j = self.equations, letter.contact
         if letter.kind == HIT:
             return e.gap[j]

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import NoReturn
 
 
 class PageError(ValueError):
@@ -17,7 +21,7 @@ class States(Sequence):
         self._values = tuple(values)
         self.__dict__.update(zip(names, self._values))
 
-    def __getitem__(self, place: Any) -> Any:
+    def __getitem__(self, place: int | slice) -> Any:
         return self._values[place]
 
     def __len__(self) -> int:
@@ -46,7 +50,7 @@ class Named:
 class NoPhase:
     """Stands for the phase of a self-excited machine, which has none."""
 
-    def _refuse(self, *_: Any) -> Any:
+    def _refuse(self, *_: object) -> NoReturn:
         raise PageError(
             "phase: a self-excited machine (phase_rate=None) has no forcing phase; leave it out of the formulas, or "
             "name the parameter that is the forcing's frequency as phase_rate"
@@ -56,7 +60,7 @@ class NoPhase:
     __pow__ = __neg__ = __float__ = __array__ = _refuse
 
 
-def called(what: str, function: Any, *arguments: Any) -> Any:
+def called(what: str, function: Callable, *arguments: object) -> Any:
     if not callable(function):
         given = "state, phase, p, contact" if what == "motion" else "state, phase, p"
         raise PageError(f"{what} is {function!r}; give a function, for example lambda {given}: ...")

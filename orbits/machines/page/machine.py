@@ -311,7 +311,7 @@ class Machine(Varying):
         return start | ({"phase": float(generator.uniform(0.0, 2.0 * np.pi))} if self.forced else {})
 
     @hinting
-    def smooth(self, state: Mapping[str, float] | None = None, **parameters: float) -> Any:
+    def smooth(self, state: Mapping[str, float] | None = None, **parameters: float):
         """The motions of a self-excited machine without events, in the mode of a state: its equilibria and cycles as a flow.
 
         ``contvines.diagram(machine.smooth({"x": 0.1}), over=...)`` begins at the equilibrium near the state; see `orbits.flows.page.smooth`.

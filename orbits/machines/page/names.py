@@ -16,7 +16,11 @@ from orbits.machines.page.formulas import PageError
 
 
 def check_names(
-    name: Any, states: Sequence[str], parameters: Mapping[str, Any], phase_rate: Any, contacts: Sequence[Any]
+    name: object,
+    states: Sequence[str],
+    parameters: Mapping[str, Any],
+    phase_rate: object,
+    contacts: Sequence[Any],
 ) -> None:
     """Names, numbers and letters, before anything is traced."""
     if not (isinstance(name, str) and name.isidentifier()):
@@ -53,7 +57,7 @@ def check_names(
     _check_contacts(states, contacts)
 
 
-def _check_contacts(states: Sequence[str], contacts: Any) -> None:
+def _check_contacts(states: Sequence[str], contacts: Sequence[Any]) -> None:
     if isinstance(contacts, str) or not isinstance(contacts, Sequence):
         raise PageError(f"contacts = {contacts!r} must be a list, for example [Wall(...)]")
     taken: dict[str, str] = {}

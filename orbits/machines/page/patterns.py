@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
@@ -21,6 +21,9 @@ from orbits.contacts.wall import HELD, Wall
 from orbits.integrators.expressions import Layout, constant, derivatives, replaced, variable, variables_of
 from orbits.machines.page.formulas import Named, NoPhase, PageError, States, called
 from orbits.symbols import Symbol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 CLOCK = "phase"
 PatternKey = tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]
@@ -132,10 +135,10 @@ class Equations:
         states: tuple[str, ...],
         parameters: tuple[str, ...],
         phase_rate: str | None,
-        motion: Any,
+        motion: Callable,
         contacts: tuple[Any, ...],
         factors: Mapping[str, float] | None = None,
-        energy: Any = None,
+        energy: Callable | None = None,
     ) -> None:
         self.states, self.contacts, self.factors = states, contacts, dict(factors or {})
         self.formulas_of_motion = motion
@@ -150,7 +153,7 @@ class Equations:
         self.p = Named("p", {name: self._in_si(name, variable(f"p_{name}")) for name in parameters})
         self.sign = {j: variable(f"sign_{contacts[j].name}") for j in signed}
         self.phase_rate = None if phase_rate is None else getattr(self.p, phase_rate)
-        self.phase: Any = NoPhase() if phase_rate is None else self.clock
+        self.phase = NoPhase() if phase_rate is None else self.clock
         self.state = States(states, [self._in_si(name, x) for name, x in zip(states, self.x)])
         self.gap, self.push, self.restitution = {}, {}, {}
         self.velocity, self.limit, self.surface = {}, {}, {}
@@ -179,7 +182,7 @@ class Equations:
         """A function of (state, phase, p), as a symbol."""
         return self._symbol(called(what, function, self.state, self.phase, self.p), what)
 
-    def quantity(self, given: Any, what: str) -> Symbol:
+    def quantity(self, given: object, what: str) -> Symbol:
         """A number, the name of a parameter, or a function of (state, phase, p)."""
         if isinstance(given, str):
             try:
@@ -219,7 +222,7 @@ class Equations:
         told = [self._symbol(rate, f"motion's rate of {name}") for rate, name in zip(rates, self.states)]
         return [rate / self.factors.get(name, 1.0) for rate, name in zip(told, self.states)]
 
-    def _in_si(self, name: str, shown: Any) -> Any:
+    def _in_si(self, name: str, shown: Symbol) -> Symbol:
         """A parameter or state as the formulas see it."""
         return shown * self.factors.get(name, 1.0)
 
@@ -245,7 +248,7 @@ class Equations:
         """
         rate = self.gap_rate(j)
         (slopes,) = derivatives([rate], self.x)
-        effect: Any = 0.0
+        effect: Symbol | float = 0.0
         for slope, push in zip(slopes, self.push[j]):
             effect = slope * push + effect
         impulse = -rate / effect if rest else -(1.0 + self.restitution[j]) * rate / effect

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
 from orbits.machines.page.formulas import Named, PageError, States
 from orbits.machines.page.machine import Machine
+
+if TYPE_CHECKING:
+    from orbits.symbols import Symbol
 
 CLOCK = "run_up_time"
 """The further state, in seconds where the page has units."""
@@ -45,12 +48,12 @@ def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> M
     first = begin * machine.equations.factors.get(name, 1.0)
     count = len(machine.states)
 
-    def wrapped(function: Any) -> Any:
+    def wrapped(function: Callable) -> Callable:
         """A function of the page, with phase and frequency at the time that the state has."""
         if not callable(function):
             return function
 
-        def formula(state: Any, phase: Any, p: Any, *contact: Any) -> Any:
+        def formula(state: States, phase: Symbol, p: Named, *contact: Named) -> Symbol:
             clock = state[count]
             frequency = first + (last - first) / time * clock
             values = {key: value for key, value in vars(p).items() if key != "_what"} | {name: frequency}
