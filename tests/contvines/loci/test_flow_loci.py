@@ -170,6 +170,11 @@ def flip_and_pair(x, p):
     return [*ring(x), *twisted(x, x[2:], p.a, -0.4), *spiral(x[4:], p.b + 0.5 * p.a, 0.7)]
 
 
+def two_pairs(x, p):
+    """Beside the ring: pairs of modulus exp(2 pi a) and exp(2 pi (b - a))."""
+    return [*ring(x), *spiral(x[2:4], p.a, 0.2), *spiral(x[4:], p.b - p.a, 0.7)]
+
+
 def fold_and_flip(x, p):
     """Cycles s = r^2 - 1 = +-sqrt a, with a multiplier -exp(2 pi (b + s))."""
     s = x[0] ** 2 + x[1] ** 2 - 1.0
@@ -177,12 +182,19 @@ def fold_and_flip(x, p):
     return [growth * x[0] - x[1], x[0] + growth * x[1], *twisted(x, x[2:], p.b + s, -0.4)]
 
 
-@pytest.mark.parametrize("label", ["PD1", "NS1"])
-def test_a_flip_and_a_pair_beside_a_ring(label):
-    flow = cv.FlowProblem(flip_and_pair, [1.0, 0, 0, 0, 0, 0], {"a": -0.3, "b": 0.12}, scale=1.0)
+@pytest.mark.parametrize(
+    ("f", "label", "kind"),
+    [
+        (flip_and_pair, "PD1", "flip-neimark-sacker"),
+        (flip_and_pair, "NS1", "flip-neimark-sacker"),
+        (two_pairs, "NS1", "double-neimark-sacker"),
+    ],
+)
+def test_two_things_at_once_beside_a_ring(f, label, kind):
+    flow = cv.FlowProblem(f, [1.0, 0, 0, 0, 0, 0], {"a": -0.3, "b": 0.12}, scale=1.0)
     graph = cv.diagram(ring_orbit(flow, 0.0, 0.0, 0.0, 0.0), over="a", within=(-0.5, 0.05), depth=0)
     locus = cv.locus(graph[label], over="b", within=(-0.2, 0.2))
-    (point,) = (point for point in locus.points.values() if point.kind == "flip-neimark-sacker")
+    (point,) = (point for point in locus.points.values() if point.kind == kind)
     assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
