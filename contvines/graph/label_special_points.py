@@ -60,13 +60,14 @@ def mark(
         kind = _kind(run, engine, event)
         label = _known(run, engine, branch, event, kind, pending, meets, index in (0, last))
         if label is None:
-            point = _special(run, "", kind, engine, branch, event, index)
+            point = _special(run, kind, engine, branch, event, index)
             start = run.graph.special.get(pending.point or "")
             if start is not None and origin is not None:
                 doubt = max(doubt, start.location_error, point.location_error)
                 if _stands_still(engine, branch, point, start, origin, doubt):
                     continue
             label = point.label = run.new_label(run.kind(kind).label)
+            run.events[label] = event
             run.graph.special[label] = point
             fresh.append(point)
         else:
@@ -84,7 +85,8 @@ def mark(
                     run.connect(label, known.branch, branch.label)
             elif known.met_from is not None:
                 # now seen on the branch of the more symmetric solutions: that one owns it
-                point = _special(run, label, kind, engine, branch, event, index)
+                point = _special(run, kind, engine, branch, event, index)
+                point.label, run.events[label] = label, event
                 point.met_from, point.remarks = known.met_from, known.remarks
                 for other in run.graph.branches.values():
                     first, last = (_met(ending, label, branch.label) for ending in other.endings)
@@ -291,13 +293,12 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
         special.location_error = float("inf")
 
 
-def _special(
-    run: Run, label: str, kind: str, engine: Engine, branch: Branch, event: Located, index: int
-) -> SpecialPoint:
+def _special(run: Run, kind: str, engine: Engine, branch: Branch, event: Located, index: int) -> SpecialPoint:
+    """A point that has no label yet."""
     point = event.point
     margins = float(engine.smallest_margin(point.row))
     special = SpecialPoint(
-        label=label,
+        label="",
         kind=kind,
         branch=branch.label,
         value=float(point.p),
@@ -325,7 +326,6 @@ def _special(
             *classify(PointOnBranch(engine, point))
         )
         special.remarks = (*special.remarks, *remarks)
-    run.events[label] = event
     return special
 
 
