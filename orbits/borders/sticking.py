@@ -54,7 +54,7 @@ def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
         q = p + side * 1e-7 * unit
         orbit = Orbit.at_rest(problem.model, problem.values(q))
         beyond = Orbit.at_rest(problem.model, problem.values(p - side * 1e-7 * unit))
-        if orbit.margin > 0.0 > beyond.margin:
+        if orbit.margin > 0.0 >= beyond.margin:  # next to nothing reads as zero
             other = problem.sibling(orbit.word, 1, orbit.symmetric)
             direction = np.zeros(other.dimension + 1)
             direction[-1] = side
