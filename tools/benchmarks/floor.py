@@ -35,7 +35,7 @@ def library(source="continuation.c", flags=PLAIN):
         partial = target.with_suffix(f".{os.getpid()}")
         # Linked without the flags: -ffast-math would make the linker add start-up code that switches subnormal numbers
         # off in the whole process.
-        made = partial.with_suffix(".o")
+        made = Path(f"{partial}.o")  # each process has its own
         for command in (
             [compiler, *flags, "-fPIC", "-c", "-o", str(made), str(path)],
             [compiler, "-shared", "-o", str(partial), str(made), "-lm"],
