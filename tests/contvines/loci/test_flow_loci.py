@@ -186,7 +186,6 @@ def fold_and_flip(x, p):
     ("f", "label", "kind"),
     [
         (flip_and_pair, "PD1", "flip-neimark-sacker"),
-        (flip_and_pair, "NS1", "flip-neimark-sacker"),
         (two_pairs, "NS1", "double-neimark-sacker"),
     ],
 )
