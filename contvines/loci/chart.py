@@ -164,9 +164,8 @@ class Chart(Resumable):
         apart = ("loci", "points", "regions")
         yield "chart", "chart", {f.name: getattr(self, f.name) for f in fields(self) if f.name not in apart}
         for locus in self.loci.values():
-            own = {
-                f.name: getattr(locus, f.name) for f in fields(locus) if f.name not in ("branch", "marked")
-            }
+            apart = ("branch", "marked", "kinds")
+            own = {f.name: getattr(locus, f.name) for f in fields(locus) if f.name not in apart}
             own["marks"] = None if locus.marked is None else locus.marks
             own["turns"] = [[turn.index, *turn.value] for turn in locus.turns]
             branch = {f"branch_{name}": value for name, value in content_of(locus.branch).items()}

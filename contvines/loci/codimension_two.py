@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,7 @@ from .conditions import COEFFICIENTS, UNKNOWN, References, Test, coefficient_of,
 from .kinds import TOUCH, Look, looks
 from .layout import FLIP, FOLD, MARGIN, PAIR, PERIOD
 from .locus import Locus
+from .own_test import of_plane, tested
 from .plane import CLOSE, Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
@@ -90,7 +93,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     born = _where_born(problem, places)
     # where cycles begin other multipliers may be critical, too
     found = [pair for pair in found if not any(_at_one_place(pair[1], own) for _, own in born)]
-    found += _at_borders(locus, plane, places) + born
+    found += _at_borders(locus, plane, places) + _of_own_kinds(locus, plane, places) + born
     return sorted((pair for pair in found if not _at_end(locus, pair[1])), key=lambda pair: pair[0])
 
 
@@ -271,6 +274,31 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
             )
             if point is not None and not any(same_point(point, other) for _, other in found):
                 found.append((0 if guess is places[0] else i + 1 if ends else i, point))
+    return found
+
+
+def _of_own_kinds(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[int, PlanePoint]]:
+    """Zeros of the tests of users' kinds."""
+    problem, found = locus.problem, []
+    for kind in locus.kinds:
+        values = []
+        for place in places:
+            plane.at(place)
+            values.append(tested(kind, plane))
+        for i, (a, b) in enumerate(pairwise(values)):
+            if not (np.isfinite(a + b) and (a >= 0.0) != (b >= 0.0)):
+                continue
+            guess, gap = _between(places[i], places[i + 1], a / (a - b)), _gap(problem, *places[i : i + 2])
+            plane.at(guess)
+            at = References(plane, problem)
+            test = partial(tested, kind)
+            point = solved(plane, problem, at, kind.name, test, guess, gap, NOISY)
+            if point is None:
+                continue
+            plane.at(Place(point.u, *point.value))
+            seen: Any = of_plane(plane)
+            if kind.verify is None or kind.verify(seen):
+                found.append((i, point))
     return found
 
 

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..bifurcation.kind import Kind
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
 from ..continuation.hints import hinted
@@ -47,6 +48,8 @@ class Locus:
         Where it turns round in the second parameter.
     within : (float, float)
         Interval of the second parameter.
+    kinds : tuple of Kind
+        The user's own: zeros of their tests along the locus are points, too.
     beyond : int
         Of a border: on which side of it, looking along the points with q to the right and p upwards, the motion cannot be: 1
         left, -1 right, 0 not known.
@@ -62,6 +65,7 @@ class Locus:
     within: tuple[float, float] = (-np.inf, np.inf)
     beyond: int = 0
     marked: tuple[tuple[int, PlanePoint], ...] | None = field(default=None, repr=False)
+    kinds: tuple[Kind, ...] = field(default=(), repr=False)
 
     def __len__(self) -> int:
         return len(self.branch)

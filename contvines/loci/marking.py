@@ -24,11 +24,12 @@ def mark_locus(locus: Locus) -> tuple[tuple[int, PlanePoint], ...]:
         Each point with the index of the locus's point before it. The labels are numbered along the locus, kind by kind.
     """
     marked: list[tuple[int, PlanePoint]] = []
-    numbers = dict.fromkeys(PREFIXES.values(), 0)
+    prefixes = {**PREFIXES, **{kind.name: kind.label for kind in locus.kinds}}
+    numbers = dict.fromkeys(prefixes.values(), 0)
     for index, point in find(locus):
         if any(same_point(point, other) for _, other in marked):
             continue
-        prefix = PREFIXES[point.kind]
+        prefix = prefixes[point.kind]
         numbers[prefix] += 1
         point.label, point.on = f"{prefix}{numbers[prefix]}", [locus.label]
         point.coefficients = point.coefficients or coefficients(point)

@@ -1,8 +1,8 @@
-"""Loci of users' kinds: the condition of the kind becomes one more margin of the problem, and is followed as the margin of a border is."""
+"""Users' kinds in two parameters: loci of their points, whose condition is followed as the margin of a border is, and their points on loci."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -12,48 +12,84 @@ import numpy as np
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME
 from ..branches.special_point import SpecialPoint
+from .plane import Plane
 
 
 class PointOfLocus:
-    """What a kind's condition sees of a point along a locus; as :class:`~contvines.bifurcation.point_on_branch.PointOnBranch`, without a tangent."""
+    """What a kind's functions see of a point along a locus; as :class:`~contvines.bifurcation.point_on_branch.PointOnBranch`, without a tangent.
 
-    def __init__(self, problem: Any, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
-        self._about = problem, data, work, row
-        self.u, self.value = np.array(u), float(p)
+    ``problem`` is that of the branches, ``value`` the first parameter; ``parameters`` hold both that vary.
+    """
 
-    @property
-    def problem(self) -> Any:
-        return self._about[0]
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """All parameters by name, both that vary included."""
-        data = self._about[1]
-        return {**data.parameters, data.parameter: self.value}
+    def __init__(
+        self,
+        problem: Any,
+        parameters: Mapping[str, float],
+        place: tuple[np.ndarray, float],
+        row: np.ndarray,
+        jacobian: Callable[[], np.ndarray],
+        measures: Callable[..., dict[str, np.ndarray]],
+    ) -> None:
+        self.problem, self.parameters = problem, dict(parameters)
+        self.u, self.value = np.array(place[0]), float(place[1])
+        self._row, self._jacobian, self._measures = row, jacobian, measures
 
     @cached_property
     def jacobian(self) -> np.ndarray:
         """F_u of the problem's equations, shape (N, N)."""
-        problem, data, work, _ = self._about
-        return np.array(problem.kernels.matrix(data, work))
+        return np.array(self._jacobian())
 
     @cached_property
     def multipliers(self) -> np.ndarray:
         """Of the full period (eigenvalues for flows), complex."""
-        problem, _, _, row = self._about
-        pairs = np.array(row[: 2 * int(problem.n_multipliers)])
-        return np.asarray(problem.to_multipliers(pairs.view(complex)), dtype=complex)
+        pairs = np.array(self._row[: 2 * int(self.problem.n_multipliers)])
+        return np.asarray(self.problem.to_multipliers(pairs.view(complex)), dtype=complex)
 
     @property
     def margins(self) -> np.ndarray:
         """Distances from borders."""
-        problem, _, _, row = self._about
-        return np.array(row[2 * int(problem.n_multipliers) :])
+        return np.array(self._row[2 * int(self.problem.n_multipliers) :])
 
     def measure(self, name: str) -> float:
         """A measure of the solution by its name."""
-        data = self._about[1]
-        return float(data.measures((name,), self.u[None, :], np.array([self.value]))[name][0])
+        return float(self._measures((name,), self.u[None, :], np.array([self.value]))[name][0])
+
+
+def of_plane(plane: Plane) -> PointOfLocus:
+    """The point at which a plane is."""
+    u, p, q = plane.place
+    problem, line = plane.locus.at(q), plane.first
+
+    def jacobian() -> np.ndarray:
+        if line.kernels.matrix is None:
+            raise ValueError(f"a {type(line.problem).__name__} does not tell its Jacobian")
+        line.at(u, p)
+        return line.kernels.matrix(line.data, line.work)
+
+    parameters = {**problem.parameters, plane.locus.inner: p, plane.locus.over: q}
+    return PointOfLocus(problem, parameters, (u, p), plane.row, jacobian, problem.measures)
+
+
+def tested(kind: Kind, plane: Plane) -> float:
+    """A user's test at the point at which a plane is; NaN where it cannot be computed.
+
+    Raises
+    ------
+    ValueError
+        If the test fails for a reason of its own.
+    """
+    assert kind.test is not None
+    point: Any = of_plane(plane)
+    try:
+        return float(kind.test(point))
+    except (ArithmeticError, np.linalg.LinAlgError):
+        return float("nan")
+    except Exception as error:
+        _, p, q = plane.place
+        place = f"{plane.locus.inner} = {p:.10g}, {plane.locus.over} = {q:.10g}"
+        raise ValueError(
+            f"kind {kind.name}: its test fails at {place}: {type(error).__name__}: {error}"
+        ) from error
 
 
 class WithCondition:
@@ -90,9 +126,15 @@ class WithCondition:
         self.plain.kernels.inspect(data, u, p, work, row[:-1])
         condition: Any = self.own_kind.locus
         try:
-            row[-1] = float(condition(PointOfLocus(self.plain, data, u, p, work, row[:-1])))
+            row[-1] = float(condition(self._point(data, u, p, work, row[:-1])))
         except (ArithmeticError, np.linalg.LinAlgError):
             row[-1] = np.nan
+
+    def _point(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> PointOfLocus:
+        parameters = {**data.parameters, data.parameter: float(p)}
+        return PointOfLocus(
+            self.plain, parameters, (u, p), row, lambda: self.plain.kernels.matrix(data, work), data.measures
+        )
 
 
 def of_own_kind(point: SpecialPoint) -> bool:

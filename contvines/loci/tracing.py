@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..bifurcation.detect import Detector
+from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import BY_NAME, checked
 from ..bifurcation.located import Located, Role
 from ..bifurcation.symmetry_test import image_of
 from ..branches.assembly import make_branch
@@ -53,6 +55,7 @@ def locus(
     settings: Settings | Mapping[str, Any] | None = None,
     progress: Callable[[str, int, float], None] | None = None,
     period: float | None = None,
+    kinds: Iterable[Kind] | None = None,
 ) -> Locus:
     """Follow a special point of any kind in a second parameter.
 
@@ -75,6 +78,8 @@ def locus(
     period : float, optional
         Of a homoclinic end: the period of the cycles that stand for the homoclinic orbits along the locus; the one at the end of
         the branch if it is left out.
+    kinds : iterable of Kind, optional
+        As in :func:`contvines.diagram`: zeros of the tests of kinds of your own along the locus are among its points, too.
 
     Returns
     -------
@@ -90,6 +95,7 @@ def locus(
     if point.problem is None:
         raise ValueError(without_problem(point.label))
     within = check_interval(within)
+    own_kinds = tuple(kind for kind in checked(kinds) if BY_NAME.get(kind.name) is not kind)
     if period is not None:
         if point.kind != "homoclinic":
             raise ValueError(
@@ -135,6 +141,7 @@ def locus(
         raise ValueError(
             f"the locus of {point.label} cannot be started: its equations do not converge at {over} = {q:.10g}"
         )
+    found.kinds = own_kinds
     return found
 
 
