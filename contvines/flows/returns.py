@@ -19,8 +19,9 @@ from . import mesh
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-SWEEPS = 14  # of Newton's method in an interval
+SWEEPS = 20  # of Newton's method in an interval
 EXACT = 1e-14  # corrections, in units of the scale and of the state, below which it has converged
+QUICK = 0.1  # part of the last correction above which slopes are renewed
 ROUNDED = 1e-9  # ... below which they are rounding where they shrink no more
 
 
@@ -121,29 +122,25 @@ class ReturnMap:
 
         step = float(np.real(self._length(p))) * self.widths[i]
         times = np.tile(float(np.real(self._length(p))) * places, count) if self.field.forced else None
-        nodes, matrix, points = self._solved(x, guess, np.full(count, step), p, times)
+        steps = np.full(count, step)
+        nodes = self._solved(x, guess, steps, p, times, self.nodes[i][None])
         end = nodes[:, -1]
         if not derivatives:
             return Step(end, np.empty(0), np.empty(0))
-        m, d = r.degree, self.node
-        jacobian = self._jacobian(points, p, times).reshape(count, m, d, d)
-        first = -step * np.einsum("c,ncab->ncab", r.values[:, 0], jacobian)
-        first[:, :, np.arange(d), np.arange(d)] += r.slopes[:, :1]
-        by = np.zeros((count * m, d))
-        if np.isfinite(points).all():
-            by = self.field.along(lambda q: rate(points, q), p)
-        sides = np.concatenate([-first.reshape(count, m * d, d), by.reshape(count, m * d, 1)], axis=2)
-        found = self._linear(matrix, sides)[:, -d:]
-        return Step(end, found[:, :, :d], found[:, :, d])
+
+        def by(points: np.ndarray) -> np.ndarray:
+            return self.field.along(lambda q: rate(points, q), p)
+
+        found = self._varied(x, nodes, steps, p, times, by)
+        return Step(end, found[:, :, :-1], found[:, :, -1])
 
     def _onto_plane(self, x: np.ndarray, p: float, derivatives: bool) -> Step:
         """By one step of each motion's own length."""
-        r, d, count = self.rule, self.node, len(x)
         speed = self._rates(x, p)
         time = -((x - self.start) @ self.normal) / (speed @ self.normal)
-        nodes = np.repeat(x[:, None, :], r.degree, axis=1)
+        nodes = np.repeat(x[:, None, :], self.rule.degree, axis=1)
         for _ in range(SWEEPS):
-            nodes, matrix, points = self._solved(x, nodes, time, p, None)
+            nodes = self._solved(x, nodes, time, p, None)
             end = nodes[:, -1]
             speed = self._rates(end, p)
             change = -((end - self.start) @ self.normal) / (speed @ self.normal)
@@ -151,51 +148,96 @@ class ReturnMap:
             if not (np.abs(change) > EXACT * self.period).any():
                 break
         far = ~(np.abs(time) < 0.5 * self.period)
-        nodes, matrix, points = self._solved(x, nodes, time, p, None)
+        nodes = self._solved(x, nodes, time, p, None)
         end = nodes[:, -1].copy()
         end[far] = np.nan
         if not derivatives:
             return Step(end, np.empty(0), np.empty(0))
-        m = r.degree
-        jacobian = self._jacobian(points, p, None).reshape(count, m, d, d)
-        first = -time[:, None, None, None] * np.einsum("c,ncab->ncab", r.values[:, 0], jacobian)
-        first[:, :, np.arange(d), np.arange(d)] += r.slopes[:, :1]
-        by = np.zeros((count, m, d))
-        if np.isfinite(points).all():
-            by = time[:, None, None] * self.field.slope(points, p).reshape(count, m, d)
-        sides = np.concatenate([-first.reshape(count, m * d, d), by.reshape(count, m * d, 1)], axis=2)
-        found = self._linear(matrix, sides)[:, -d:]
+
+        def by(points: np.ndarray) -> np.ndarray:
+            return np.repeat(time, self.rule.degree)[:, None] * self.field.slope(points, p)
+
+        found = self._varied(x, nodes, time, p, None, by)
         speed = self._rates(end, p)
         off = np.einsum("a,nab->nb", self.normal, found) / (speed @ self.normal)[:, None]
         found = found - speed[:, :, None] * off[:, None, :]
-        return Step(end, found[:, :, :d], found[:, :, d])
+        return Step(end, found[:, :, :-1], found[:, :, -1])
+
+    def _varied(
+        self,
+        x: np.ndarray,
+        nodes: np.ndarray,
+        steps: np.ndarray,
+        p: float,
+        times: np.ndarray | None,
+        by: Callable[[np.ndarray], np.ndarray],
+    ) -> np.ndarray:
+        """Derivatives of the ends by where motions were and, in the last column, by the parameter, (n, d, d + 1)."""
+        d, m, count = self.node, self.rule.degree, len(x)
+        whole = np.concatenate([x[:, None, :], nodes], axis=1)
+        slopes = self._slopes(whole, steps, p, times)
+        points = self._points(whole)
+        last = by(points) if np.isfinite(points).all() else np.zeros((count * m, d))
+        sides = np.concatenate([-slopes[..., :d], last.reshape(count, m * d, 1)], axis=2)
+        return self._linear(slopes[..., d:], sides)[:, -d:]
+
+    def _points(self, whole: np.ndarray) -> np.ndarray:
+        """The Gauss points, shape (n m, d)."""
+        return np.matmul(self.rule.values, whole).reshape(-1, self.node)
+
+    def _slopes(self, whole: np.ndarray, steps: np.ndarray, p: float, times: np.ndarray | None) -> np.ndarray:
+        """Derivatives of the equations by the values at the nodes, the first one among them, shape (n, m d, (m + 1) d)."""
+        r, d, m = self.rule, self.node, self.rule.degree
+        jacobian = self._jacobian(self._points(whole), p, times).reshape(-1, m, d, d)
+        blocks = np.einsum("cj,ncab->ncajb", r.values, -steps[:, None, None, None] * jacobian)
+        diagonal = np.arange(d)
+        blocks[:, :, diagonal, :, diagonal] += r.slopes
+        return blocks.reshape(-1, m * d, (m + 1) * d)
 
     def _solved(
-        self, x: np.ndarray, guess: np.ndarray, steps: np.ndarray, p: float, times: np.ndarray | None
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Values at the nodes but the first, (n, m, d), the matrices of the equations there, and the Gauss points; NaN where there are none."""
-        r, d, m, count = self.rule, self.node, self.rule.degree, len(x)
-        nodes, last = np.array(guess), np.full(count, np.inf)
-        matrix, points = np.zeros((count, m * d, m * d)), np.zeros((count * m, d))
-        diagonal = np.arange(d)
-        for _ in range(SWEEPS):
+        self,
+        x: np.ndarray,
+        guess: np.ndarray,
+        steps: np.ndarray,
+        p: float,
+        times: np.ndarray | None,
+        beside: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Values at the nodes but the first, (n, m, d); NaN where there are none.
+
+        Slopes are those at a known motion, `beside`, as long as corrections shrink quickly, then those of each motion itself.
+        """
+        d, m, count = self.node, self.rule.degree, len(x)
+        nodes, last, inverse = np.array(guess), np.full(count, np.inf), np.empty(0)
+        slow = beside is None
+        for sweep in range(SWEEPS):
             whole = np.concatenate([x[:, None, :], nodes], axis=1)
-            points = np.einsum("cj,njk->nck", r.values, whole).reshape(-1, d)
-            rates = self._rates(points, p, times).reshape(count, m, d)
-            residual = np.einsum("cj,njk->nck", r.slopes, whole) - steps[:, None, None] * rates
-            jacobian = self._jacobian(points, p, times).reshape(count, m, d, d)
-            blocks = np.einsum("cj,ncab->ncajb", r.values[:, 1:], -steps[:, None, None, None] * jacobian)
-            blocks[:, :, diagonal, :, diagonal] += r.slopes[:, 1:]
-            matrix = blocks.reshape(count, m * d, m * d)
-            change = self._linear(matrix, -residual.reshape(count, m * d, 1)).reshape(count, m, d)
+            if slow or sweep == 0:
+                known, own = (
+                    (whole, times)
+                    if beside is None or slow
+                    else (beside, times if times is None else times[:m])
+                )
+                inverse = self._inverse(self._slopes(known, steps[: len(known)], p, own)[..., d:])
+            rates = self._rates(self._points(whole), p, times).reshape(count, m, d)
+            residual = np.matmul(self.rule.slopes, whole) - steps[:, None, None] * rates
+            change = -np.matmul(inverse, residual.reshape(count, m * d, 1)).reshape(count, m, d)
             nodes = nodes + change
             size = np.abs(change / (self.scale + np.abs(nodes))).max(axis=(1, 2))
             done = (size < EXACT) | ((size < ROUNDED) & (size > 0.3 * last)) | ~np.isfinite(size)
-            last = size
+            slow, last = bool((size > QUICK * last)[~done].any()), size
             if done.all():
                 break
         nodes[~(last < ROUNDED)] = np.nan
-        return nodes, matrix, points
+        return nodes
+
+    @staticmethod
+    def _inverse(matrix: np.ndarray) -> np.ndarray:
+        found = np.full(matrix.shape, np.nan)
+        good = np.isfinite(matrix).all(axis=(1, 2))
+        with contextlib.suppress(np.linalg.LinAlgError):
+            found[good] = np.linalg.inv(matrix[good])
+        return found
 
     @staticmethod
     def _linear(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:

@@ -19,9 +19,11 @@ from itertools import combinations_with_replacement, product
 from typing import Any
 
 import numpy as np
+from scipy.linalg import qr
 
 NODES = 26  # samples along a line
 SPREAD = 1.3  # directions per monomial
+CANDIDATES = 8  # random directions from which each is chosen
 WIDEST, NARROWEST, NARROWER = (
     0.6,
     4e-3,
@@ -131,28 +133,20 @@ class Reduction:
     def _left_over(self, degree: int) -> np.ndarray:
         """Taylor coefficients of this degree of what is left over, shape (number of monomials, N)."""
         wanted = monomials(self.m, degree)
-        count = int(np.ceil(SPREAD * len(wanted))) + 1
-        if self.m == 1:
-            lines = np.ones((1, 1))
-        elif self.m == 2:
-            angles = np.pi * (np.arange(count) + 0.25) / count
-            lines = np.column_stack([np.cos(angles), np.sin(angles)])
-        else:
-            lines = np.random.default_rng(3).standard_normal((4 * count, self.m))
-            lines /= np.linalg.norm(lines, axis=1)[:, None]
+        lines = directions(self.m, degree)
         nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
-        weights = fit_weights(degree)
-        sizes = np.abs(lines @ self.real.T @ np.eye(self.m)).max(axis=1)
-        values = []
-        for line, size in zip(lines, sizes):
-            r = self.radius / (size * max(float(np.abs(self.vectors).max()), np.finfo(float).tiny))
-            with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
-                samples = self._rest(np.outer(r * nodes, self.real @ line))
-            if not np.isfinite(samples).all():
-                raise ValueError("the equations cannot be evaluated near the special point")
-            values.append(weights @ samples / r**degree)
-        table = powers(lines @ self.real.T, wanted)
-        return np.linalg.lstsq(table, np.array(values).astype(complex), rcond=None)[0]
+        points = lines @ self.real.T
+        sizes = np.abs(points).max(axis=1) * max(float(np.abs(self.vectors).max()), np.finfo(float).tiny)
+        radii = self.radius / sizes
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
+            samples = self._rest(
+                ((radii[:, None] * nodes)[:, :, None] * points[:, None, :]).reshape(-1, self.m)
+            )
+        if not np.isfinite(samples).all():
+            raise ValueError("the equations cannot be evaluated near the special point")
+        samples = samples.reshape(len(lines), NODES, -1)
+        values = np.einsum("k,lkn->ln", fit_weights(degree), samples) / radii[:, None] ** degree
+        return np.linalg.lstsq(powers(points, wanted), values.astype(complex), rcond=None)[0]
 
     # ------------------------------------------------------------------ what balances it
     def _balance(self, degree: int) -> None:
@@ -187,6 +181,27 @@ class Reduction:
             self.H[wanted[b]] = found[row * n : (row + 1) * n]
         for k, (i, b) in enumerate(allowed):
             self.N.setdefault(wanted[b], np.zeros(self.m, dtype=complex))[i] = found[size + k]
+
+
+@cache
+def directions(m: int, degree: int) -> np.ndarray:
+    """Lines through the origin in m real coordinates that tell the monomials of a degree apart well, unit vectors of shape (n, m)."""
+    wanted = monomials(m, degree)
+    count = int(np.ceil(SPREAD * len(wanted))) + 1
+    if m == 1:
+        return np.ones((1, 1))
+    if m == 2:
+        angles = np.pi * (np.arange(count) + 0.25) / count
+        return np.column_stack([np.cos(angles), np.sin(angles)])
+    lines = np.random.default_rng(3).standard_normal((CANDIDATES * count, m))
+    lines /= np.linalg.norm(lines, axis=1)[:, None]
+    chosen: list[int] = []
+    left = np.arange(len(lines))
+    while len(chosen) < count:  # those whose monomials are most independent, then once more of what is left
+        pivots = np.asarray(qr(powers(lines[left], wanted).T, mode="r", pivoting=True)[-1])[: len(wanted)]
+        chosen += left[pivots].tolist()
+        left = np.delete(left, pivots)
+    return lines[chosen[:count]]
 
 
 def _less(exponents: Monomial, j: int) -> Monomial:

@@ -183,18 +183,21 @@ def fold_and_flip(x, p):
 
 
 @pytest.mark.parametrize(
-    ("f", "label", "kind"),
+    ("f", "label", "kind", "p11"),
     [
-        (flip_and_pair, "PD1", "flip-neimark-sacker"),
-        (two_pairs, "NS1", "double-neimark-sacker"),
+        (flip_and_pair, "PD1", "flip-neimark-sacker", -2 * np.pi),
+        (two_pairs, "NS1", "double-neimark-sacker", -4 * np.pi),
     ],
 )
-def test_two_things_at_once_beside_a_ring(f, label, kind):
+def test_two_things_at_once_beside_a_ring(f, label, kind, p11):
     flow = cv.FlowProblem(f, [1.0, 0, 0, 0, 0, 0], {"a": -0.3, "b": 0.12}, scale=1.0)
     graph = cv.diagram(ring_orbit(flow, 0.0, 0.0, 0.0, 0.0), over="a", within=(-0.5, 0.05), depth=0)
     locus = cv.locus(graph[label], over="b", within=(-0.2, 0.2))
     (point,) = (point for point in locus.points.values() if point.kind == kind)
     assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
+    # amplitudes that fall by their cubes for the time 2 pi, of pairs (of length one as real vectors) twice that, and do not see each other
+    for name, value in {"p11": p11, "p12": 0.0, "p21": 0.0, "p22": -4 * np.pi}.items():
+        assert point.coefficients[name] == pytest.approx(value, abs=1e-8)
 
 
 def test_period_doublings_touch_the_folds_of_cycles():
