@@ -172,7 +172,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         if (len(root.word), root.periods) == (len(self.word), self.periods):
             return None
         found = self.sibling(root.word, root.periods, root.symmetric)
-        return found, found.reduce(root.nodes)
+        return found, found.reduce(root.nodes if len(self.word) else self.expand(u, p))
 
     def sibling(
         self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
@@ -266,7 +266,9 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     def orbit(self, u: np.ndarray, p: float) -> Orbit:
         """The solution as an `orbits.orbit.Orbit`."""
-        return Orbit(self.model, self.word, self.periods, self.expand(u, p), self.values(p))
+        nodes = self.expand(u, p)
+        nodes = nodes if len(self.word) else nodes[:1]
+        return Orbit(self.model, self.word, self.periods, nodes, self.values(p))
 
     def amplitude(self, direction: np.ndarray) -> float:
         """Length of a direction as normal forms measure it: Euclidean, over the first node."""

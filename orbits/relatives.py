@@ -61,12 +61,13 @@ class Relatives:
 
     @cached_property
     def _images(self) -> tuple[Symmetry, ...]:
-        if self.symmetric or not len(self.word):
+        if self.symmetric or not self.word.modes:
             return ()
         found = []
         for places in self._mirror_places() if self.mirrored else ():
             found.append(self._mirrored_on(places))
-        if self.word.repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
+        repetitions = self.word.repetitions if len(self.word) else self.length
+        if repetitions % 2 == 0 and (not self.forced or self.periods % 2 == 0):
             periods = self.periods // 2 if self.forced else 1
             root = self._root(self.word.head(len(self.word) // 2), periods, symmetric=False)
             found.append(Symmetry("period-doubling", lambda u: self._rotated(u, self.length // 2, 1.0), root))
@@ -125,7 +126,7 @@ class Relatives:
             image[:, 0] *= -1.0
             direction = np.concatenate([along, image.ravel(), tangent[-1:]])
             return [Embedding(full, full.reduce(self.expand(u, p)), direction, kind)]
-        if kind == "period-doubling" and not self.symmetric and len(self.word):
+        if kind == "period-doubling" and not self.symmetric and self.word.modes:
             periods = 2 * self.periods if self.forced else 1
             double = self.sibling(self.word.double(), periods, symmetric=False)
             nodes = self.expand(u, p)

@@ -104,8 +104,8 @@ def _forced(
             points.append(run.y[:, -1])
             low, high = np.minimum(low, run.y.min(axis=1)), np.maximum(high, run.y.max(axis=1))
             own = (high - low) / field.lengths
-            size = field.lengths * np.maximum(own, LEAST * own.max() + 1e-12)
-            if (np.abs(points[-1] - points[0]) <= RECURS * size).all():
+            near = RECURS * np.maximum(own, LEAST * own.max()) + STILL
+            if (np.abs(points[-1] - points[0]) <= near * field.lengths).all():
                 whole = _run(field, p, points[0], 0.0, k * period, dense=True)
                 times = np.linspace(0.0, k * period, SAMPLES * k + 1)
                 return times, whole.sol(times).T, k

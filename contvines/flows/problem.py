@@ -15,7 +15,7 @@ from ..problems.protocol import Seed
 from ..problems.registry import addresses
 from ..problems.scales import flat_start, given_scale
 from . import mesh
-from .attractors import Stopped, recurrence
+from .attractors import STILL, Stopped, recurrence
 from .collocation import rule
 from .compiled import CompiledRates
 from .cycles import CycleProblem
@@ -332,7 +332,9 @@ class FlowProblem:
         field, d = self.field.against(parameters), len(self.x0)
         ranges = np.ptp(states, axis=0)
         given = given_scale(self.given_scale, d)
-        scale = np.maximum(ranges, 1e-3 * ranges.max() or 1.0) if given is None else given
+        moves = (ranges > STILL * field.lengths).any()
+        own = np.maximum(ranges, 1e-3 * ranges.max()) if moves else field.lengths
+        scale = own if given is None else given
         copies = 1 if field.forced and rounds % 2 else 2
         count = INTERVALS * (rounds if field.forced else 1)
         unit, clock = abs(parameters.start) or 1.0, float(times[-1] - times[0])
@@ -346,7 +348,8 @@ class FlowProblem:
                 "Newton's method does not converge from these states; give a longer transient=, or more exact states"
             )
         cycles, u = found
-        if np.ptp(u[: cycles.states].reshape(-1, d) / scale, axis=0).max() < 1e-6:
+        # rest of a forced flow is a motion with the period of its forcing
+        if not field.forced and np.ptp(u[: cycles.states].reshape(-1, d) / scale, axis=0).max() < 1e-6:
             raise ValueError("Newton's method leads from these states to an equilibrium, not to a cycle")
         name = cycles.crossed(u, parameters.start)
         if name is not None:

@@ -305,7 +305,7 @@ def polished(orbit: Orbit, far: float = 0.1) -> Orbit | None:
     problem = orbit.system(symmetric=False)
     p = problem.value(orbit.params)
     u, residual = solved_at(problem, problem.reduce(orbit.nodes), p, EXACT)
-    nodes = problem.expand(u)
+    nodes = problem.expand(u)[: len(orbit.nodes)]
     near = far * (1.0 + np.abs(orbit.nodes[:, 1:]).max())
     moved = nodes - orbit.nodes
     for entry in orbit.flow.loose(orbit.model, word):  # shifted as a whole it is the same motion

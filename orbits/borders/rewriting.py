@@ -11,6 +11,7 @@ from orbits.contacts.changes import Spot
 from orbits.flows.protocol import FIRST
 from orbits.orbit import Orbit
 from orbits.words.edit import Edit
+from orbits.words.margins import place_of
 from orbits.words.rewriting import applied, changes_at, spliced
 from orbits.words.word import Word
 
@@ -32,7 +33,7 @@ def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
     found = orbit.flow.vanishing(orbit, index, unit or len(orbit.word))
     if found is None:
         return []
-    place = index // len(orbit.word.alphabet.columns)
+    place, _ = place_of(orbit.word, index)
     changes = changes_at(found.site, found.watched)
     return [Edit(change, orbit.flow.placed(orbit, found, place, change)) for change in changes]
 

@@ -24,12 +24,12 @@ def size_of_one(nodes: np.ndarray) -> float:
 def root_orbit(
     word: Word, periods: int, nodes: np.ndarray, *, forced: bool = True, same: float = SAME
 ) -> tuple[Word, int, np.ndarray]:
-    """The shortest orbit of which this one is a repetition: its word, periods and nodes (l, n)."""
-    most = min(word.repetitions, periods) if forced else word.repetitions
-    for times in range(most, 1, -1):
-        if word.repetitions % times or (forced and periods % times):
+    """The shortest orbit of which this one is a repetition: its word, periods and nodes (l, n), without events one per forcing period."""
+    repetitions = word.repetitions if len(word) else len(nodes)
+    for times in range(min(repetitions, periods) if forced else repetitions, 1, -1):
+        if repetitions % times or (forced and periods % times):
             continue
-        length = len(word) // times
+        length = len(nodes) // times
         shifted = nodes[length:].copy()
         if forced:
             shifted[:, 0] -= 2.0 * np.pi * (periods // times)
@@ -92,6 +92,8 @@ def canonical(
     else:
         flat, image = nodes, np.r_[1.0, np.full(nodes.shape[1] - 1, -1.0)]
     readings = word.readings(mirror)
+    if not len(word):
+        readings = [(mirrored, k) for mirrored, _ in readings for k in range(len(nodes))]
     best, best_score = readings[0], -np.inf
     if len(readings) > 1:
         size, images = flat.size, (flat.ravel(), (image * flat).ravel())

@@ -46,7 +46,7 @@ def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     u, residual = solved_at(system, system.reduce(orbit.nodes), value, TOLERANCE, limit)
     if not residual < 1e-9 * max(1.0, float(np.abs(u).max())):
         return None
-    nodes = system.expand(u, value)
+    nodes = system.expand(u, value)[: len(orbit.nodes)]
     if orbit.forced:
         nodes[:, 0] -= 2.0 * np.pi * np.floor(nodes[0, 0] / (2.0 * np.pi))
     return replace(orbit, nodes=nodes)

@@ -38,9 +38,9 @@ class Margin:
 
 
 def place_of(word: Word, index: int) -> tuple[int, int]:
-    """The event to which margin `index` belongs, and what it watches: a contact, or one of `Watch`."""
+    """The event to which margin `index` belongs (without events the first node), and what it watches: a contact, or one of `Watch`."""
     place, column = divmod(index, len(word.alphabet.columns))
-    return place, word.alphabet.columns[column]
+    return place if len(word) else 0, word.alphabet.columns[column]
 
 
 def index_of(word: Word, place: int, watch: int) -> int:
@@ -80,7 +80,7 @@ def approaches_of(word: Word, margins: np.ndarray) -> np.ndarray:
 
 
 def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
-    """What margins of one are in a length and a rate, an entry per margin."""
+    """What margins of one are in a length and a rate, an entry per margin, or one for all."""
     length, rate = units
     sizes = {
         "flight": length * rate,
@@ -92,10 +92,9 @@ def margin_units(word: Word, units: tuple[float, float]) -> np.ndarray:
         "hold": 1.0 / rate,
         "duration": 1.0 / rate,
     }
-    count = len(word.alphabet.columns) * max(len(word), 1)
     if not len(word) or (length == 1.0 and rate == 1.0):
-        return np.ones(count)
-    return np.array([sizes[margin_name(word, index)] for index in range(count)])
+        return np.ones(1)
+    return np.array([sizes[margin_name(word, i)] for i in range(len(word.alphabet.columns) * len(word))])
 
 
 def named_margins(word: Word, values: np.ndarray) -> list[Margin]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
-from orbits.flows.page import flights, loci
+from orbits.flows.page import flights, loci, sampling
 from orbits.flows.page.margins import fill_margins, owned
 from orbits.flows.plain_kernels import PLAIN, PlainKernels
 from orbits.flows.protocol import Approach
@@ -121,8 +121,9 @@ class PageEquations:
         self.symmetric, self.forced = bool(symmetric), machine.forced
         self.mirrored = machine.has_mirror(self.params, parameter)
         self.size, self.contacts = machine.size, len(machine.contacts)
-        whole = max(1, len(word))
-        self.length = whole if not symmetric or not len(word) else whole // 2
+        # a forced motion without events has a node for each of its forcing periods: doubled it is one with twice as many
+        whole = len(word) or (self.periods if self.forced and not symmetric else 1)
+        self.length = whole // 2 if symmetric and len(word) else whole
         self.dimension = self.length * (self.size + 1)
         self.twist = -1.0 if symmetric else 1.0
         self.shift = (0.5 if symmetric else 1.0) * TURN_OF_PHASE * self.periods if self.forced else 0.0
@@ -303,5 +304,7 @@ class PageEquations:
         return image
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
-        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        """Unknowns, shape (N,), from the nodes of the whole cycle; of a motion without events the first node tells the others."""
+        if len(nodes) < self.length:
+            nodes = sampling.strobed(self.machine, self.word, self.periods, nodes[0], self.params)[:-1]
         return np.array(nodes[: self.length], dtype=float, order="C").ravel()

@@ -147,15 +147,15 @@ def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
     residual, own, following, derivative = work.residual, work.own, work.following, work.derivative
     last = work.last_rates
     for values, places, jumps in data.event_groups:
-        if values is None:  # the strobe of a motion without events: at phase zero
-            residual[0, 0] = end[0] - data.shift
-            residual[0, 1:] = arrival[0] - onward[0]
-            own[0], following[0] = 0.0, data.minus
-            own[0, 1:, 1:] = by_state[0]
-            own[0, 1:, 0] = -by_state[0] @ work.first_rates[0]
-            following[0, 0, 0] = 1.0
-            following[0, 1:, 0] = last[0]
-            derivative[0, 0], derivative[0, 1:] = 0.0, by_number[0]
+        if values is None:  # the strobes of a motion without events: at phase zero
+            residual[:, 0] = end - data.shift * np.arange(1, length + 1) / length
+            residual[:, 1:] = arrival - onward
+            own[:], following[:] = 0.0, data.minus
+            own[:, 1:, 1:] = by_state
+            own[:, 1:, 0] = -(by_state @ work.first_rates[:, :, None])[:, :, 0]
+            following[:, 0, 0] = 1.0
+            following[:, 1:, 0] = last
+            derivative[:, 0], derivative[:, 1:] = 0.0, by_number
             continue
         table = values(arrival[places], end[places], numbers[places]).reshape(len(places), -1, n + 3)
         # columns of `table`: value, by states, by clock, by the parameter; rows: g, then J

@@ -71,7 +71,9 @@ class PageFlow:
 
     def strobed(self, motion: Motion) -> np.ndarray:
         """See `orbits.flows.page.sampling.strobed`."""
-        return sampling.strobed(motion)
+        return sampling.strobed(motion.model, motion.word, motion.periods, motion.nodes[0], motion.params)[
+            :, 1:
+        ]
 
     def measure_names(self, model: Machine) -> tuple[str, ...]:
         """See `orbits.flows.page.measures.names`."""
@@ -127,16 +129,15 @@ class PageFlow:
         return float(rebound(node[None, 1:], clock, numbers[None])[0, 1])
 
     def without_events(self, motion: Motion) -> np.ndarray:
-        """The node at phase zero; of a self-excited motion at the extreme of the first state that moves."""
-        table = sampling.sample(motion, 4000)
+        """The nodes at phase zero; of a self-excited motion at the extreme of the first state that moves."""
         if not motion.model.forced:
+            table = sampling.sample(motion, 4000)
             states = np.column_stack([table[name] for name in motion.model.states])
             e = motion.model.equations
             first = moving(e, e.pattern(e.pattern_key(motion.word.modes[-1])).rates)
             return np.array([[motion.durations.sum(), *states[int(np.argmax(states[:, first]))]]])
-        phase = table["phase"] / (2.0 * np.pi)
-        k = int(np.argmin(np.abs(phase - np.round(phase))))
-        return np.array([[0.0, *(table[name][k] for name in motion.model.states)]])
+        phases = 2.0 * np.pi * np.arange(motion.periods)
+        return np.column_stack([phases, sampling.states_at(motion, phases)])
 
 
 def unmoved(machine: Machine) -> list[int]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.flows.protocol import Motion
+from orbits.machines.page.machine import Machine
+from orbits.words import Word
 
 
-def strobed(orbit: Motion) -> np.ndarray:
-    """States of a motion without events, once per forcing period from its node on to its return, shape (periods + 1, n)."""
-    grid = orbit.nodes[0, 0] + 2.0 * np.pi * np.arange(orbit.periods + 1)
-    mode = orbit.word.modes[0]
-    watch = orbit.model.compiled.watch(orbit.model.equations.pattern_key(mode))
-    return watch.path(orbit.nodes[0, 1:], grid, orbit.model.compiled.numbers(orbit.params, mode))
+def strobed(machine: Machine, word: Word, periods: int, node: np.ndarray, params: np.ndarray) -> np.ndarray:
+    """Nodes of a motion without events, once per forcing period from one of them on to its return, shape (periods + 1, n + 1)."""
+    clocks, mode = node[0] + 2.0 * np.pi * np.arange(periods + 1), word.modes[0]
+    watch = machine.compiled.watch(machine.equations.pattern_key(mode))
+    return np.column_stack([clocks, watch.path(node[1:], clocks, machine.compiled.numbers(params, mode))])
 
 
 def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:

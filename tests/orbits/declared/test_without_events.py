@@ -63,8 +63,58 @@ def test_what_does_not_return_is_no_rest():
     )  # a positive Lyapunov exponent, by other programs as well
 
 
-def test_at_its_period_doubling_the_table_says_that_nothing_is_followed():
-    graph = cv.diagram(MACHINE.attractor(), over="forcing", within=(0.19, 0.29), depth=1)
-    assert graph["PD1"].value > 0.2 and "twice the period leaves here" in str(graph)
-    at = graph["PD1"].value
-    assert [period_of(at + off, graph["PD1"].u[1:])[0] for off in (-0.004, 0.004)] == [1, 2]
+def test_the_doubled_motion_is_followed():
+    """Beyond the doubling the motion that another integrator settles on is that of the branch which leaves there."""
+    graph = cv.diagram(MACHINE.attractor(), over="forcing", within=(0.19, 0.283), depth=1)
+    at, near = graph["PD1"].value, graph["PD1"].u[1:3]
+    assert [s.target for s in graph.switches if s.point == "PD1"] == ["B2"]
+    assert at > 0.2 and period_of(at - 0.004, near)[0] == 1
+    branch = graph["B2"]
+    k = int(np.argmin(np.abs(branch.values - 0.28)))
+    periods, state = period_of(branch.values[k], near)
+    orbit = branch.orbit(k)
+    assert periods == orbit.periods == 2 and orbit.stable and orbit.replay() < 1e-9
+    assert np.abs(branch.points[k].reshape(2, 3)[:, 1:] - state).max(axis=1).min() < 1e-6
+
+
+def rocking(state, phase, p, contact):
+    """Mathieu's equation with damping that grows with the square of the way."""
+    x, v = state
+    return v, -(2.0 * p.damping + p.drag * x**2) * v - (1.0 + p.depth * cos(phase)) * x
+
+
+MATHIEU = Machine(
+    name="mathieu",
+    states=("x", "v"),
+    parameters={"depth": 0.5, "frequency": 1.5, "damping": 0.05, "drag": 1.0, "gap": 10.0},
+    phase_rate="frequency",
+    motion=rocking,
+    contacts=[Wall("R", lambda state, phase, p: p.gap - state.x, {"v": -1.0}, 0.8)],
+)
+
+
+FLOW = cv.FlowProblem(
+    lambda x, p, t: [x[1], -(0.1 + x[0] ** 2) * x[1] - (1.0 + 0.5 * np.cos(p["frequency"] * t)) * x[0]],
+    [0.1, 0.0],
+    {"frequency": 1.5},
+    period=lambda p: 2.0 * np.pi / p["frequency"],
+)
+
+
+@pytest.mark.parametrize(
+    "start", [lambda: MATHIEU.attractor({"x": 0.0, "v": 0.0}), lambda: FLOW], ids=["page", "flow"]
+)
+def test_a_doubled_motion_comes_back_to_the_branch_that_it_has_left(start):
+    """Rest loses its stability where Mathieu's equation has the multiplier -1, and has it again at the other end of the tongue."""
+
+    def multiplier(frequency):
+        def rates(t, y):
+            return *y[2:], *(-0.1 * y[2:] - (1.0 + 0.5 * np.cos(frequency * t)) * y[:2])
+
+        y = solve_ivp(rates, (0.0, 2 * np.pi / frequency), [1, 0, 0, 1], "DOP853", rtol=1e-12, atol=1e-13).y
+        return np.linalg.eigvals(y[:, -1].reshape(2, 2)).real.min()
+
+    graph = cv.diagram(start(), over="frequency", within=(1.4, 2.9), depth=2)
+    assert len(graph) == 2 and [label for _, label in graph["B2"].marks] == ["PD1", "PD2"]
+    for label in ("PD1", "PD2"):
+        assert multiplier(graph[label].value) == pytest.approx(-1.0, abs=1e-8)
