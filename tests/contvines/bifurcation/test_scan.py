@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from contvines.bifurcation.detect import Detector
+from contvines.bifurcation.kinks import nearest, pointed
 from contvines.bifurcation.scan import NativeScan, with_arrays
 from contvines.bifurcation.symmetry_test import SymmetryTest
 from contvines.continuation.arrays import Metric
@@ -136,3 +137,24 @@ def test_of_a_quiet_chunk_no_segment_is_searched(seed):
     drawn = Chunk(points, values, slopes, rows, signs, np.zeros(count), Status.RUNNING)
     if in_native(engine, [], drawn).quiet:
         assert detector.look(drawn, with_arrays(engine, [], drawn)) == []
+
+
+@pytest.mark.skipif(not native(), reason="no native core")
+@given(st.integers(0, 2**32 - 1))
+def test_no_kink_hides_in_a_quiet_chunk(seed):
+    """A distance from the circle that two straight lines bring to zero within a segment is seen by the scan, too: 2 of a parabola's 1/2 is more than 1.5."""
+    rng = np.random.default_rng(seed)
+    count, engine = rng.integers(3, 9), Shown(1, 1, 0, rng.choice(["map", "flow"]))
+    engine.many = False
+    lengths = rng.uniform(0.2, 1.0, count - 1) * rng.choice([0.1, 1.0], count - 1)
+    place = np.append(0.0, np.cumsum(lengths))
+    corner = rng.uniform(-0.2, 1.2) * place[-1]
+    sides = np.where(place < corner, *rng.uniform(0.1, 2.0, 2))
+    distances = sides * np.abs(place - corner) + rng.choice([1e-9, 0.05]) * rng.uniform(0.5, 1.0, count)
+    rows = np.column_stack([np.exp(-distances) if engine.detection == "map" else -distances, 0.0 * place])
+    points = place[:, None] / np.sqrt(1.25)
+    drawn = chunk(points, place / np.sqrt(1.25), rows)
+    scanned = in_native(engine, [], drawn)
+    np.testing.assert_allclose(scanned.lengths, lengths, rtol=1e-12)
+    if pointed(nearest(engine, rows), np.ones(count), lengths).any():
+        assert not scanned.quiet
