@@ -28,13 +28,13 @@ copybutton_prompt_text = r"\$ |>>> "
 copybutton_prompt_is_regexp = True
 
 myst_heading_anchors = 3
-myst_enable_extensions = ["dollarmath"]
 
 # notebooks are pages of Markdown whose cells the build runs; a cell that fails, fails the build
 os.environ["PATH"] = os.pathsep.join(
     [os.path.dirname(sys.executable), os.environ.get("PATH", "")]
 )  # cells call `contvines`
 os.environ["CONTVINES_DOCS"] = str(HERE)
+os.environ["COLUMNS"] = "104"  # printed tables are as wide as a page
 os.environ["CONTVINES_PROGRESS"] = "off"  # pages show results, not the way to them
 nb_execution_mode = "auto"
 nb_execution_in_temp = True

@@ -1,4 +1,4 @@
-"""Pages of the gallery, made when the site is built: each example with its picture, what it says of itself, and its text."""
+"""Pages of the gallery, made when the site is built: each example with its picture, its command and its source."""
 
 from __future__ import annotations
 
@@ -53,12 +53,12 @@ def listed() -> list[Example]:
 
 
 def _title(path: Path) -> str:
-    """The beginning of what a file says at its top."""
+    """The first sentence at the top of a file."""
     source = path.read_text(encoding="utf-8")
     if path.suffix == ".py":
         text = ast.get_docstring(ast.parse(source)) or path.stem
     else:
-        lines = [line for line in source.split("\n\n")[0].splitlines() if line.startswith("#")]
+        lines = [line for line in source.split("\n\n")[0].splitlines() if re.match(r"#[^:]", line)]
         text = "\n".join(line.lstrip("# ") for line in lines) or path.stem
     first = " ".join(text.split("\n\n")[0].split())
     title = first.split(". ")[0].split(": ")[0].rstrip(".")
@@ -68,7 +68,7 @@ def _title(path: Path) -> str:
 def write(target: Path) -> None:
     """Write the gallery's first page and a page of every example into a folder."""
     target.mkdir(exist_ok=True)
-    lines = ["# Gallery", "", "Every example of the repository; a picture leads to its text.", ""]
+    lines = ["# Gallery", "", "Every example of the repository; a picture leads to its page.", ""]
     names = []
     for group, (_, sentence) in GROUPS.items():
         members = [example for example in listed() if example.group == group]

@@ -130,4 +130,4 @@ def test_commands_named_are_commands():
     rest = README[README.index("`contvines --help` lists the rest") :].split("\n")[0]
     assert named | set(re.findall(r"`(\w+)`", rest)) == real
     reference = (TOP / "docs/reference.md").read_text(encoding="utf-8")
-    assert set(re.findall(r"^contvines (\w+)", reference, re.MULTILINE)) == real
+    assert set(re.findall(r"^\| `(\w+)`", reference, re.MULTILINE)) == real

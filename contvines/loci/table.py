@@ -115,7 +115,7 @@ def _stable(region: Region, at: Callable[..., str]) -> str:
         f"{', '.join(map(short_word, words)) or '-'} at {at(place, 1, 4)}, {at(place, 0, 4)}"
         for place, words in region.others
     ]
-    return f"{told}; not all over it: {'; '.join(apart)}"
+    return f"{told}; elsewhere in the region: {'; '.join(apart)}"
 
 
 def _word(locus: Locus) -> str:

@@ -230,7 +230,7 @@ def _name(axes: Axes, chart: Chart, taken: list[Box]) -> list[Box]:
         for count in (4, 2, 1):  # fewer words where there is little room
             names = [short_word(word, 16) for word in region.words[:count]]
             more = [f"+{len(region.words) - count}"] if len(region.words) > count else []
-            more += ["(not all over)"] if region.others else []
+            more += ["(in part)"] if region.others else []
             look = {"ha": "center", "va": "center", "fontsize": "x-small", "color": "0.25", "zorder": 4}
             text = axes.text(*region.at, "\n".join([*names, *more]), **look)
             if (box := _room_for(axes, chart, region, text, taken)) is not None:

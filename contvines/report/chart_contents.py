@@ -95,7 +95,7 @@ def _region(region: Region, parameters: tuple[str, str]) -> dict[str, Any]:
     told = region.to_dict(parameters)
     if region.others:
         apart = dict.fromkeys(", ".join(words) or "nothing" for _, words in region.others)
-        name, short = f"{name}; elsewhere in it {', or '.join(apart)}", f"{short}<br>(not all over)"
+        name, short = f"{name}; elsewhere in it {', or '.join(apart)}", f"{short}<br>(in part)"
     return {"at": told["at"], "share": told["share"], "name": name, "short": short}
 
 

@@ -1,6 +1,6 @@
-"""Ten machines on a page each: one diagram per machine, from the pages beside this file.
+"""Ten declared machines: one diagram of each, from the machine files beside this one.
 
-Each panel is an automatic diagram of a page of at most thirty lines; dots are attractors that simulation reaches from
+Each panel is an automatic diagram of a machine of at most thirty lines; crosses are attractors that simulation reaches from
 random starts. `python examples/machines/draw.py [FOLDER] [NAME ...]` draws them all, or only those named.
 """
 
@@ -15,7 +15,7 @@ from orbits.machines.page.loading import load_page
 PAGES = Path(__file__).resolve().parent
 GREY = "#9a9a9a"
 
-# page: parameter, interval, measure, depth, how the first orbit is found, what a panel is called
+# machine file: parameter, interval, measure, depth, how the first orbit is found, what a panel is called
 RUNS = {
     "impact_oscillator": ("frequency", (2.05, 3.2), "approach_speed", 2, {}, "rigid impact oscillator"),
     "bouncing_ball": (
@@ -37,7 +37,7 @@ RUNS = {
 
 
 def diagram(name: str):
-    """The machine of a page and its diagram."""
+    """A declared machine and its diagram."""
     machine = load_page(PAGES / f"{name}.py", "machine")
     parameter, within, _, depth, how, _ = RUNS[name]
     given = dict(how)
@@ -64,26 +64,14 @@ def simulated(machine, name: str, count: int = 24) -> list[tuple[float, float]]:
     return found
 
 
-def draw(axes, name: str) -> None:
+def draw(axes, name: str, legend: str | bool = False) -> None:
     """One panel."""
     machine, graph = diagram(name)
-    parameter, _, measure, _, _, title = RUNS[name]
-    for branch in graph.branches.values():
-        heights = branch.measure(measure)
-        stable = np.array(branch.stable, dtype=bool)
-        axes.plot(branch.values, heights, ":", color="#1f4e79", lw=1.0)
-        axes.plot(branch.values, np.where(stable, heights, np.nan), "-", color="#1f4e79", lw=1.8)
-    for point in graph.special.values():
-        if point.kind == "end":
-            continue
-        height = graph.branches[point.branch].problem
-        if height.dimension != len(point.u):
-            continue
-        value = height.measures((measure,), point.u[None], np.array([point.value]))[measure][0]
-        axes.plot(point.value, value, "o", mfc="white", mec="#b5531c", ms=4.0)
+    _, _, measure, _, _, title = RUNS[name]
+    graph.plot(y=measure, axes=axes, legend=legend)
     for value, height in simulated(machine, name):
         axes.plot(value, height, "x", color=GREY, ms=4.5, zorder=0)
-    axes.set(title=title, xlabel=parameter, ylabel=measure.replace("_", " "))
+    axes.set_title(title)
     kinds = sorted({p.kind for p in graph.special.values() if p.kind != "end"})
     print(f"{name}: {len(graph.branches)} branches; {', '.join(kinds)}")
     worst = max((p.replay for p in graph.special.values() if p.replay is not None), default=0.0)
@@ -98,15 +86,14 @@ def main() -> None:
     names = sys.argv[2:] or list(RUNS)
     columns = min(3, len(names))
     rows = -(-len(names) // columns)
-    figure, panels = plt.subplots(
-        rows, columns, figsize=(4.0 * columns, 3.0 * rows), layout="constrained", squeeze=False
-    )
+    size = (5.2, 3.4) if len(names) == 1 else (4.0 * columns, 3.0 * rows)
+    figure, panels = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
     for axes, name in zip(panels.flat, names):
-        draw(axes, name)
+        draw(axes, name, legend=len(names) == 1)
     for axes in list(panels.flat)[len(names) :]:
         axes.set_axis_off()
     folder.mkdir(parents=True, exist_ok=True)
-    figure.savefig(folder / "machines.png", dpi=110)
+    figure.savefig(folder / "machines.png", dpi=160)
     print(folder / "machines.png")
 
 

@@ -1,4 +1,4 @@
-"""Writes docs/demos.md from the table.
+"""Writes docs/demos.md and docs/demos_cycles.md from the tables.
 
 python -m tools.demos.make_page
 """
@@ -10,17 +10,18 @@ from pathlib import Path
 
 from contvines.bifurcation.kinds import BY_NAME
 
-from ..flow_demos.page import cycles
+from ..flow_demos.page import cycles_page
 from . import listed, maps
 from .make_table import TABLE
 from .units import SETS, UNITS
 
-PAGE = Path(__file__).parents[2] / "docs" / "demos.md"
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = DOCS / "demos.md", DOCS / "demos_cycles.md"
 HEAD = """# Demos of other packages
 
 {demos} problems of equilibria and maps that come with AUTO-07p, MatCont, MatContM, BifurcationKit, PyDSTool, COCO and XPPAUT, or stand in
 textbooks, with the equations and starts of their sources, unscaled, and with plain settings: `cv.diagram(problem, within=...)`. All
-{points} special points are found, and no others.
+{points} special points are found, and no others. [Cycles of flows](demos_cycles.md) have a page of their own.
 
 The values are not this package's: each is a solution, in thirty digits, of its defining equations (F = 0 with a singular Jacobian, a
 vanishing Hurwitz determinant, a multiplier -1, a product of multipliers 1). The package agrees with each to 1e-10 or better, most to
@@ -83,9 +84,9 @@ def render() -> str:
             )
             lines.append("| " + " | ".join(cells) + " |")
         lines.append("")
-    lines += cycles()
     return "\n".join(lines).rstrip() + "\n"
 
 
 if __name__ == "__main__":
-    PAGE.write_text(render(), encoding="utf-8")
+    for path, text in zip(PAGES, (render(), cycles_page())):
+        path.write_text(text, encoding="utf-8")

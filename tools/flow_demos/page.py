@@ -1,4 +1,4 @@
-"""The part of docs/demos.md on cycles."""
+"""The page docs/demos_cycles.md."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .listed import DEMOS, PRINTED
 from .make_table import TABLE
 
 LABELS = {kind.name: kind.label for kind in KINDS}
-HEAD = """## Cycles
+HEAD = """# Demos of other packages: cycles
 
 Demos whose flows have cycles, begun at an equilibrium or at the cycle on which a motion settles (`cv.FlowProblem`, plain settings, `mirror=` where the equations have one). All special points within the
 interval are listed that `cv.diagram` finds to the stated depth, Hopf points and those of cycles. *Own solve*: shooting with scipy's DOP853 at 1e-12 and Newton's method on an extended system
@@ -28,8 +28,8 @@ Not in the table: AUTO-07p's `brc` and `tor`, the forced predator and prey, whic
 |---|---|---|---|---|---|---|---|"""
 
 
-def cycles() -> list[str]:
-    """Its lines."""
+def cycles_page() -> str:
+    """The page."""
     table = json.loads(TABLE.read_text(encoding="utf-8"))
     lines = [HEAD]
     for demo in DEMOS:
@@ -56,7 +56,7 @@ def cycles() -> list[str]:
             name = source = parameter = ""
         if not rows:
             lines.append(f"| {name} | {source} | {parameter} | none | | | | |")
-    return [*lines, ""]
+    return "\n".join(lines) + "\n"
 
 
 def _zero(value: float) -> float:

@@ -10,7 +10,7 @@ import json
 import pytest
 
 from tools.demos import listed, maps
-from tools.demos.make_page import PAGE, render
+from tools.demos.make_page import PAGES, cycles_page, render
 from tools.demos.make_table import TABLE, graph_of, points_of, solved
 
 pytestmark = pytest.mark.slow
@@ -64,4 +64,4 @@ def test_what_others_print(name, printed):
 
 
 def test_the_page_of_the_documentation_is_the_table():
-    assert PAGE.read_text(encoding="utf-8") == render()
+    assert [page.read_text(encoding="utf-8") for page in PAGES] == [render(), cycles_page()]
