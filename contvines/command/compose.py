@@ -95,12 +95,21 @@ def first_orbit(study: Study):
 
 
 def _page_start(study: Study):
-    """What the study's state leads to; of a self-excited machine that comes to rest, or with the word "", the equilibrium near it."""
+    """What the study's state leads to, elsewhere in its interval if nothing recurs here; of a self-excited machine that comes to rest, or with
+    the word "", the equilibrium near it.
+    """
+    from contextlib import suppress
+
+    from orbits.starts.find import StartError
+
     model, state = study.model, study.state
     if study.word == "" and model.forced:
         return model.orbit("", study.periods, **study.loose)
     if study.word is None:
         found = model.attractor(state, **study.loose)
+        if not found.recurrent and (model.forced or found.kind == "aperiodic"):
+            with suppress(StartError):
+                return _settled(study)
         if found.kind != "rest" or found.trajectory.held or model.forced:
             return found.found
         state = dict(zip(model.states, map(float, found.state[1:]), strict=True))
@@ -112,7 +121,9 @@ def _settled(study: Study):
     from contvines.graph.shortening import short_word
     from orbits.design import Family
 
-    orbit = Family(study.model, loose=study.loose, over=study.parameter, within=study.within)({})
+    orbit = Family(
+        study.model, loose=study.loose, over=study.parameter, within=study.within, state=study.state
+    )({})
     amount = orbit.model.amount(study.parameter, orbit.params)
     unit = study.model.units.get(study.parameter, "")
     print(

@@ -26,6 +26,7 @@ LONGEST_WORD = 400
 LATE = 50  # of the last part of a motion, by which it is told whether it has come to rest
 SAMPLES = 2000  # of a motion without a period, for its extremes
 TRANSIENT, PATIENCE = 100.0, 4  # forcing periods (or events) left out first, and how often twice as many are
+ENOUGH = 50_000  # events after which a motion is not followed any further
 IN_SWEEPS = 0  # the same at each value of a sweep
 EARLY, SHORT = 5, 4
 """A first look comes after a fifth of the transient, at short cycles first: what attracts and has returned need not be waited for."""
@@ -202,7 +203,7 @@ def attracted(
         if run.held or not (run.events or machine.forced):
             kind = "rest" if run.held or still(run) else "aperiodic"
             return PageAttractor(machine, params, kind, None, run, simulator.state)
-        if run.chatters and attempt:
+        if (run.chatters and attempt) or stepper.count > ENOUGH:
             break
     kind = "chatter" if run.chatters else "aperiodic"
     return PageAttractor(machine, params, kind, None, run, simulator.state)

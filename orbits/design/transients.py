@@ -24,12 +24,13 @@ LONGEST = 4000.0  # forcing periods of a free decay
 
 @dataclass(frozen=True, eq=False)
 class Decay:
-    """A free decay; energies in units of the machine's own, times in 1/omega_0.
+    """A free decay; energies are those of vibration (kinetic, and of the spring) over the first one, times in 1/omega_0.
 
     Attributes
     ----------
     times, energy : float array
-        Energy of oscillator and absorber together.
+        Of oscillator and absorber together. On a slope it ends at zero, too: displacements count from where both rest. What gravity has
+        done on the way down is in `impacts` and `friction`.
     bare : float array
         Of the oscillator without absorber, at the same times.
     impacts, friction, damping : float
@@ -105,7 +106,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float, lost: floa
 
 
 def taken_share(model: Model, params: np.ndarray, displacement: float, time: float) -> float:
-    """Share of the first energy that impacts and friction have taken in so much time [1/omega_0] of the free decay.
+    """Share of the first energy that impacts and friction have taken in so much time [1/omega_0] of the free decay, beside what gravity gave.
 
     Raises
     ------
@@ -121,8 +122,8 @@ def taken_share(model: Model, params: np.ndarray, displacement: float, time: flo
         "frequency": 1.0,
     }
     run = simulate(model, {"q1": displacement, "q2": displacement}, periods=time / (2.0 * math.pi), **numbers)
-    balance = run.balance()
-    return float(balance.impacts + balance.friction) / (0.5 * displacement**2)
+    left = _energy(run.end, numbers["mass_ratio"]) + run.balance().damping
+    return 1.0 - float(left) / (0.5 * displacement**2)
 
 
 def _energy(state: np.ndarray, eps: float) -> float:

@@ -10,6 +10,10 @@ import numpy as np
 
 PLAIN = (1.0, 1.0)
 """Length and rate of unknowns that are counted in the machine's own units."""
+SMALL = 1e-7
+"""Length of a step that is taken whatever it does to the residual."""
+FLAT = 2
+"""Steps from a solution to itself after which its residual is roundoff."""
 
 
 class PlainKernels(ABC):
@@ -18,6 +22,8 @@ class PlainKernels(ABC):
     compiled = False
     accepted = 0.0
     """Residual of a solution whose steps do not become any smaller."""
+    patience = math.inf
+    """Evaluations, as a share of the steps, that Newton's method may spend on steps that do not halve the residual."""
 
     @abstractmethod
     def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
@@ -46,20 +52,25 @@ class PlainKernels(ABC):
         limit: int,
     ) -> tuple[float, int, float]:
         """Newton's method at fixed p, or on the hyperplane of `border`; steps that do not help are halved."""
-        residual = self.linearise(data, u, p, work)
+        residual, idle, flat = self.linearise(data, u, p, work), 0, 0
         for iteration in range(limit):
             if not math.isfinite(residual):
                 return math.inf, iteration, p
+            if idle > self.patience * limit or flat > FLAT:
+                break
             sign = self.bordered(data, work, border, 0.0, step, tangent)
             if sign == 0.0 or not np.isfinite(step).all():
                 return math.inf, iteration, p
-            length, share = float(np.abs(step[:-1]).max(initial=0.0)), 1.0
+            length, share, trials = float(np.abs(step[:-1]).max(initial=0.0)), 1.0, 0
             while True:
+                trials += 1
                 trial, q = u + share * step[:-1], p + share * float(step[-1])
                 found = self.linearise(data, trial, q, work)
-                if found < residual or length < 1e-7 or share < 0.02:
+                if found < residual or length < SMALL or share < 0.02:
                     break
                 share *= 0.5
+            idle += trials if found > 0.5 * residual else 0
+            flat += 0.5 * residual < found < self.accepted
             u[:], p, residual = trial, q, found
             if length * share < tolerance or (residual < 1e-14 and length < 1e-9):
                 return residual, iteration + 1, p

@@ -195,7 +195,17 @@ class Coupled(Model):
             Its detuning sets the frequency, 1 + mass_ratio * detuning.
         **parameters
             Parameters that replace the machine's own.
+
+        Raises
+        ------
+        ParameterError
+            On a slope, which the slow flow does not know.
         """
+        slope = float(parameters.get("slope", self.slope))
+        if slope:
+            raise ParameterError(
+                f"slope = {slope:g}: the slow flow is that of level cavities; slope = 0 would do, or an attractor of the inclined machine"
+            )
         eps = float(parameters.get("mass_ratio", self.mass_ratio))
         values = {"frequency": 1.0 + eps * equilibrium.detuning} | parameters
         params = self.vector(values)

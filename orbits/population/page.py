@@ -41,6 +41,7 @@ LARGE, FEW = (
     2,
 )  # of a machine with so many states only so many starts: their words are long, and each is followed for seconds
 TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
+ENOUGH = 20_000  # events of a motion that does not recur: where impacts pile up there are many in a period
 WANDERING = ("chaotic", "quasi-periodic", "slow")
 RELEASED = 1e-6  # difference of the clocks of two releases that are one
 
@@ -178,6 +179,7 @@ class PageFleet:
 
     def _followed(self, i: int, stepper: Stepper, sorting: Sorting) -> None:
         before: tuple[_Marks | None, float] = (None, np.inf)
+        begun = stepper.count
         for looks, block in enumerate(BLOCKS):
             goes_on = skip(stepper, block)
             marks, gap = self._nearest(stepper)
@@ -197,6 +199,8 @@ class PageFleet:
             if _chatters(run):
                 return sorting.plain(i, "chatter", periods=0, state=_start(stepper))
             if looks >= TOLD and any(m.kind in WANDERING for m in sorting.motions):
+                break
+            if stepper.count - begun > ENOUGH:
                 break
         known = next((k for k, m in enumerate(sorting.motions) if m.kind in WANDERING), None)
         if known is not None:

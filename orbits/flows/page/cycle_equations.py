@@ -29,6 +29,7 @@ class PageKernels(PlainKernels):
 
     column = 3
     accepted = SOLVED
+    patience = 0.5
     assign = staticmethod(loci.assign)
     flip = staticmethod(loci.flip)
     transpose = staticmethod(loci.transpose)

@@ -49,7 +49,9 @@ class Stepper:
         self.state = np.zeros(machine.size)
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
+        self.count = 0  # events so far
         self._cache: dict[tuple[int, ...], tuple[Any, Any, Any, np.ndarray, Any]] = {}
+        self._pushes: dict[tuple[int, tuple[int, ...]], Any] = {}
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
         self._touched = {  # frictions and switches whose sign an impact may change, and where the impact's map tells it
             w: [(j, places[j]) for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
@@ -177,10 +179,11 @@ class Stepper:
 
     def _push_back(self, wall: int) -> float:
         """Acceleration of a free wall's gap."""
-        key = self.equations.pattern_key(self.modes)
-        numbers = self._tools(self.modes)[3]
-        values = self.compiled.gap_acceleration(wall, key)
-        return float(values.one(self.state, self.clock, numbers)[0])
+        values = self._pushes.get((wall, self.modes))
+        if values is None:
+            key = self.equations.pattern_key(self.modes)
+            values = self._pushes[wall, self.modes] = self.compiled.gap_acceleration(wall, key)
+        return float(values.one(self.state, self.clock, self._tools(self.modes)[3])[0])
 
     def _hold(self, wall: int) -> int:
         """Rest on a wall: the rate of the gap that is left is taken out."""
@@ -231,6 +234,7 @@ class Stepper:
                 raise SimulationError(self._lost(before, began))
             event = self._happened(guards[place])
             if event is not None:
+                self.count += 1
                 self._rebase()
                 return event
 

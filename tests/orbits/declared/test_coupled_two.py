@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from contvines.command.compose import first_orbit
 from contvines.command.study import check_study
 from orbits import Coupled, coupled_two
 from orbits.problem import rebuild
@@ -123,3 +124,14 @@ def test_a_study_names_it_and_its_file_needs_no_trust():
     problem = coupled_two.attractor(START, frequency=8.2).orbit.problem("frequency")
     again = rebuild(json.loads(json.dumps(problem.describe())))
     assert again is not None and again.model is coupled_two
+
+
+@pytest.mark.slow
+def test_a_study_begins_elsewhere_where_nothing_recurs_in_the_middle(capsys):
+    study = check_study({
+        "model": {"name": "coupled_two", "clearance_1": 5.0, "clearance_2": 3.0},
+        "continue": {"parameter": "frequency", "within": [7.0, 9.0]},
+    })  # fmt: skip
+    orbit = first_orbit(study)
+    assert orbit.real and 7.0 < orbit.parameters["frequency"] < 9.0
+    assert "settles from rest at frequency" in capsys.readouterr().err

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 from contvines.core.library import native
 from orbits import Absorber, Coupled
 from orbits.design import record
-from orbits.design.transients import free_decay, recorded
+from orbits.design.transients import free_decay, recorded, taken_share
 from orbits.machines.base import ParameterError
 
 MACHINE = Coupled(restitution=0.6, friction=0.1, gravity=0.25, mass_ratio=0.02, damping=1.5, forcing=0.0)
@@ -35,6 +35,34 @@ def test_a_free_decay_balances_and_beats_the_bare_oscillator():
     )
     t = decay.times[decay.times < 60.0]
     np.testing.assert_allclose(decay.bare[: t.size], (bare.sol(t) ** 2).sum(axis=0), rtol=1e-6)
+
+
+def test_a_free_decay_on_a_slope_is_that_of_newton_s_laws():
+    """Without friction: two bodies between impacts, by scipy's DOP853, and the power that the damper takes beside them."""
+    machine = MACHINE.changed(friction=0.0, slope=0.2, mass_ratio=0.1)
+    eps, rate, pull = 0.1, 0.1 * machine.damping, machine.gravity * np.sin(0.2)
+
+    def laws(t, y):
+        return [y[2], y[3], -y[0] - rate * y[2] - eps * pull, pull, rate * y[2] ** 2]
+
+    def wall(t, y):
+        return 1.0 - abs(y[0] - y[1])
+
+    wall.terminal, wall.direction = True, -1
+    y, t, end = np.array([3.0, 3.0, 0.0, 0.0, 0.0]), 0.0, 4.0 * np.pi
+    while t < end:
+        run = solve_ivp(laws, (t, end), y, method="DOP853", events=wall, rtol=1e-12, atol=1e-13)
+        t, y = run.t[-1], run.y[:, -1]
+        if run.t_events[0].size:
+            jump = (1.0 + machine.restitution) * (y[2] - y[3]) / (1.0 + eps)
+            y[2], y[3] = y[2] - eps * jump, y[3] + jump
+    left = 0.5 * (y[0] ** 2 + y[2] ** 2 + eps * y[3] ** 2) / 4.5
+    assert free_decay(machine, machine.vector(), 3.0).energy[2] == pytest.approx(left, abs=1e-9)
+    assert taken_share(machine, machine.vector(), 3.0, end) == pytest.approx(
+        1.0 - left - y[4] / 4.5, abs=1e-9
+    )
+    with pytest.raises(ParameterError, match="the slow flow is that of level cavities"):
+        machine.orbit_near(None)
 
 
 def test_a_recorded_motion_of_the_bare_oscillator():
