@@ -97,7 +97,7 @@ def erosion(
     *,
     units: Mapping[str, float] | None = None,
     directions: int = 64,
-    starts: int = 512,
+    starts: int | None = 512,
     seed: int = 0,
 ) -> Erosion:
     """The robustness of a branch's motions, value by value.

@@ -19,6 +19,9 @@ from .population import Population, population_of
 from .ranges import stable_range
 from .solutions import solutions_at
 
+MANY, FEW, MANY_ACROSS = 1024, 256, 100
+"""Starts that tell a share: many of a population whose basins are drawn with so many starts each way, few where each start is flown alone."""
+AT_ONCE = 256  # starts of kicks, the smallest first
 LEVELS = 24  # starts along each ray from the attractor outwards
 HALVINGS = 14  # of the part of a ray in which the motion is lost
 
@@ -141,7 +144,7 @@ def robustness(
     *,
     units: Mapping[str, float] | None = None,
     directions: int = 64,
-    starts: int = 1024,
+    starts: int | None = None,
     seed: int = 0,
     vary: Sequence[str] = (),
 ) -> Robustness:
@@ -159,8 +162,8 @@ def robustness(
         What counts as 1 of a coordinate, by name; 1 by default.
     directions : int
         Rays from each point.
-    starts : int
-        Starts that tell the share; 0: none are made, the share is nan.
+    starts : int, optional
+        Starts that tell the share, 1024 (of a machine on a page 256); 0: none are made, the share is nan.
     seed : int
         Of the starts, and of the rays where states have more than two coordinates.
     vary : sequence of str
@@ -186,6 +189,7 @@ def robustness(
     ranges = {name: stable_range(problem, u, float(at), name) for name in vary}
     kicked = _Kicked(population, float(at), section.names, section.rounds(u), sizes)
     place, kick, reaches = kicked.smallest(_directions(len(sizes), int(directions), seed))
+    starts = (FEW if population.across < MANY_ACROSS else MANY) if starts is None else starts
     share, interval = kicked.share(starts, seed) if starts else (float("nan"), (float("nan"), float("nan")))
     return Robustness(
         branch.parameter,
@@ -280,8 +284,14 @@ class _Kicked:
         longest = self._room(place, along)
         levels = (np.arange(LEVELS) + 1.0) / LEVELS
         kicks = place[:, None, :] + (longest[:, None] * levels)[..., None] * along[:, None, :]
-        lost, names = self._lost(self._starts(kicks.reshape(-1, kicks.shape[2])))
-        lost, names = lost.reshape(len(place), LEVELS), names.reshape(len(place), LEVELS)
+        lost, names = np.zeros(kicks.shape[:2], dtype=bool), np.full(kicks.shape[:2], "", dtype=object)
+        ends, begins = longest[:, None] * levels, longest[:, None] * (levels - 1.0 / LEVELS)
+        for part in np.array_split(np.argsort(begins, axis=None), max(begins.size // AT_ONCE, 1)):
+            if begins.flat[part[0]] >= ends[lost].min(initial=np.inf):
+                break  # these cannot hold the smallest
+            lost.flat[part], names.flat[part] = self._lost(
+                self._starts(kicks.reshape(-1, kicks.shape[2])[part])
+            )
         first = np.where(lost.any(axis=1), lost.argmax(axis=1), LEVELS)
         if first.min() == LEVELS:
             nothing = np.full(self.places.shape[1], np.nan)

@@ -27,8 +27,13 @@ def robustness(
         ),
     ] = None,
     starts: Annotated[
-        int, typer.Option("--starts", min=1, help="Starts that tell the share of the basin.")
-    ] = 1024,
+        int | None,
+        typer.Option(
+            "--starts",
+            min=1,
+            help="Starts that tell the share of the basin; 1024 by default, of a machine on a page 256.",
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the starts.")] = 0,
     plot: PlotOption = None,
     size: SizeOption = None,
