@@ -285,34 +285,16 @@ def _shows_oscillator(graph: Any, y: str | None) -> bool:
 def _add_simulated(axes: Any, graph: Any, study: Any) -> None:
     """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
     from contvines.command.compose import population
+    from contvines.plots.sweep import draw_bands
     from contvines.survey.simulated import simulated
 
     met = simulated(graph, population(study))
-    plain = [one for one in met if one.low == one.high]
-    banded = [one for one in met if one.low < one.high]
+    plain = [(one.value, one.high) for one in met if one.low == one.high]
     if plain:
-        axes.plot(
-            [one.value for one in plain],
-            [one.high for one in plain],
-            ".",
-            color=SIMULATED,
-            zorder=1.6,
-            label="simulated",
-        )
-    if banded:
-        axes.vlines(
-            [one.value for one in banded],
-            [one.low for one in banded],
-            [one.high for one in banded],
-            color=SIMULATED,
-            alpha=0.35,
-            lw=2.5,
-            zorder=1.5,
-            label="modulated, by period",
-        )
-        axes.plot(
-            [one.value for one in banded], [one.mean for one in banded], "_", color=SIMULATED, zorder=1.6
-        )
+        axes.plot(*zip(*plain), ".", color=SIMULATED, zorder=1.6, label="simulated")
+    draw_bands(
+        axes, [(one.value, one.low, one.mean, one.high) for one in met if one.low < one.high], SIMULATED
+    )
     old = axes.get_legend()
     if met and old is not None:
         handles, labels = axes.get_legend_handles_labels()

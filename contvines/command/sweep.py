@@ -1,5 +1,6 @@
 """`contvines sweep`: brute-force simulation over the continuation parameter."""
 
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,9 +14,12 @@ from contvines.command.frame import (
     held,
     refuse_source,
     say,
+    tell,
 )
-from contvines.command.options import FreshOption, PlotOption, QuietOption, SizeOption
-from contvines.text_table import Table, terminal_width
+from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption, SizeOption
+from contvines.number_text import figures
+from contvines.shared.modulation import BAND
+from contvines.text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
     from .study import Study
@@ -37,12 +41,13 @@ def sweep(
         Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
     ] = None,
     fresh: FreshOption = False,
+    json_: JsonOption = False,
     quiet: QuietOption = False,
 ) -> None:
     """Simulate over the parameter, carrying the state on; goes on with an unfinished sweep."""
     from contvines.command.compose import check_shaken
     from contvines.command.study import read_study
-    from contvines.command.sweep_rows import header_of, journal_of, refuse_another
+    from contvines.command.sweep_rows import header_of, journal_of, refuse_another, rows_as_json
     from contvines.export import check_target
 
     read = read_study(study)
@@ -62,8 +67,8 @@ def sweep(
         refuse_another(target, header_of(read, down))
         rows = _simulate(read, down, target, quiet)
     say(f"kept in {target}", quiet)
-    if not quiet:
-        typer.echo(_summary(rows, read.parameter))
+    if json_ or not quiet:
+        tell(_summary(rows, read), rows_as_json(rows, read) if json_ else None)
     from contvines.command.sweep_picture import picture
 
     draw(plot, lambda: picture(rows, read, graph, size), quiet)
@@ -74,16 +79,15 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
     import numpy as np
 
     from contvines.command.compose import machine
-    from contvines.command.sweep_rows import FIRST, Rows, kept
+    from contvines.command.sweep_rows import Rows, kept, measured_names
     from contvines.progress import counted
-    from orbits.attractors.search import measure_names
     from orbits.attractors.sweep import sweep as simulate
 
     model = machine(study)
     low, high = study.sweep.within or study.within
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
     others: dict[str, Any] = {k: v for k, v in study.loose.items() if k != study.parameter}
-    names = [n for n in measure_names(model) if n not in FIRST]
+    names = measured_names(study)
     with (
         Rows(target, study, down, names) as file,
         counted(len(values), "values", not quiet, done=len(file.rows)) as count,
@@ -117,23 +121,26 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
     return file.rows
 
 
-def _summary(rows: "list[Kept]", parameter: str) -> str:
-    """Runs of equal attractors, one line each."""
+def _summary(rows: "list[Kept]", study: "Study") -> str:
+    """Runs of equal attractors, one line each, and what is modulated."""
+    from itertools import groupby
+
     from contvines.graph.shortening import short_word
 
-    runs = []
-    first = 0
-    for i in range(1, len(rows) + 1):
-        if i == len(rows) or _kind(rows[i]) != _kind(rows[first]):
-            row, last = rows[first], rows[i - 1]
-            periods = f"k={row.periods}" if row.word else ""
-            runs.append(
-                (f"{row.value:.6g} to {last.value:.6g}", row.attractor, periods, short_word(row.word))
-            )
-            first = i
-    head = (parameter, "settles on", "periods", "word")
-    return "\n".join(Table(head, runs, spare=("periods",)).lines(terminal_width()))
-
-
-def _kind(row: "Kept") -> tuple[Any, ...]:
-    return row.attractor, row.word, row.periods
+    runs, step = [], abs(rows[-1].value - rows[0].value) / max(len(rows) - 1, 1)
+    for _, equal in groupby(rows, lambda row: (row.attractor, row.word, row.periods)):
+        first, *_, last = (one := list(equal))[0], one[-1]
+        periods = f"k={first.periods}" if first.word else ""
+        ends = dict.fromkeys(figures(row.value, step) for row in (first, last))
+        runs.append((" to ".join(ends), first.attractor, periods, short_word(first.word)))
+    head = (study.parameter, "settles on", "periods", "word")
+    lines = Table(head, runs, spare=("periods",)).lines(terminal_width())
+    if banded := [row for row in rows if row.band]:
+        low, high = min(row.band[0] for row in banded), max(row.band[2] for row in banded)
+        kinds = Counter(row.modulation for row in banded).most_common()
+        unit = study.model.units.get(BAND[0], "")
+        lines.append(
+            f"modulated at {len(banded)} of {len(rows)} values ({'; '.join(f'{n} {kind}' for kind, n in kinds)}): largest response "
+            f"in a forcing period from {figures(low)} to {figures(high)} {unit}".rstrip()
+        )
+    return "\n".join(map(fitted, lines))

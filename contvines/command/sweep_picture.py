@@ -94,7 +94,8 @@ def picture(
         measure = model.swept_measure
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
-        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, **look)
+        bands: list[Any] = [(row.value, *row.band) for row in rows if row.band]
+        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, bands=bands, **look)
     first: list[tuple[float, float]] = []
     others: list[tuple[float, float]] = []
     lines = _lines(graph) if graph is not None else []

@@ -3,8 +3,9 @@
 import csv
 import hashlib
 import json
+import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import gettempdir
 from typing import IO, Any
@@ -12,9 +13,10 @@ from typing import IO, Any
 from contvines.command.compose import machine
 from contvines.command.study_data import Sort, Study
 from contvines.graph.table import with_unit
+from contvines.shared.modulation import BAND, SILENT
 
 FIRST = ("value", "direction", "attractor", "word", "periods", "impacts")
-LAST = ("symmetric", "nodes")
+LAST = ("modulation", "symmetric", "nodes")
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,8 @@ class Kept:
     cells : text of the CSV's columns.
     attractor : kind of the motion, `sliding` told from `periodic`.
     recurrent : whether the motion recurs.
+    modulation : how it is modulated; see `contvines.shared.modulation`.
+    band : lowest, mean and highest of its largest responses in each forcing period; empty where it has none.
     dots : what a picture shows: the largest |q1|, or B at every impact (from the word's first on, where there is one).
     state : state reached, from which the next value goes on.
     """
@@ -35,6 +39,8 @@ class Kept:
     recurrent: bool
     dots: list[float]
     state: list[float]
+    modulation: str = ""
+    band: list[float] = field(default_factory=list)
 
     @property
     def value(self) -> float:
@@ -54,10 +60,43 @@ def kept(row: Any, direction: str, names: list[str]) -> Kept:
     found, guess = row.detail, row.detail.guess
     kind = "periodic" if row.attractor == "sliding" else row.attractor
     cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
-    cells += [repr(float(row.measures[n])) for n in names]
+    measured = (float(row.measures[n]) for n in names)
+    cells += [
+        repr(x) if math.isfinite(x) or name not in (*BAND, SILENT) else "" for name, x in zip(names, measured)
+    ]
+    cells.append(row.modulation)
     cells.append(str(int(found.symmetric)) if found.recurrent else "")
     cells.append("" if guess is None else json.dumps([[float(x) for x in node] for node in guess]))
-    return Kept(cells, row.attractor, found.recurrent, row.dots, [float(x) for x in found.state])
+    band = [float(row.measures[name]) for name in BAND] if row.modulation else []
+    return Kept(
+        cells, row.attractor, found.recurrent, row.dots, [float(x) for x in found.state], row.modulation, band
+    )
+
+
+def rows_as_json(rows: list[Kept], study: Study) -> dict[str, Any]:
+    """The CSV's content as JSON, numbers at full precision, and the share of the values at which the motion is modulated, by its kind."""
+    names = measured_names(study)
+    kinds = dict.fromkeys(row.modulation for row in rows if row.modulation)
+    return {
+        "parameter": study.parameter,
+        "modulated": {kind: sum(row.modulation == kind for row in rows) / len(rows) for kind in kinds},
+        "rows": [dict(zip((*FIRST, *names, *LAST), map(_read, row.cells))) for row in rows],
+    }
+
+
+def measured_names(study: Study) -> list[str]:
+    """The measures of the rows, in the order of the CSV."""
+    from orbits.attractors.search import measure_names
+
+    return [name for name in measure_names(machine(study)) if name not in FIRST]
+
+
+def _read(cell: str) -> Any:
+    """A cell of the CSV as JSON has it."""
+    try:
+        return json.loads(cell)
+    except ValueError:
+        return cell or None
 
 
 def journal_of(target: Path) -> Path:

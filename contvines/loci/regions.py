@@ -27,7 +27,7 @@ class Region:
     share : float
         Part of the plane that it takes.
     attractors : list of dict
-        What simulation found there: "word", "periods" and "kind" of each motion.
+        What simulation found there: "word", "periods" and "kind" of each motion; of a modulated one "modulation" and its band, too.
     elsewhere : list of dict
         Further places of the region, far from one another: "at" and "attractors" of each.
     cells : ndarray of bool
@@ -79,7 +79,10 @@ def words_of(attractors: list[dict[str, Any]]) -> list[str]:
 
 
 def name_of(found: dict[str, Any]) -> str:
-    """The word of an attractor, with its periods where they are more than one; its kind where it has no word."""
+    """The word of an attractor, with its periods where they are more than one; its modulation or its kind where it has no word."""
+    if modulation := found.get("modulation"):
+        kind, _, chaotic = str(modulation).partition(", ")
+        return f"{chaotic} {kind}".strip()
     word, periods = found.get("word"), int(found.get("periods") or 0)
     if found.get("kind") == "stuck":
         return "stuck"

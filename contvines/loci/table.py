@@ -6,6 +6,8 @@ import html
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from contvines.shared.modulation import BAND
+
 from ..graph.shortening import motion_name, short_word
 from ..graph.table import size_of, with_unit
 from ..number_text import number_text
@@ -109,6 +111,10 @@ def _tables(chart: Chart) -> list[Table]:
 def _stable(region: Region, at: Callable[..., str]) -> str:
     """What is stable in a region; where its places disagree, what is stable elsewhere in it."""
     told = ", ".join(map(short_word, region.words)) or "-"
+    for motion in region.attractors:
+        if "modulation" in motion:
+            low, mean, high = (number_text(motion[name], 4) for name in BAND)
+            told += f" (per period {low} to {high}, mean {mean})"
     if not region.others:
         return told
     apart = [

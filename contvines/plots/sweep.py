@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
 
 Dots = Sequence[tuple[float, float]]
+Band = tuple[float, float, float, float]
+WANDERING = "#d95f02"
 
 
 @hinting
@@ -29,6 +31,7 @@ def plot_sweep(
     *,
     others: Dots = (),
     wandering: Dots = (),
+    bands: Sequence[Band] = (),
     axes: "Axes | None" = None,
     legend: bool | str = True,
     figsize: tuple[float, float] | None = None,
@@ -47,6 +50,7 @@ def plot_sweep(
     measure : name of the measure.
     others : the same at other impacts, drawn lighter.
     wandering : the same of motions that do not recur (modulated, chaotic).
+    bands : (parameter value, lowest, mean, highest) of the largest responses per forcing period of modulated motions.
     axes : drawn on; without, a new figure of `figsize` inches.
     legend : whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
     style : a style or rcParams of matplotlib's that come before the house's.
@@ -66,7 +70,8 @@ def plot_sweep(
         narrow = own and figure.get_size_inches()[0] < NARROW  # the axis says what it is of
         told = f"simulated: {at or 'periodic'}" if not narrow or measure != "B" else "simulated"
         lost = {"markersize": 1.5} if measure == "B" else {"marker": "o", "markersize": 2.6, "mfc": "none"}
-        _dots(axes, wandering, "simulated: not periodic", color="#d95f02", zorder=1.8, **lost)
+        _dots(axes, wandering, "simulated: not periodic", color=WANDERING, zorder=1.8, **lost)
+        draw_bands(axes, bands)
         _dots(axes, others, "simulated: B at other impacts", color="0.72", zorder=1.9, markersize=size)
         _dots(axes, points, told, color=dark, zorder=above, markersize=size)
         if not any(len(dots) for dots in (points, others, wandering)):
@@ -88,6 +93,16 @@ def plot_sweep(
             settle(figure)
             thin_ticks(axes)
     return figure
+
+
+def draw_bands(axes: "Axes", bands: Sequence[Band], color: str = WANDERING) -> None:
+    """Bars from the lowest to the highest response per forcing period of modulated motions, with their mean."""
+    if len(bands):
+        values, low, mean, high = zip(*bands)
+        axes.vlines(
+            values, low, high, color=color, alpha=0.35, lw=2.5, zorder=1.5, label="modulated, by period"
+        )
+        axes.plot(values, mean, "_", color=color, markersize=4, zorder=1.6)
 
 
 def _dots(axes: "Axes", dots: Dots, label: str, **style: Any) -> None:

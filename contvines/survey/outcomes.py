@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.modulation import BAND, modulation_of
+
 from ..graph.measures import default_measure
 from .stretches import LEAST, gaps, highest, stretches, unseen
 
@@ -19,7 +21,6 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
     from .completion import Unbranched
 
-SILENT = 0.01  # of the forcing periods without an impact, at least, make a modulation strong
 GRID = 401  # values at which coexisting responses are compared
 KNOWN = 1.0 - LEAST  # share of the interval from which on the responses are known
 
@@ -149,16 +150,15 @@ def modulated(found: Findings) -> dict[str, float]:
     mean: lowest, mean and highest of its largest displacements in a forcing period; the share of such motions whose impacts stop and begin
     again (strong modulation)."""
     low, high = found.graph.within
-    names = ("modulated_low", "modulated_mean", "modulated_high")
-    met = [one.measures for one in found.unbranched if np.isfinite(one.measures.get(names[1], np.nan))]
+    met = [one.measures for one in found.unbranched if modulation_of(one.measures)]
     if not met:
-        return {"modulated": 0.0, **dict.fromkeys((*names, "modulated_strong"), np.nan)}
+        return {"modulated": 0.0, **dict.fromkeys((*BAND, "modulated_strong"), np.nan)}
     known = sum(b - a for a, b in gaps(found.graph)) - sum(b - a for a, b in _unknown_parts(found))
-    top = max(met, key=lambda measures: measures[names[1]])
-    strong = [SILENT <= measures["silent"] < 1.0 for measures in met]
+    top = max(met, key=lambda measures: measures[BAND[1]])
+    strong = [modulation_of(measures).startswith("strong") for measures in met]
     return {
         "modulated": known / (high - low),
-        **{name: top[name] for name in names},
+        **{name: top[name] for name in BAND},
         "modulated_strong": float(np.mean(strong)),
     }
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from contvines.shared.modulation import BAND, modulation_of
+
 from ..coexistence.population import Population
 from ..graph.graph import Graph
 from ..graph.measures import default_measure
@@ -13,7 +15,6 @@ from .completion import FEW, ON_ITS_WAY
 from .stretches import gaps, spread
 
 VALUES = 5  # in the gaps, at least
-SILENT = 0.01  # of the forcing periods without an impact, at least, make a modulation strong
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,8 @@ def simulated(graph: Graph, population: Population, starts: int = FEW) -> list[S
                 continue
             measures = population.observed(motion.state, p)
             high = measures.get(name, np.nan)
-            low, mean = (measures.get(f"modulated_{end}", high) for end in ("low", "mean"))
-            kind = "periodic"
-            if "silent" in measures:
-                kind = f"{'strong' if SILENT <= measures['silent'] < 1.0 else 'weak'} modulation"
-                kind += ", chaotic" if motion.kind == "chaotic" else ""
+            kind = modulation_of(measures, motion.kind == "chaotic")
+            low, mean = (measures[end] if kind else high for end in BAND[:2])
             if np.isfinite(high):
-                found.append(Simulated(p, low, mean, high, kind, float(np.mean(index == k))))
+                found.append(Simulated(p, low, mean, high, kind or "periodic", float(np.mean(index == k))))
     return found

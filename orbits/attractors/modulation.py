@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from contvines.shared.modulation import BAND, SILENT, modulation_of
 from orbits.machines.stepping import PSI, TURNS
 from orbits.simulation.driver import collect
 from orbits.simulation.trajectory import TWO_PI, Trajectory
@@ -14,8 +15,6 @@ from orbits.simulation.trajectory import TWO_PI, Trajectory
 PERIODS = 512  # forcing periods that are looked at
 PER_PERIOD = 48  # instants; events come on top
 MOST_EVENTS = 400  # per period
-FEW = 0.01  # of the periods without an impact: fewer do not make a modulation strong
-STRONG, WEAK = "strong modulation", "weak modulation"
 
 
 @dataclass(frozen=True)
@@ -36,9 +35,14 @@ class Modulation:
     silent: float
 
     @property
+    def measures(self) -> dict[str, float]:
+        """By name, in half-widths."""
+        return dict(zip((*BAND, SILENT), (self.low, self.mean, self.high, self.silent)))
+
+    @property
     def kind(self) -> str:
-        """Strong where impacts stop and begin again (the strongly modulated response of vibro-impact absorbers), else weak."""
-        return STRONG if FEW <= self.silent < 1.0 else WEAK
+        """See `contvines.shared.modulation.modulation_of`."""
+        return modulation_of(self.measures)
 
 
 def modulation(

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.modulation import BAND, SILENT, modulation_of
 from orbits.attractors.attractor import Attractor
+from orbits.attractors.batches import lyapunov
+from orbits.attractors.modulation import modulation
+from orbits.attractors.motion import wandering
 from orbits.flows.native.measures import gauged
 from orbits.machines.states import state_of
 from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS
@@ -103,11 +107,13 @@ def measure_names(model: Model) -> tuple[str, ...]:
     """Measures in a sweep's rows.
 
     ``max_abs_w``; ``impact_speed``: fastest approach |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
-    ``max_abs_q1``: largest displacement of the cavity; in the reduced model ``C2``: squared amplitude of its motion.
-    Motions that do not recur are looked at until these numbers settle.
+    ``max_abs_q1``: largest displacement of the cavity, and of motions that do not recur ``modulated_low``, ``modulated_mean``,
+    ``modulated_high``: of its largest displacements in each forcing period, ``silent``: share of the periods without an impact; in the
+    reduced model ``C2``: squared amplitude of its motion. Motions that do not recur are looked at until these numbers settle.
     """
-    own = ("C2",) if "amplitude" in model.parameter_names else ("max_abs_q1",)
-    return (*own, "max_abs_w", "impact_speed", "impacts_per_period")
+    reduced = "amplitude" in model.parameter_names
+    own = ("C2",) if reduced else ("max_abs_q1",)
+    return (*own, "max_abs_w", "impact_speed", "impacts_per_period", *(() if reduced else (*BAND, SILENT)))
 
 
 def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
@@ -116,7 +122,17 @@ def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
     known = {name: getattr(seen, name, np.nan) for name in measure_names(model)}
     if "C2" in known:
         known["C2"] = float(params[model.parameter_names.index("amplitude")]) ** 2
+    elif not found.recurrent:
+        known |= modulation(model, found.machine, params, found.state).measures
     return lasting(found, seen), gauged(model, params, known)
+
+
+def modulated(found: Attractor, measures: Mapping[str, float]) -> str:
+    """How a motion is modulated, chaotic by its largest Lyapunov exponent; empty where it recurs or nothing but the absorber moves."""
+    if not modulation_of(measures):
+        return ""
+    growth = lyapunov(found.model.name, found.state, found.params)
+    return modulation_of(measures, wandering(*growth, True) == "chaotic")
 
 
 def dots(found: Attractor, measures: Mapping[str, float]) -> list[float]:

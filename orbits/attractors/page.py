@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from contvines.shared.modulation import BAND, SILENT, modulation_of
 from orbits.attractors.settled import Settled
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
@@ -24,6 +25,7 @@ SETTLED = 1e-5  # difference at which it has, if its equations confirm it
 EXACT = 1e-13  # last step of Newton's method
 LONGEST_WORD = 400
 LATE = 50  # of the last part of a motion, by which it is told whether it has come to rest
+PER_PERIOD = 100  # instants, for the largest state in each forcing period
 SAMPLES = 2000  # of a motion without a period, for its extremes
 TRANSIENT, PATIENCE = 100.0, 4  # forcing periods (or events) left out first, and how often twice as many are
 ENOUGH = 50_000  # events after which a motion is not followed any further
@@ -363,9 +365,30 @@ def _free(run: PageTrajectory, word: Word) -> Orbit | None:
 
 
 def measure_names(machine: Machine) -> tuple[str, ...]:
-    """Measures in a sweep's rows: `max_` and `min_` of the first state, `approach_speed`, `impacts_per_period` (of a self-excited machine: per unit of time)."""
+    """Measures in a sweep's rows: `max_` and `min_` of the first state, `approach_speed`, `impacts_per_period` (of a self-excited machine: per unit of time);
+    where it is forced, of motions that do not recur the band of the largest first states in a period and the share of the periods without an impact."""
     first = machine.states[0]
-    return (f"max_{first}", f"min_{first}", "approach_speed", "impacts_per_period")
+    forced = (*BAND, SILENT) if machine.forced else ()
+    return (f"max_{first}", f"min_{first}", "approach_speed", "impacts_per_period", *forced)
+
+
+def modulated(found: PageAttractor, measures: Mapping[str, float]) -> str:
+    """How a motion is modulated; empty where it recurs or nothing shakes."""
+    return modulation_of(measures)
+
+
+def _band(run: PageTrajectory) -> dict[str, float]:
+    """Of the largest first state in each forcing period: lowest, mean and highest; the share of the periods without an impact."""
+    first, last = np.ceil(run.clocks[0] / TWO_PI), np.floor(run.end / TWO_PI)
+    periods = int(last - first)
+    if periods < 1:
+        return {}
+    x = run.sample(TWO_PI * np.linspace(first, last, PER_PERIOD * periods, endpoint=False))[:, 0]
+    tops = x.reshape(periods, PER_PERIOD).max(axis=1)
+    hits = run.clocks[1:][[kind == HIT for _, kind, _ in run.events]]
+    busy = np.unique(np.floor(hits / TWO_PI))
+    silent = 1.0 - np.count_nonzero((busy >= first) & (busy < last)) / periods
+    return dict(zip((*BAND, SILENT), (float(tops.min()), float(tops.mean()), float(tops.max()), silent)))
 
 
 def described(found: PageAttractor) -> tuple[PageAttractor, dict[str, float]]:
@@ -383,6 +406,8 @@ def described(found: PageAttractor) -> tuple[PageAttractor, dict[str, float]]:
         "approach_speed": max(speeds, default=0.0),
         "impacts_per_period": len(speeds) / span if span > 0.0 else 0.0,
     }
+    if machine.forced:
+        own |= dict.fromkeys((*BAND, SILENT), np.nan) | (_band(run) if found.kind == "aperiodic" else {})
     return found, {**taken, **own}
 
 

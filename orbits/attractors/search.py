@@ -102,6 +102,11 @@ def described(found: Any) -> tuple[Any, dict[str, float]]:
     return observing(found.model).described(found)
 
 
+def modulated(found: Any, measures: Mapping[str, float]) -> str:
+    """How a motion is modulated, by its measures: ``weak modulation`` and the like (see `contvines.shared.modulation`); empty where it recurs."""
+    return observing(found.model).modulated(found, measures)
+
+
 def measure_names(model: Varying) -> tuple[str, ...]:
     """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
     return observing(model).measure_names(model)

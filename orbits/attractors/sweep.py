@@ -11,7 +11,7 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from contvines.shared.processes import ATTEMPTS, spread
-from orbits.attractors.search import described, find_attractor, goes_on, observing
+from orbits.attractors.search import described, find_attractor, goes_on, modulated, observing
 from orbits.flows.protocol import SimulationError
 from orbits.simulation.runs import simulator_of
 
@@ -39,6 +39,8 @@ class SweepRow:
         Numbers by name, the same names in every row; see `measure_names`.
     detail : Attractor or PageAttractor
         The attractor itself, with its nodes and the state reached.
+    modulation : str
+        ``weak modulation``, ``strong modulation`` (impacts stop and begin again), either with ``, chaotic``; empty where it recurs.
     """
 
     value: float
@@ -49,6 +51,7 @@ class SweepRow:
     impacts: int
     measures: Mapping[str, float]
     detail: Any = field(repr=False)
+    modulation: str = ""
 
     @property
     def dots(self) -> list[float]:
@@ -114,8 +117,8 @@ def sweep(
         simulator.go_on(state, nudge)
         found, measures = described(goes_on(simulator, transient, max_period, None))
         row = SweepRow(
-            value, direction, found.kind, found.text, found.periods, found.impacts, measures, found
-        )
+            value, direction, found.kind, found.text, found.periods, found.impacts, measures, found, modulated(found, measures)
+        )  # fmt: skip
         state = found.state
         rows.append(row)
         if progress is not None:

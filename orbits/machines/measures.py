@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contvines.shared.modulation import BAND
 from orbits.machines.base import Model
 
 COMMON = (
@@ -56,7 +57,7 @@ KINDS = {
     "impact_speed": "velocity",
     "impact_speed_min": "velocity",
     "max_abs_w": "length",
-    "max_abs_q1": "length",
+    **dict.fromkeys(("max_abs_q1", *BAND), "length"),
     "amplitude": "length",
     "v_phase": "angle",
     "impact_rate": "rate",

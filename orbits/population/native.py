@@ -11,7 +11,6 @@ import numpy as np
 from contvines.shared.near_names import no_parameter
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, WANDERING, lyapunov, settle_all
-from orbits.attractors.modulation import modulation
 from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
 from orbits.attractors.recurrence import recurring, settle
 from orbits.attractors.search import described
@@ -113,18 +112,10 @@ class NativeStarts:
         return closed_orbits(self.model, params, Orbit)
 
     def observed(self, state: np.ndarray, p: float) -> dict[str, float]:
-        """Measures of the motion through a state; of one that does not recur its band, too."""
+        """Measures of the motion through a state."""
         params = self.vector(p)
         found = settle(self.model, self.engine, params, state.copy(), 0.0, LONGEST, patience=0)
-        measures = dict(described(found)[1])
-        if not found.recurrent and self.model.moving_cavity:
-            seen, length = (
-                modulation(self.model, self.engine, params, state),
-                float(self.model.gauge("length", params)),
-            )
-            measures |= {"modulated_low": seen.low * length, "modulated_mean": seen.mean * length}
-            measures |= {"modulated_high": seen.high * length, "silent": seen.silent}
-        return measures
+        return described(found)[1]
 
     def fleet(self, points: np.ndarray, params: np.ndarray, workers: int | None) -> NativeFleet:
         """Starts under way."""

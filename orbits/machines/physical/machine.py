@@ -204,11 +204,12 @@ class Physical(Model):
     @cached_property
     def units(self) -> dict[str, str]:
         """Units of quantities and measures by name; plain numbers have none."""
+        from contvines.shared.modulation import BAND
         from orbits.machines.measures import KINDS, names
 
         gauges: dict[str, Quantity] = self.tables.GAUGES
         found = dict(zip(self.amount_names, self.said))
-        for name in names(self):
+        for name in (*names(self), *(BAND if self.moving_cavity else ())):
             kind = KINDS.get(name, "")
             found.setdefault(
                 name, "rad" if kind == "angle" else units.unit_of(gauges[kind]) if kind in gauges else ""

@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 
-from orbits import Coupled
+from contvines.loci.regions import Region
+from orbits import Coupled, Machine
 from orbits.attractors import find_attractor
-from orbits.attractors.modulation import STRONG, WEAK, modulation
+from orbits.attractors.modulation import modulation
+from orbits.attractors.sweep import sweep
 from orbits.machines.catalogue import stepper
 from orbits.simulation import simulate
+from orbits.symbols import cos
 
 MACHINE = Coupled(
     mass_ratio=0.01, restitution=0.7, friction=0.155, gravity=0.194, damping=2.0, excitation=1.0
@@ -25,7 +28,7 @@ def test_a_periodic_motion_has_no_band():
     assert found.recurrent
     top = found.found.root().measure("max_abs_q1")  # of the closed form
     assert (seen.low, seen.mean, seen.high) == pytest.approx((top, top, top), rel=2e-3)
-    assert seen.silent == 0.0 and seen.kind == WEAK
+    assert seen.silent == 0.0 and seen.kind == "weak modulation"
 
 
 def test_a_modulated_motion_is_that_of_a_dense_sampling():
@@ -42,5 +45,35 @@ def test_a_modulated_motion_is_that_of_a_dense_sampling():
 def test_impacts_that_stop_and_begin_again_make_it_strong():
     from orbits.attractors.modulation import Modulation
 
-    assert Modulation(1.0, 2.0, 3.0, 0.4).kind == STRONG
-    assert Modulation(1.0, 2.0, 3.0, 1.0).kind == WEAK  # no impacts at all
+    assert Modulation(1.0, 2.0, 3.0, 0.4).kind == "strong modulation"
+    assert Modulation(1.0, 2.0, 3.0, 1.0).kind == "weak modulation"  # no impacts at all
+
+
+def test_sweeps_and_charts_tell_of_modulation_as_a_dense_sampling_has_it():
+    (row,) = sweep(MACHINE, "frequency", [1.0], forcing=10.0)
+    run = simulate(MACHINE, row.detail.state, periods=512.0, events=None, forcing=10.0, frequency=1.0)
+    cavity = np.abs(run.sample(per_period=200).cavity[: 512 * 200])
+    tops = cavity.reshape(512, 200).max(axis=1)
+    band = [row.measures[f"modulated_{name}"] for name in ("low", "mean", "high")]
+    assert band == pytest.approx([tops.min(), tops.mean(), tops.max()], rel=5e-3)
+    assert row.modulation == "weak modulation, chaotic"  # impacts in every period: neighbours part
+    steady = sweep(MACHINE, "frequency", [0.9], forcing=10.0)[0]
+    assert steady.modulation == "" and np.isnan(steady.measures["modulated_mean"])
+    problem = find_attractor(MACHINE, forcing=10.0, frequency=0.9).found.problem("frequency")
+    (met,) = problem.witness(1.0)
+    assert met["modulation"] == row.modulation and met["share"] == 1.0
+    assert met["modulated_mean"] == pytest.approx(band[1], rel=5e-3)
+    name = Region((1.0, 10.0), 0.1, [met]).words
+    assert name == ["chaotic weak modulation"]
+
+
+def test_a_beating_page_has_the_band_of_its_two_frequencies():
+    """x'' + x = cos(w t) from rest: x = (cos(w t) - cos t)/(1 - w^2), which beats between 0 and 2/|1 - w^2|."""
+    w = float(np.sqrt(0.8))
+    machine = Machine(
+        name="beating", states=("x", "v"), parameters={"w": w}, phase_rate="w",
+        motion=lambda state, phase, p, contact: (state.v, cos(phase) - state.x), contacts=[],
+    )  # fmt: skip
+    (row,) = sweep(machine, "w", [w])
+    low, mean, high = (row.measures[f"modulated_{name}"] for name in ("low", "mean", "high"))
+    assert high == pytest.approx(2.0 / 0.2, rel=0.01) and low < 0.3 * high and row.modulation.startswith("weak")

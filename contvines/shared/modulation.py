@@ -1,0 +1,21 @@
+"""What modulated motions are called, and the names of their numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+BAND = ("modulated_low", "modulated_mean", "modulated_high")
+"""Measures: the lowest, mean and highest of the largest responses in each forcing period."""
+SILENT = "silent"
+"""A measure: the share of the forcing periods without an impact."""
+FEW = 0.01  # of the periods without an impact: fewer do not make a modulation strong
+
+
+def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
+    """``weak modulation``, ``strong modulation`` where impacts stop and begin again (the strongly modulated response of vibro-impact
+    absorbers), either with ``, chaotic``; empty for a motion without a band, such as one that recurs."""
+    if not math.isfinite(measures.get(BAND[1], math.nan)):
+        return ""
+    strong = FEW <= measures.get(SILENT, 0.0) < 1.0
+    return f"{'strong' if strong else 'weak'} modulation{', chaotic' if chaotic else ''}"
