@@ -14,11 +14,10 @@ def dissipation(found: Findings) -> dict[str, float]:
     """Power that impacts and friction dissipate where the stable response of the diagram is largest."""
     from contvines.survey.outcomes import highest, stretches
 
-    tops = [(highest(stretch), stretch) for stretch in stretches(found.graph)]
-    if not tops:
+    top = highest(stretches(found.graph))
+    if top is None:
         return {"impact_power": np.nan, "friction_power": np.nan}
-    (_, _, index), stretch = max(tops, key=lambda top: top[0][0])
-    orbit: Any = stretch.branch.orbit(index)
+    orbit: Any = top.stretch.branch.orbit(top.index)
     period = 2.0 * np.pi * orbit.periods / orbit.parameters["frequency"]
     seconds = period * float(orbit.model.gauge("time", orbit.params))
     return {f"{name}_power": orbit.measure(f"{name}_loss") / seconds for name in ("impact", "friction")}

@@ -381,10 +381,11 @@ class _Work:
         def keep(found: Findings) -> dict[str, float]:
             parts = stretches(found.graph)
             seen.extend(Curve("stable", part.values.tolist(), part.response.tolist()) for part in parts)
-            if parts:  # from itself: other starts may miss a motion that few of them lead to
-                (_, _, index), part = max(((highest(one), one) for one in parts), key=lambda top: top[0][0])
+            top = highest(parts)
+            if top is not None:  # from itself: other starts may miss a motion that few of them lead to
+                part = top.stretch
                 inner = min(
-                    max(index, part.first + 1), max(part.last - 1, part.first)
+                    max(top.index, part.first + 1), max(part.last - 1, part.first)
                 )  # at an end it is about to be left
                 near = inner - part.first
                 compared.append((float(part.response[near]), _simulated(part.branch.orbit(inner), measure)))

@@ -24,7 +24,9 @@ def report(
     pdf: Annotated[
         Path | None,
         typer.Option(
-            "--pdf", metavar="FILE.pdf", help="Also print the page, with the browser of this computer."
+            "--pdf",
+            metavar="FILE.pdf",
+            help="Also as PDF, by the browser of this computer; a recommendation without one, too.",
         ),
     ] = None,
     trust: TrustOption = False,
@@ -45,23 +47,34 @@ def report(
         raise ValueError(f"--pdf {pdf}: give the name of a file that ends in .pdf, in a folder that exists.")
     if file.suffix == ".json":
         check_page(target, plotly=False)
-        target.write_text(_answer(file).page(), encoding="utf-8")
+        answer = _answer(file)
+        target.write_text(answer.page(), encoding="utf-8")
         typer.echo(str(target))
         if pdf is not None:
-            print_page(target, pdf)
-            typer.echo(str(pdf))
+            typer.echo(f"{pdf} ({_on_paper(answer, target, pdf)})")
         return
     check_page(target)
     result = _result(file, trust)
     typer.echo(str(write_report(result, target, file.name, trust)))
     if pdf is not None:
-        print_page(target, pdf)
-        typer.echo(str(pdf))
+        typer.echo(f"{pdf} (printed by {print_page(target, pdf)})")
     branches = getattr(result, "branches", {}) or getattr(result, "loci", {})
     if branches and not trust and all(branch.problem is None for branch in branches.values()):
         say(f"the page has no orbits: {file} names Python code, which --trust would run")
     if not getattr(result, "finished", True):
         say(f"{file} is unfinished: the page shows what there is so far")
+
+
+def _on_paper(answer: Any, page: Path, pdf: Path) -> str:
+    """Print the page, or set the answer without a browser; how it was done."""
+    from contvines.report.answer import print_page
+    from contvines.report.paper import set_answer
+
+    try:
+        return f"printed by {print_page(page, pdf)}"
+    except ValueError:
+        set_answer(answer, pdf)
+        return "set by matplotlib, as no browser could print the page"
 
 
 def _result(file: Path, trust: bool) -> Any:
@@ -100,7 +113,7 @@ def _answer(file: Path) -> Any:
         checked = [f"Checked by simulation: {simulated} beside {by} of the diagram."]
     lists = [("Assumed", found.assumed), ("Not known", found.first_unknown or ["nothing that was asked"])]
     return Answer(
-        f"{found.title}: {found.name.replace('_', ' ')}",
+        found.title,
         found.headline,
         [*found.sentences, *checked],
         report_pictures(found),

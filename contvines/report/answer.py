@@ -83,8 +83,8 @@ def _svg(figure: Figure) -> str:
     return text[text.index("<svg") :]
 
 
-def print_page(page: str | Path, target: str | Path) -> None:
-    """Print a page as PDF with the browser of this computer.
+def print_page(page: str | Path, target: str | Path) -> str:
+    """Print a page as PDF with the browser of this computer, whose name is returned.
 
     Raises
     ------
@@ -118,3 +118,4 @@ def print_page(page: str | Path, target: str | Path) -> None:
             raise ValueError(
                 f"{target}: {browser} could not print the page ({type(error).__name__}); open {page} and print it there."
             ) from None
+    return Path(browser).name

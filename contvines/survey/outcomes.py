@@ -50,10 +50,16 @@ class Findings:
 Outcome = Callable[[Findings], Mapping[str, float]]
 
 
+def _highest(graph: Graph, measure: str | None = None) -> list[tuple[float, float]]:
+    """The largest stable response and where it is, if there is one."""
+    top = highest(stretches(graph, measure))
+    return [] if top is None else [(top.response, top.value)]
+
+
 def peak(found: Findings) -> dict[str, float]:
     """The largest response, over all that coexist, and where it is."""
     name = default_measure(found.graph)
-    known = [highest(stretch)[:2] for stretch in stretches(found.graph)]
+    known = _highest(found.graph)
     known += [(float(measures.get(name, np.nan)), value) for value, measures, _ in found.simulated]
     known += [(float(met.measures.get(name, np.nan)), met.value) for met in found.unbranched]
     value, place = max((pair for pair in known if np.isfinite(pair[0])), default=(np.nan, np.nan))
@@ -62,7 +68,7 @@ def peak(found: Findings) -> dict[str, float]:
 
 def largest(found: Findings, measure: str) -> dict[str, float]:
     """The largest value of any measure, over all stable motions that coexist, and where it is; no number where one was simulated that lacks it."""
-    known = [highest(stretch)[:2] for stretch in stretches(found.graph, measure)]
+    known = _highest(found.graph, measure)
     others = [(measures.get(measure, np.nan), value) for value, measures in _alone(found)]
     if any(np.isnan(value) for value, _ in others):
         known = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -62,30 +62,55 @@ def stretches(graph: Graph, measure: str | None = None) -> list[Stretch]:
     return found
 
 
-def highest(stretch: Stretch) -> tuple[float, float, int]:
-    """The largest response on a stretch, where, and the index of the nearest point.
+class Top(NamedTuple):
+    """The largest response of some stretches, where it is, and the index of the nearest point on its branch."""
 
-    Beside the point with the largest response the motion is solved for at further values.
+    response: float
+    value: float
+    index: int
+    stretch: Stretch
+
+
+def highest(parts: Sequence[Stretch]) -> Top | None:
+    """The largest response; None where there is none.
+
+    Beside the largest of the points the motion is solved for at further values: on the stretches whose response may rise, between
+    points, above that of all others by as much as it falls to the neighbours.
     """
+    tops = [_top(part) for part in parts if np.any(np.isfinite(part.response))]
+    sure = max((top.response for top in tops), default=-np.inf)
+    refined = [_refined(top) if top.response + _fall(top) >= sure else top for top in tops]
+    return max(refined, key=lambda top: top.response, default=None)
+
+
+def _top(stretch: Stretch) -> Top:
+    """At the points."""
+    at = int(np.nanargmax(stretch.response))
+    return Top(float(stretch.response[at]), float(stretch.values[at]), stretch.first + at, stretch)
+
+
+def _fall(top: Top) -> float:
+    """How much the response falls from a point to the lower of its neighbours."""
+    at = top.index - top.stretch.first
+    near = top.stretch.response[max(at - 1, 0) : at + 2]
+    return top.response - float(np.nanmin(near)) if np.all(np.isfinite(near)) else np.inf
+
+
+def _refined(top: Top) -> Top:
+    """With what lies between the points."""
     from scipy.optimize import minimize_scalar
 
-    values, response = stretch.values, stretch.response
-    if not np.any(np.isfinite(response)):
-        return -np.inf, np.nan, stretch.first
-    top = int(np.nanargmax(response))
-    best = float(response[top]), float(values[top])
-    a, b = max(top - 1, 0), min(top + 1, len(values) - 1)
-    low, high = sorted((float(values[a]), float(values[b])))
+    stretch, at = top.stretch, top.index - top.stretch.first
+    a, b = max(at - 1, 0), min(at + 1, len(stretch.values) - 1)
+    low, high = sorted((float(stretch.values[a]), float(stretch.values[b])))
     between = _between(stretch, a, b) if low < high else None
-    if between is not None:
-        found: Any = minimize_scalar(
-            lambda p: -between(p),
-            bounds=(low, high),
-            method="bounded",
-            options={"xatol": SHARP * (high - low)},
-        )
-        best = max(best, (-float(found.fun), float(found.x)))
-    return best[0], best[1], stretch.first + top
+    if between is None:
+        return top
+    sharp = {"xatol": SHARP * (high - low)}
+    found: Any = minimize_scalar(lambda p: -between(p), bounds=(low, high), method="bounded", options=sharp)
+    return max(
+        top, top._replace(response=-float(found.fun), value=float(found.x)), key=lambda one: one.response
+    )
 
 
 def _between(stretch: Stretch, a: int, b: int) -> Callable[[float], float] | None:

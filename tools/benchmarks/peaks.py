@@ -93,9 +93,9 @@ def confirmed(one: Drawn, half_width: float, depth: int) -> float:
     seed = one.family({"half_width": half_width})
     graph = cv.diagram(seed, over=OVER, within=one.within, depth=depth)
     complete(graph, population_of(seed, OVER), 5)
-    (peak, peak_at, _), stretch = max(
-        ((highest(s), s) for s in stretches(graph)), key=lambda pair: pair[0][0]
-    )
+    top = highest(stretches(graph))
+    assert top is not None
+    peak, peak_at, _, stretch = top
     # the farthest such point: next to the end of a stretch the least disturbance leads away
     near = np.flatnonzero(stretch.response >= (1.0 - 0.5 * AGREE) * peak)
     index = int(near[np.argmax(np.abs(stretch.values[near] - peak_at))])

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shutil
 
 import numpy as np
@@ -98,6 +99,27 @@ def test_a_page_is_printed_on_paper(tmp_path):
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
 
 
+def test_without_a_browser_the_answer_is_set_on_two_sheets(tmp_path):
+    from contvines.plots.figures import new_figure
+    from contvines.report.paper import set_answer
+
+    figure = new_figure(figsize=(9.0, 3.4))
+    rows = [
+        ("what", "1 mm", "a remark that is long enough to go on in a second line of its column, " * 2)
+    ] * 14
+    answer = Answer(
+        "A study",
+        "The answer costs $5 and 100 %.",
+        ["A sentence. " * 20],
+        [(figure, "A picture.")],
+        [("One", rows), ("Two", rows)],
+        [("Assumed", ["this", "that"])],
+    )
+    set_answer(answer, tmp_path / "a.pdf")
+    text = (tmp_path / "a.pdf").read_bytes()
+    assert text.startswith(b"%PDF") and len(re.findall(rb"/Type /Page\b", text)) == 2
+
+
 @pytest.mark.slow
 def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
@@ -139,4 +161,7 @@ def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path
     assert run("report", "machine-recommend.json") == 0
     page = (tmp_path / "machine-recommend.html").read_text()
     assert "<svg" in page and "tuned absorber of the same mass" in page and "3.2 kg" in page
+    monkeypatch.setattr("contvines.report.answer.BROWSERS", ())
+    assert run("report", "machine-recommend.json", "--pdf", "a.pdf") == 0
+    assert "a.pdf (set by matplotlib, as no browser" in capsys.readouterr().out
     assert page.count("not known") <= 1 + len(found.unknown)  # nothing is hidden, nothing is dumped

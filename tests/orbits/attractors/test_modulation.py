@@ -76,4 +76,6 @@ def test_a_beating_page_has_the_band_of_its_two_frequencies():
     )  # fmt: skip
     (row,) = sweep(machine, "w", [w])
     low, mean, high = (row.measures[f"modulated_{name}"] for name in ("low", "mean", "high"))
-    assert high == pytest.approx(2.0 / 0.2, rel=0.01) and low < 0.3 * high and row.modulation.startswith("weak")
+    assert (
+        high == pytest.approx(2.0 / 0.2, rel=0.01) and low < 0.3 * high and row.modulation.startswith("weak")
+    )
