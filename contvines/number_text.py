@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 
 ROUNDING = 1e-14  # beside numbers of order one this is zero
 ROUNDING_APART = 1e-6  # beside what is to be told apart this is zero
+PART = 1e-3  # of an interval, which can be told apart in tables
 WHOLE = 1e6  # numbers below it have no exponent
 DIGITS = 4  # that mean something to who reads a table; files and JSON have all
 
@@ -18,17 +20,31 @@ def number_text(value: float, digits: int = 10, unit: float = 1.0) -> str:
 def figures(value: float, apart: float = 0.0) -> str:
     """A number as tables for people have it: four digits, and more where numbers so far `apart` would look the same.
 
-    What is a millionth of `apart` or rounding beside one is 0; whole numbers below a million are whole.
+    What is a millionth of `apart` or rounding beside one is 0; numbers below a million have no exponent.
 
     >>> [figures(x) for x in (86.9812, 0.0123456, 12345.6, 1.5e7, 0.7)]
     ['86.98', '0.01235', '12346', '1.5e+07', '0.7']
-    >>> figures(7.951237, apart=2e-4)
-    '7.9512'
+    >>> figures(7.951237, apart=2e-5)
+    '7.95124'
     """
     size = abs(value)
     if not math.isfinite(value):
         return str(value)
     if size <= max(ROUNDING, ROUNDING_APART * apart):
         return "0"
-    digits = max(DIGITS, math.ceil(math.log10(size / apart)) + 1 if apart > 0.0 else 0)
-    return f"{value:.0f}" if 10.0**digits <= size < WHOLE else f"{value:.{digits}g}"
+    whole = math.floor(math.log10(size)) + 1
+    digits = max(DIGITS, whole + math.ceil(-math.log10(apart)) if apart > 0.0 else 0)
+    return f"{value:.0f}" if digits < whole and size < WHOLE else f"{value:.{digits}g}"
+
+
+def figures_in(within: tuple[float, float], others: Sequence[float] = ()) -> Callable[[float], str]:
+    """`figures` for values of a parameter in an interval: a thousandth of it can be told apart, and so can the different ones of some values."""
+    width = within[1] - within[0]
+    apart = PART * width if 0.0 < width < math.inf else 0.0
+    known = sorted(others)
+
+    def text(value: float) -> str:
+        gaps = [abs(value - other) for other in known if abs(value - other) > ROUNDING * abs(value)]
+        return figures(value, min([apart, *(0.5 * gap for gap in gaps)]))
+
+    return text

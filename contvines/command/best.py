@@ -11,6 +11,7 @@ import typer
 
 from contvines.command.frame import draw, tell
 from contvines.command.study_data import Sort, Study
+from contvines.number_text import figures
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
@@ -191,8 +192,8 @@ def _in_part(found: Survey, outcome: str, largest: bool, quantile: float | None)
         point, number = found.best(outcome, largest, quantile, least)
     except ValueError:
         return ""
-    place = ", ".join(f"{name} = {value:.6g}" for name, value in point.items())
-    return f"; with --covered {least:g}, which takes what is known of the better half, it is {number:.6g} at {place}"
+    place = ", ".join(f"{name} = {figures(value)}" for name, value in point.items())
+    return f"; with --covered {least:g}, which takes what is known of the better half, it is {figures(number)} at {place}"
 
 
 def _wish(largest: bool, quantile: float | None, samples: int) -> str:
@@ -234,7 +235,7 @@ def _told(
     import numpy as np
 
     def shown(name: str, value: float) -> str:
-        return f"{value:.4g} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"
+        return f"{figures(value)} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"
 
     lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
     lines.append(f"{outcome} = {shown(outcome, choice.outcome)}, {wish}")
@@ -249,6 +250,6 @@ def _told(
         for name, value in choice.others.items():
             column = found.columns.get(name)
             known = column[np.isfinite(column)] if column is not None else np.array([])
-            span = f"  ({known.min():.4g} to {known.max():.4g})" if known.size else ""
+            span = f"  ({figures(known.min())} to {figures(known.max())})" if known.size else ""
             lines.append(f"  {name} = {shown(name, value)}{span}")
     return "\n".join(lines)

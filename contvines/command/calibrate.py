@@ -10,6 +10,7 @@ import typer
 from contvines.command.frame import check_plot, draw, tell
 from contvines.command.options import JsonOption, PlotOption, SizeOption
 from contvines.command.study_data import Sort, Study
+from contvines.number_text import figures
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
@@ -145,9 +146,9 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
     rows = [
         (
             name,
-            f"{value:.6g}",
-            *(f"{end:.6g}" for end in found.intervals[name]),
-            f"{guesses[name]:.6g}",
+            figures(value),
+            *(figures(end) for end in found.intervals[name]),
+            figures(guesses[name]),
             units.get(name, ""),
         )
         for name, value in found.values.items()
@@ -155,7 +156,7 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
     heads = ("parameter", "estimate", "from", "to", "study says", "unit")
     lines = [*Table(heads, rows).lines(terminal_width()), ""]
     lines.append(
-        f"from ... to: {100 * found.confidence:g} % confidence; {found.residuals.size} residuals scatter by {found.scatter:.3g}"
+        f"from ... to: {100 * found.confidence:g} % confidence; {found.residuals.size} residuals scatter by {figures(found.scatter)}"
     )
     names = list(found.values)
     for i, first in enumerate(names):
@@ -171,7 +172,7 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
             ends = ", ".join(f'"{x:.6g} {units[name]}"' for x in (low, high))
         else:
             ends = f"{low:.6g}, {high:.6g}"
-        lines.append(f"vary.{name} = {{ uniform = [{ends}] }}    # {value:.6g}")
+        lines.append(f"vary.{name} = {{ uniform = [{ends}] }}    # {figures(value)}")
     return "\n".join(lines)
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from contvines.number_text import figures
+
 if TYPE_CHECKING:
     import numpy as np
     from matplotlib.axes import Axes
@@ -130,7 +132,7 @@ def told_compared(model: Any, over: str, within: tuple[float, float], kinds: Seq
 
     unit, place = model.units.get(SHOWN[0], ""), model.units.get(over, "")
     said = [
-        f"{NAMES[kind]} {peak:.4g} {unit} at {over} = {at:.4g} {place}".replace("  ", " ").rstrip()
+        f"{NAMES[kind]} {figures(peak)} {unit} at {over} = {figures(at)} {place}".replace("  ", " ").rstrip()
         for kind, (peak, at) in peaks_compared(model, over, within, kinds).items()
     ]
     return f"to compare with, at most: {'; '.join(said)}"

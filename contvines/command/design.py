@@ -13,6 +13,7 @@ from contvines.command.frame import check_plot, tell
 from contvines.command.frame import draw as draw_in
 from contvines.command.options import JsonOption, StudyArgument
 from contvines.command.study_data import Sort, Study
+from contvines.number_text import figures
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -160,7 +161,7 @@ def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, 
         given.append(
             (line.name, line.symbol, value, "mm" if length else line.unit.replace("1", ""), line.meaning)
         )
-    return [(name, symbol, f"{value:.4g}", unit, meaning) for name, symbol, value, unit, meaning in given]
+    return [(name, symbol, figures(value), unit, meaning) for name, symbol, value, unit, meaning in given]
 
 
 def table(title: str, lines: list[tuple[str, str, str, str, str]], assumed: Iterable[str] = ()) -> str:

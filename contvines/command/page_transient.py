@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import Told, loads_rows
+from contvines.number_text import figures
 
 
 def frequency_on_line(study: Study, text: str) -> float:
@@ -93,7 +94,7 @@ def of_page(
                     "taken_share",
                     seen.share(end),
                     "",
-                    f"of the first energy: taken by both in {end:.6g} {second}".rstrip(),
+                    f"of the first energy: taken by both in {figures(end)} {second}".rstrip(),
                 )
             )
     series = [

@@ -12,6 +12,7 @@ import typer
 from contvines.command.frame import check_plot, draw, say, tell
 from contvines.command.options import JsonOption, PlotOption, SizeOption
 from contvines.command.study_data import Sort, Study
+from contvines.number_text import figures
 
 if TYPE_CHECKING:
     from orbits.design.random_excitation import RandomResponse
@@ -121,7 +122,7 @@ class Found:
 def _rounded(value: float, error: float) -> tuple[str, str]:
     """A number to the second digit of its error, and the error."""
     if not (error > 0.0 and math.isfinite(error)) or error < 1e-9 * abs(value):
-        return f"{value:.4g}", "" if math.isnan(error) else "0"
+        return figures(value), "" if math.isnan(error) else "0"
     digits = max(2, min(6, math.ceil(math.log10(max(abs(value), error) / error)) + 2))
     return f"{value:.{digits}g}", f"{error:.2g}"
 
@@ -208,5 +209,5 @@ def _in_units(study: Study, params: Any, response: RandomResponse, hertz: bool) 
         unit = shown.get(name, "") if page else unit_of("length")
         densities[name] = (values * factor**2 * turn / rate, f"{unit}^2/Hz" if unit else "")
     seconds = response.duration / rate
-    title = f"{study.path.name} under random excitation: {response.records} records of {seconds:.4g} {'s' if hertz else 'units of time'}"
+    title = f"{study.path.name} under random excitation: {response.records} records of {figures(seconds)} {'s' if hertz else 'units of time'}"
     return Found(title, rows, response.omega * rate / turn, "Hz" if hertz else "", densities)

@@ -6,6 +6,7 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from contvines.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 
 MOST = 4  # sentences about what is not known
@@ -166,7 +167,7 @@ class Recommendation:
         larger = LARGER.get(unit)
         if larger is not None and abs(value) >= THOUSAND:
             value, unit = value / THOUSAND, larger
-        return f"{value:.4g} {unit}".rstrip()
+        return f"{figures(value)} {unit}".rstrip()
 
     @property
     def chosen(self) -> Place | None:
@@ -354,7 +355,7 @@ class Recommendation:
     def tables(self) -> list[tuple[str, list[tuple[str, str, str]]]]:
         """All tables with their titles; those that have rows."""
         low, high = self.within
-        over = f"Largest response, {self.parameter} {low:.4g} to {self.shown(self.parameter, high)}"
+        over = f"Largest response, {self.parameter} {figures(low)} to {self.shown(self.parameter, high)}"
         at = "" if self.value is None else f" at {self.name} = {self.shown(self.name, self.value)}"
         found = [
             (over, self.rows),

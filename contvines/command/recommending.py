@@ -15,6 +15,7 @@ import numpy as np
 
 from contvines.command.recommendation import Curve, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
+from contvines.number_text import figures
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
@@ -290,7 +291,7 @@ class _Work:
         """All that is told of the choice."""
         study = self.study
         unknown = [
-            f"the response at {self.name} = {place.value:.4g}"
+            f"the response at {self.name} = {figures(place.value)}"
             + (f" of {place.unknown} of {place.samples} samples" if place.samples > 1 else "")
             + (f" ({place.why})" if place.why else "")
             for place in places
@@ -342,7 +343,8 @@ class _Work:
         """The study's numbers as text, with what is uncertain."""
         known = getattr(self.model, "quantities", None) or self.study.parameters
         found = {
-            name: f"{value:.4g} {self.model.units.get(name, '')}".rstrip() for name, value in known.items()
+            name: f"{figures(value)} {self.model.units.get(name, '')}".rstrip()
+            for name, value in known.items()
         }
         found.pop(self.study.parameter, None)
         for name, values in self.drawn.items():
@@ -428,7 +430,7 @@ class _Work:
         length, _, seconds, _ = scales(model, params)
         seen = start_up(model, params)
         self.assumed.append(
-            f"start-up from rest at {self.study.parameter} = {at:.4g} {self.units.get(self.study.parameter, '')}".rstrip()
+            f"start-up from rest at {self.study.parameter} = {figures(at)} {self.units.get(self.study.parameter, '')}".rstrip()
             + ", where the bare machine moves most"
         )
         thin = slice(None, None, max(1, len(seen.times) // DRAWN))

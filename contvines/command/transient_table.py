@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.number_text import figures
+
 if TYPE_CHECKING:
     import numpy as np
     from matplotlib.figure import Figure
@@ -47,7 +49,7 @@ class Told:
 
         table = Table(
             ("figure", "value", "unit", "what it is"),
-            [(name, f"{value:.6g}", unit, words) for name, value, unit, words in self.rows],
+            [(name, figures(value), unit, words) for name, value, unit, words in self.rows],
         )
         return "\n".join([fitted(self.title), "", *table.lines(terminal_width())])
 

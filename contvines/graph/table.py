@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS, KINDS
 from ..branches.special_point import TRANSCRITICAL
-from ..number_text import number_text
+from ..number_text import figures_in
 from ..text_table import Table, fitted, terminal_width
 from .proving import mark, told
 from .shortening import short_text, short_word, short_words
@@ -65,7 +64,7 @@ def title(graph: Graph) -> str:
 def branches_table(graph: Graph) -> Table:
     """A row per branch: what it is, where it is and is stable, and the special points at its ends, or why it ends."""
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
-    number = partial(number_text, digits=6, unit=size_of(graph.within))
+    number = figures_in(graph.within)
     rows = []
     for branch in graph.branches.values():
         low, high = branch.range
@@ -89,6 +88,7 @@ def special_table(graph: Graph) -> Table:
     """A row per special point: its kind, branch, value, what it leads to."""
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
     rows, width = [], graph.within[1] - graph.within[0]
+    number = figures_in(graph.within, [point.value for point in graph.special.values()])
     for point in graph.special.values():
         side = point.criticality or (TRANSCRITICAL if TRANSCRITICAL in point.remarks else "")
         remarks = [side, "" if point.real else "virtual", mark(graph, point.label)]
@@ -104,7 +104,7 @@ def special_table(graph: Graph) -> Table:
         if not targets and open_end and reasons:
             targets.append(f"({'; '.join(reasons)})")
         about = " ".join(filter(None, remarks))
-        value = number_text(point.value, 12, size_of(graph.within))
+        value = number(point.value)
         rows.append((point.label, point.kind, point.branch, value, about, "; ".join(targets)))
     return Table(("point", "kind", "on", name, "", "leads to"), rows, ("",))
 
@@ -121,7 +121,7 @@ def attractors_table(graph: Graph) -> Table:
         key = (about.branch or "", about.name, about.periods)
         met.setdefault(key, []).append(about)
     rows = []
-    number = partial(number_text, digits=6, unit=size_of(graph.within))
+    number = figures_in(graph.within)
     for (label, motion, periods), seen in met.items():
         share = sum(a.share * parts[a.value] for a in seen if a.starts)
         span = f"{number(seen[0].value)}..{number(seen[-1].value)}"
@@ -145,7 +145,7 @@ def simulated(graph: Graph) -> str:
     """At how many values an atlas has simulated, how long nothing new was met, and where nothing is known, in a sentence."""
     count = len({a.value for a in graph.attractors if a.starts})
     line = f"starts simulated at {count} value{'' if count == 1 else 's'} of {graph.parameter}"
-    number = partial(number_text, digits=6, unit=size_of(graph.within))
+    number = figures_in(graph.within)
     if empty := graph.settings.get("unknown"):
         stretches = ", ".join(f"{number(a)}..{number(b)}" for a, b in empty)
         line += f"; what attracts on {stretches} is not known: give values there, or raise scan or budget"
@@ -194,12 +194,6 @@ def ends(branch: Branch) -> str:
     if told[0] == told[1] and not first:
         return f"{told[0]} (both ends)"
     return " .. ".join(told)
-
-
-def size_of(within: tuple[float, float]) -> float:
-    """What rounding is measured by: the larger end of an interval, 1 where there is none."""
-    found = max(abs(end) for end in within)
-    return found if 0.0 < found < float("inf") else 1.0
 
 
 def with_unit(name: str, unit: str | None) -> str:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from contvines.shared.modulation import BAND
 
 from ..graph.shortening import motion_name, short_word
-from ..graph.table import size_of, with_unit
-from ..number_text import number_text
+from ..graph.table import with_unit
+from ..number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
@@ -61,14 +61,13 @@ def _title(chart: Chart) -> str:
 def _tables(chart: Chart) -> list[Table]:
     """Loci, then points and regions where there are any."""
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
-    sizes = [size_of(within) for within in chart.within]
+    at = [
+        figures_in(within, [point.value[k] for point in chart.points.values()]) for k, within in enumerate(chart.within)
+    ]  # fmt: skip
 
     def across(locus: Locus, which: int) -> str:
         ends = locus.values[:, which].min(), locus.values[:, which].max()
-        return "..".join(number_text(end, 6, sizes[which]) for end in ends)
-
-    def at(value: Any, which: int, digits: int) -> str:
-        return number_text(value[which], digits, sizes[which])
+        return "..".join(map(at[which], ends))
 
     loci = [
         (
@@ -87,8 +86,8 @@ def _tables(chart: Chart) -> list[Table]:
         (
             point.label,
             point.kind,
-            at(point.value, 1, 12),
-            at(point.value, 0, 12),
+            at[1](point.value[1]),
+            at[0](point.value[0]),
             ", ".join(point.on),
             _notes(point),
         )
@@ -96,8 +95,8 @@ def _tables(chart: Chart) -> list[Table]:
     ]
     regions = [
         (
-            at(region.at, 1, 4),
-            at(region.at, 0, 4),
+            at[1](region.at[1]),
+            at[0](region.at[0]),
             f"{100.0 * region.share:.1f} %",
             _stable(region, at),
         )
@@ -108,17 +107,17 @@ def _tables(chart: Chart) -> list[Table]:
     return [*found, *([Table(head, regions)] if regions else [])]
 
 
-def _stable(region: Region, at: Callable[..., str]) -> str:
+def _stable(region: Region, at: Sequence[Callable[[float], str]]) -> str:
     """What is stable in a region; where its places disagree, what is stable elsewhere in it."""
     told = ", ".join(map(short_word, region.words)) or "-"
     for motion in region.attractors:
         if "modulation" in motion:
-            low, mean, high = (number_text(motion[name], 4) for name in BAND)
+            low, mean, high = (figures(motion[name]) for name in BAND)
             told += f" (per period {low} to {high}, mean {mean})"
     if not region.others:
         return told
     apart = [
-        f"{', '.join(map(short_word, words)) or '-'} at {at(place, 1, 4)}, {at(place, 0, 4)}"
+        f"{', '.join(map(short_word, words)) or '-'} at {at[1](place[1])}, {at[0](place[0])}"
         for place, words in region.others
     ]
     return f"{told}; elsewhere in the region: {'; '.join(apart)}"
@@ -135,7 +134,7 @@ def _realness(locus: Locus) -> str:
 
 
 def _notes(point: PlanePoint) -> str:
-    parts = [f"{name} = {number_text(value, 6)}" for name, value in point.coefficients.items()]
+    parts = [f"{name} = {figures(value)}" for name, value in point.coefficients.items()]
     if not point.real:
         parts.append("virtual")
     return ", ".join([*parts, point.note] if point.note else parts)

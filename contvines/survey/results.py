@@ -15,6 +15,7 @@ import numpy as np
 from ..continuation.hints import hinted
 from ..graph.table import with_unit
 from ..interrupts import Resumable
+from ..number_text import figures
 from ..text_table import Table, fitted, terminal_width
 from .files import read, write
 from .outcomes import KNOWN, OF_ALL
@@ -211,7 +212,7 @@ class Survey(Resumable):
         rows: list[tuple[str, ...]] = []
         for name, values in self.columns.items():
             known = values[np.isfinite(values)]
-            numbers = [f"{f(known):.4g}" if known.size else "-" for f in (np.min, np.median, np.max)]
+            numbers = [figures(f(known)) if known.size else "-" for f in (np.min, np.median, np.max)]
             rows.append((name, *numbers, self.units.get(name, "")))
         return Table(("outcome", "smallest", "median", "largest", "unit"), rows)
 

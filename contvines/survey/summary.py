@@ -10,14 +10,13 @@ import numpy as np
 from ..graph.graph import Graph
 from ..graph.measures import default_measure
 from ..graph.shortening import motion_name
-from ..graph.table import size_of, with_unit
-from ..number_text import number_text
+from ..graph.table import with_unit
+from ..number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .stretches import gaps, stretches
 
 MOST = 8  # motions that are listed
 LEAST = 1e-3  # of the interval: motions that are stable on less are counted only
-DIGITS = 4
 
 
 def summary(graph: Graph, width: int | None = None) -> str:
@@ -30,7 +29,7 @@ def summary(graph: Graph, width: int | None = None) -> str:
         Characters to a line; those of the terminal by default.
     """
     width = terminal_width() if width is None else width
-    measure, size = default_measure(graph), size_of(graph.within)
+    measure, number = default_measure(graph), figures_in(graph.within)
     met: dict[tuple[str, str], list[Any]] = {}
     for part in stretches(graph):
         about = part.branch.description
@@ -42,15 +41,13 @@ def summary(graph: Graph, width: int | None = None) -> str:
     for _, (word, kind), parts in listed:
         top = max(parts, key=lambda part: _largest(part)[0])
         height, at = _largest(top)
-        ends = [f"{number_text(a, DIGITS, size)}..{number_text(b, DIGITS, size)}" for a, b in _united(parts)]
+        ends = [f"{number(a)}..{number(b)}" for a, b in _united(parts)]
         rows.append(
             (
                 word,
                 kind,
                 ", ".join(ends[:3]) + (f" and {len(ends) - 3} more" if len(ends) > 3 else ""),
-                f"{number_text(height, DIGITS)} at {number_text(at, DIGITS, size)}"
-                if np.isfinite(height)
-                else "-",
+                f"{figures(height)} at {number(at)}" if np.isfinite(height) else "-",
             )
         )
     unit = graph.units.get(graph.parameter)
@@ -70,7 +67,7 @@ def summary(graph: Graph, width: int | None = None) -> str:
     part = sum(b - a for a, b in open_) / length
     if part >= LEAST and rows:
         low, high = max(open_, key=lambda gap: gap[1] - gap[0])
-        where = f"{graph.parameter} = {number_text(low, DIGITS, size)} to {number_text(high, DIGITS, size)} {unit or ''}".rstrip()
+        where = f"{graph.parameter} = {number(low)} to {number(high)} {unit or ''}".rstrip()
         lines.append(
             fitted(
                 f"no stable motion on a branch in {100.0 * part:.3g} % of the interval, most of it {where}: modulated or chaotic motions, or motions that are not connected to these"
