@@ -333,6 +333,10 @@ class _Work:
         ]
         model = self._at(best.value)
         checked, curves = self._checked(best.value, model)
+        if checked is not None and abs(checked[1] - checked[0]) > AGREES * checked[0]:
+            unknown.insert(
+                0, f"the largest response at the choice: {checked[0]:.4g} by the diagram, {checked[1]:.4g} by simulation"
+            )  # fmt: skip
         return Recommendation(
             **given, value=best.value, tolerance=_tolerance(places, best, cost), works=works, met=shares,
             loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked,
@@ -367,11 +371,11 @@ class _Work:
         return peaks_compared(model, self.study.parameter, self.study.within, KINDS)
 
     def _checked(self, value: float, model: Any) -> tuple[tuple[float, float] | None, list[Curve]]:
-        """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value just
-        before the motion ends, if it is largest there); of simulations up and down, if these meet more. The responses."""
+        """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value where it
+        is next to the largest); of simulations up and down, if these meet more. The responses."""
         from contvines.command.survey_study import options_of
         from contvines.survey.outcomes import peak
-        from contvines.survey.stretches import highest, stretches
+        from contvines.survey.stretches import highest, inside, stretches
         from contvines.survey.work import Job, work
         from orbits.attractors.sweep import sweep
 
@@ -385,12 +389,10 @@ class _Work:
             seen.extend(Curve("stable", part.values.tolist(), part.response.tolist()) for part in parts)
             top = highest(parts)
             if top is not None:  # from itself: other starts may miss a motion that few of them lead to
-                part = top.stretch
-                inner = min(
-                    max(top.index, part.first + 1), max(part.last - 1, part.first)
-                )  # at an end it is about to be left
-                near = inner - part.first
-                compared.append((float(part.response[near]), _simulated(part.branch.orbit(inner), measure)))
+                part, at = top.stretch, inside(top, 0.5 * AGREES)
+                compared.append(
+                    (float(part.response[at - part.first]), _simulated(part.branch.orbit(at), measure))
+                )
             return peak(found)
 
         job = Job(self.family, over, (low, high), (keep,), options={**options_of(self.study), "depth": 0})

@@ -113,6 +113,18 @@ def _refined(top: Top) -> Top:
     )
 
 
+def inside(top: Top, part: float) -> int:
+    """Index of the point that is farthest inside the stretch among those whose response is within a part of the largest one.
+
+    The largest response often stands at the very end of a stretch, where the motion touches a wall or loses its stability: the least disturbance
+    leads away from there, and a simulation that begins there proves nothing.
+    """
+    near = np.flatnonzero(top.stretch.response >= (1.0 - part) * top.response)
+    if not near.size:
+        return top.index
+    return top.stretch.first + int(near[np.argmax(np.abs(top.stretch.values[near] - top.value))])
+
+
 def _between(stretch: Stretch, a: int, b: int) -> Callable[[float], float] | None:
     """The response of the motion at a value between points a and b of a stretch; None for a branch without its problem."""
     from ..continuation.engine import Engine

@@ -1,6 +1,7 @@
 """Peaks of drawn surveys beside brute force: simulations up, down and from random states, refined about the largest response.
 
     python -m tools.benchmarks.peaks [--surveys 20] [--machines 2] [--first 0] [--depth 1] [--values 121]
+    python -m tools.benchmarks.peaks --design --depth 0 --surveys 30      the thirty places of docs/design.md
 
 Each machine of a survey must have the peak of the simulations to 1 %, or say in its note that it is not known in the whole interval. A peak
 above that of all simulations is confirmed by a simulation from the survey's own motion.
@@ -17,9 +18,10 @@ import numpy as np
 
 import contvines as cv
 from contvines.coexistence.population import population_of
+from contvines.command.study import read_study
 from contvines.survey import survey
 from contvines.survey.completion import complete
-from contvines.survey.stretches import highest, stretches
+from contvines.survey.stretches import highest, inside, stretches
 from orbits.attractors.sweep import sweep
 from orbits.design import Family
 from orbits.machines.physical import physical
@@ -61,6 +63,17 @@ def drawn(number: int, machines: int) -> Drawn:
     return Drawn(Family(machine, None, over=OVER, within=within), half_widths.tolist(), within)
 
 
+def designed(number: int) -> Drawn:
+    """The machine of docs/design.md with a half-width, friction and restitution drawn at random."""
+    study = read_study("examples/design/machine.toml")
+    rng = np.random.default_rng([34, number])
+    machine = study.model.with_(
+        restitution=float(rng.uniform(0.6, 0.8)), friction=float(rng.uniform(0.1085, 0.2015))
+    )
+    half_width = float(np.exp(rng.uniform(np.log(10.0), np.log(110.0))))
+    return Drawn(Family(machine, None, over=OVER, within=study.within), [half_width], study.within)
+
+
 def brute(machine: Any, within: tuple[float, float], values: int) -> tuple[float, float]:
     """The largest response that simulations meet, and where."""
     grid = np.linspace(*within, values)
@@ -95,15 +108,12 @@ def confirmed(one: Drawn, half_width: float, depth: int) -> float:
     complete(graph, population_of(seed, OVER), 5)
     top = highest(stretches(graph))
     assert top is not None
-    peak, peak_at, _, stretch = top
-    # the farthest such point: next to the end of a stretch the least disturbance leads away
-    near = np.flatnonzero(stretch.response >= (1.0 - 0.5 * AGREE) * peak)
-    index = int(near[np.argmax(np.abs(stretch.values[near] - peak_at))])
-    orbit = stretch.branch.orbit(stretch.first + index)
+    stretch, index = top.stretch, inside(top, 0.5 * AGREE)
+    orbit = stretch.branch.orbit(index)
     first = {name: float(values[0]) for name, values in orbit.sample(400).items()}
     start = {name: first[name] for name in ("phase", "w", "w_rate", "v", "v_rate")}
     machine, _ = one.family.machine_at({"half_width": half_width})
-    (row,) = sweep(machine, OVER, [float(stretch.values[index])], start=start)
+    (row,) = sweep(machine, OVER, [float(stretch.values[index - stretch.first])], start=start)
     return row.measures[MEASURE]
 
 
@@ -128,14 +138,13 @@ class Verdict:
         return not self.agrees and not self.note
 
 
-def judged(number: int, machines: int, depth: int, values: int) -> list[Verdict]:
-    """A drawn survey, machine by machine."""
-    one = drawn(number, machines)
+def judged(number: int, one: Drawn, depth: int, values: int) -> list[Verdict]:
+    """A survey, machine by machine."""
     begun = time.process_time()
     made = survey(
         one.family, {"half_width": one.half_widths}, over=OVER, within=one.within, outcomes=("peak",), depth=depth, workers=1
     )  # fmt: skip
-    each = (time.process_time() - begun) / machines
+    each = (time.process_time() - begun) / len(one.half_widths)
     found = []
     for i, half_width in enumerate(one.half_widths):
         machine, _ = one.family.machine_at({"half_width": half_width})
@@ -160,10 +169,12 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--depth", type=int, default=1)
     parser.add_argument("--values", type=int, default=121)
+    parser.add_argument("--design", action="store_true", help="places of the machine of docs/design.md")
     asked = parser.parse_args()
     all_ = []
     for number in range(asked.first, asked.first + asked.surveys):
-        for v in judged(number, asked.machines, asked.depth, asked.values):
+        one = designed(number) if asked.design else drawn(number, asked.machines)
+        for v in judged(number, one, asked.depth, asked.values):
             all_.append(v)
             said = "agrees" if v.agrees else "not known" if v.note else "WRONG"
             print(

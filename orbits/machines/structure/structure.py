@@ -23,7 +23,7 @@ from orbits.machines.page.machine import Machine
 from orbits.machines.parameters import ParameterError
 from orbits.machines.structure.matrices import matrix
 from orbits.machines.structure.reduction import Reduced, reduced
-from orbits.symbols import cos
+from orbits.symbols import cos, sqrt
 
 Element = Mapping[str, float]
 FIELDS: dict[str, dict[str, float | None]] = {  # of each kind of element; None: must be given
@@ -299,13 +299,16 @@ def _motion(rows: _Rows, elements: Mapping[str, Sequence[Element]]) -> Any:
 
 def _press(rows: _Rows, k: int, wall: Element, state: Any, p: Any) -> Any:
     """The force with which an elastic wall presses."""
-    direction = wall["side"] * rows.between(wall)
-    force = getattr(p, rows.name("wall", k, "stiffness")) * (
-        rows.stretch(state, direction) - getattr(p, rows.name("wall", k, "gap"))
-    )
+    force = getattr(p, rows.name("wall", k, "stiffness")) * _beyond(rows, k, wall, state, p)
     if wall["loss"]:
+        direction = wall["side"] * rows.between(wall)
         force = force + getattr(p, rows.name("wall", k, "loss")) * rows.stretch(state, direction, speed=True)
     return force
+
+
+def _beyond(rows: _Rows, k: int, wall: Element, state: Any, p: Any) -> Any:
+    """How far the structure has gone beyond the gap of a wall."""
+    return rows.stretch(state, wall["side"] * rows.between(wall)) - getattr(p, rows.name("wall", k, "gap"))
 
 
 def _pressed(k: int, wall: Element, contact: Any) -> Any:
@@ -362,7 +365,7 @@ def _absorber(rows: _Rows, k: int, absorber: Element) -> list[Any]:
 
 
 def _energy(rows: _Rows, small: Reduced, elements: Mapping[str, Sequence[Element]]) -> Any:
-    """Of the structure and its absorbers; what elastic walls store is left out."""
+    """Of the structure, its absorbers and its elastic walls: half the stiffness times the square of how deep they are pressed in."""
 
     def energy(state: Any, phase: Any, p: Any) -> Any:
         first, total = len(rows.positions), 0.0
@@ -377,6 +380,11 @@ def _energy(rows: _Rows, small: Reduced, elements: Mapping[str, Sequence[Element
                 total
                 + 0.5 * getattr(p, rows.name("absorber", k, "mass")) * state[first + rows.count + k] ** 2
             )
+        for k, wall in enumerate(elements["wall"]):
+            if "stiffness" in wall:
+                beyond = _beyond(rows, k, wall, state, p)
+                deep = 0.5 * (beyond + sqrt(beyond**2))
+                total = total + 0.5 * getattr(p, rows.name("wall", k, "stiffness")) * deep**2
         return total
 
     return energy

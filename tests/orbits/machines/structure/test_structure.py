@@ -138,3 +138,21 @@ ONE = [[1.0]]
 def test_what_is_no_structure_is_refused(arguments, options, says):
     with pytest.raises(ParameterError, match=says):
         structure(*arguments, **options)
+
+
+def test_an_elastic_wall_stores_what_the_masses_lose():
+    """Without damping the energy stays; at the turning point 1/2 k (x - gap)^2 + 1/2 x^2 is that of the start."""
+    from orbits.design.page_transients import page_transient
+
+    machine = structure(
+        [[1.0]],
+        [[0.0]],
+        [[1.0]],
+        forces=[{"at": 1, "amplitude": 0.0}],
+        walls=[{"at": 1, "gap": 0.5, "stiffness": 9.0}],
+    )
+    run = page_transient(machine, machine.vector(), {"x1": 0.0, "v1": 1.0}, time=20.0)
+    assert run.energy == pytest.approx(np.full(len(run.times), 0.5), rel=1e-9)
+    # 9/2 (x - 1/2)^2 + x^2/2 = 1/2 at the turn: 10 x^2 - 9 x + 5/4 = 0
+    turn = (9.0 + np.sqrt(81.0 - 50.0)) / 20.0
+    assert run.states["x1"].max() == pytest.approx(turn, rel=1e-3)
