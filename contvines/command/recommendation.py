@@ -7,12 +7,22 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from contvines.number_text import figures
+from contvines.shared.modulation import BAND
 from contvines.text_table import Table, fitted, terminal_width
 
 MOST = 4  # sentences about what is not known
 THOUSAND = 1000.0
 LARGER = {"mm": "m", "mm/s": "m/s", "mJ": "J", "mW": "W", "mN": "N"}
 """Units in which a thousand and more of the unit are shown."""
+
+
+MET = {
+    "impacts": "impacts every period or nearly",
+    "modulated": "modulated: impacts come and go",
+    "calm": "calm: slides without impacts",
+    "stuck": "stuck: moves with the oscillator",
+}
+"""What simulated motions are."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +114,7 @@ class Recommendation:
     works : float
     met : dict
         Shares of simulated starts (over samples, values, starts) by what they lead to: ``impacts``, ``modulated``, ``calm``, ``stuck``; the
-        largest responses of the motions without impacts and of the modulated ones, ``calm_peak``, ``modulated_peak``.
+        largest responses of each, ``calm_peak`` and so on; the band of modulated ones (`contvines.shared.modulation`) and how many are strongly so.
     loads : dict
         Largest over the stable motions and samples, by measure.
     checked : (float, float) or None
@@ -180,12 +190,17 @@ class Recommendation:
         return max(place.samples for place in self.places)
 
     @property
+    def _named(self) -> str:
+        """What is chosen, in words."""
+        return self.name.replace("_", " ")
+
+    @property
     def headline(self) -> str:
         """The answer in one sentence."""
         if self.value is None:
-            return f"No {self.name} can be recommended: {self.unknown[0] if self.unknown else 'nothing is known'}."
+            return f"No {self._named} can be recommended: {self.unknown[0] if self.unknown else 'nothing is known'}."
         low, high = self.tolerance
-        said = f"Recommended: {self.name.replace('_', ' ')} {self.shown(self.name, self.value)}"
+        said = f"Recommended: {self._named} {self.shown(self.name, self.value)}"
         if low < high:
             said += f"; from {low:.3g} to {self.shown(self.name, float(f'{high:.3g}'))} it costs less than {100 * self.cost:g} %"
         return said + "."
@@ -211,11 +226,19 @@ class Recommendation:
                 f"A tuned absorber of the same mass would {'do better' if better else 'not do better'}: {self.shown(peak, tuned)}"
                 + (" while it stays in tune." if better else ".")
             )
+        idle = {kind: self.met.get(f"{kind}_peak", math.nan) for kind in MET if kind != "impacts"}
+        idle = {kind: top for kind, top in idle.items() if top > self.met.get("impacts_peak", math.nan)}
+        if idle:
+            kind = max(idle, key=lambda kind: idle[kind])
+            found.append(
+                f"The largest response is that of a motion in which the absorber does not do its work ({MET[kind]}): {self.shown(peak, idle[kind])}; "
+                f"with impacts in every period it is at most {self.shown(peak, self.met['impacts_peak'])}."
+            )
         engaged = self.engaged
         if place is not None and engaged is not None and engaged.engaged < (1.0 - self.cost) * place.worst:
             found.append(
                 f"If the absorber is at work at every {self.parameter} (the lowest response of those that coexist), the best is about "
-                f"{self.name} = {self.shown(self.name, engaged.value)} with {self.shown(peak, engaged.engaged)}; nothing makes sure that it is."
+                f"{self._named} = {self.shown(self.name, engaged.value)} with {self.shown(peak, engaged.engaged)}; nothing makes sure that it is."
             )
         return found
 
@@ -271,36 +294,21 @@ class Recommendation:
     @property
     def behaviour(self) -> list[tuple[str, str, str]]:
         """Where it works, and what happens else."""
-        names = {
-            "impacts": "impacts every period or nearly",
-            "modulated": "modulated: impacts come and go",
-            "calm": "calm: slides without impacts",
-            "stuck": "stuck: moves with the oscillator",
-        }
-        works = self.works
+        said = "not known" if math.isnan(self.works) else f"{100 * self.works:.3g} %"
         found = [
-            (
-                "works",
-                "not known" if math.isnan(works) else f"{100 * works:.3g} %",
-                f"of the samples: at most {self.shown('peak', self.target)} whatever coexists",
-            )
+            ("works", said, f"of the samples: at most {self.shown('peak', self.target)} whatever coexists")
         ]
-        for kind, said in names.items():
-            if kind not in self.met:
+        for kind, name in MET.items():
+            share, top = self.met.get(kind, math.nan), self.met.get(f"{kind}_peak", math.nan)
+            if math.isnan(share):
                 continue
-            top = self.met.get(f"{kind}_peak", math.nan)
-            most = f", at most {self.shown('peak', top)}" if math.isfinite(top) else ""
-            if kind == "modulated" and "modulated_mean" in self.met:
-                low, mean, high = (
-                    self.shown("peak", self.met[f"modulated_{end}"]) for end in ("low", "mean", "high")
-                )
-                strong = 100 * self.met["modulated_strong"]
-                most += (
-                    f", per period {low} to {high} (mean {mean}); strongly modulated: {strong:.3g} % of them"
-                )
-            found.append(
-                (f"  {said}", f"{100 * self.met[kind]:.3g} %", f"of simulated starts over the interval{most}")
+            told = (
+                f"of simulated starts; at most {self.shown('peak', top)}" if math.isfinite(top) else "not met"
             )
+            if kind == "modulated" and BAND[1] in self.met:
+                low, mean, high = (self.shown("peak", self.met[end]) for end in BAND)
+                told += f", per period {low} to {high} (mean {mean}); {100 * self.met['modulated_strong']:.3g} % of them strongly"
+            found.append((f"  {name}", f"{100 * share:.3g} %", told))
         return found
 
     @property
@@ -356,7 +364,7 @@ class Recommendation:
         """All tables with their titles; those that have rows."""
         low, high = self.within
         over = f"Largest response, {self.parameter} {figures(low)} to {self.shown(self.parameter, high)}"
-        at = "" if self.value is None else f" at {self.name} = {self.shown(self.name, self.value)}"
+        at = "" if self.value is None else f" At {self._named} = {self.shown(self.name, self.value)}"
         found = [
             (over, self.rows),
             (f"Does it work?{at}", self.behaviour if self.met or self.value is not None else []),

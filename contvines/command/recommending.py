@@ -6,16 +6,17 @@ import dataclasses
 import hashlib
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.command.recommendation import Curve, Place, Recommendation, Start
+from contvines.command.recommendation import MET, Curve, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
 from contvines.number_text import figures
+from contvines.shared.modulation import BAND
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
@@ -65,39 +66,34 @@ def loads(found: Findings) -> dict[str, float]:
 
 
 def met(found: Findings) -> dict[str, float]:
-    """Shares of the simulated motions (with impacts and a period, modulated or chaotic, without impacts, stuck), and the largest responses of the
-    motions without impacts and of the modulated ones."""
+    """Shares of the simulated motions by what they are (with impacts and a period, modulated or chaotic, without impacts, stuck), and the
+    largest response of each, that of the branches included."""
     from contvines.graph.measures import default_measure
     from contvines.survey.outcomes import stretches
 
-    counts: dict[str, int] = dict.fromkeys(MET, 0)
-    for _, measures, text in found.simulated:
-        calm = measures.get("impacts_per_period", math.nan) == 0.0
-        counts[
-            "stuck"
-            if text == "stuck"
-            else "calm"
-            if calm
-            else "modulated"
-            if text in MODULATED
-            else "impacts"
-        ] += 1
-    total, name = sum(counts.values()), default_measure(found.graph)
-    calm = [
-        part.response.max() for part in stretches(found.graph) if not part.branch.description.get("impacts")
-    ]
-    modulated = [one.measures.get(name, math.nan) for one in found.unbranched]
-    modulated += [
-        measures[name] for _, measures, text in found.simulated if text in MODULATED and name in measures
-    ]
-    return {
-        **{f"met_{kind}": count / total if total else math.nan for kind, count in counts.items()},
-        "calm_peak": _largest(np.array(calm)),
-        "modulated_peak": _largest(np.array(modulated)),
+    name = default_measure(found.graph)
+    kinds = [_kind(measures, text) for _, measures, text in found.simulated]
+    seen = [(kind, measures.get(name, math.nan)) for kind, (_, measures, _) in zip(kinds, found.simulated)]
+    seen += [("modulated", one.measures.get(name, math.nan)) for one in found.unbranched]
+    seen += [
+        ("impacts" if part.branch.description.get("impacts") else "calm", float(np.nanmax(part.response, initial=-np.inf)))
+        for part in stretches(found.graph)
+    ]  # fmt: skip
+    shares = {f"met_{kind}": kinds.count(kind) / len(kinds) if kinds else math.nan for kind in MET}
+    return shares | {
+        f"{kind}_peak": _largest(np.array([top for one, top in seen if one == kind])) for kind in MET
     }
 
 
-MET = ("impacts", "modulated", "calm", "stuck")
+def _kind(measures: Mapping[str, float], text: str) -> str:
+    """What a simulated motion is, one of `MET`."""
+    if text == "stuck":
+        return "stuck"
+    if measures.get("impacts_per_period", math.nan) == 0.0:
+        return "calm"
+    return "modulated" if text in MODULATED else "impacts"
+
+
 MODULATED = ("chaotic", "quasi-periodic", "slow")
 
 
@@ -324,8 +320,10 @@ class _Work:
         peaks = rows.known("peak").ravel()
         works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
         shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MET}
-        bands = ("modulated_low", "modulated_mean", "modulated_high", "modulated_strong")
-        tops = {name: _largest(rows[name]) for name in ("calm_peak", "modulated_peak", *bands)}
+        tops = {
+            name: _largest(rows[name])
+            for name in (*(f"{kind}_peak" for kind in MET), *BAND, "modulated_strong")
+        }
         shares |= {name: top for name, top in tops.items() if math.isfinite(top)}
         most = {name: _largest(rows[name]) for name in LOADS}
         unknown += [

@@ -88,7 +88,7 @@ def test_what_is_not_known_stays_unknown_in_a_file():
     )  # fmt: skip
     again = Recommendation.from_dict(json.loads(json_text(found.to_dict())))
     assert repr(again) == repr(found)
-    assert "No half_width can be recommended" in str(again) and "not known: the response" in str(again)
+    assert "No half width can be recommended" in str(again) and "not known: the response" in str(again)
 
 
 @pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no browser that prints")
