@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, TypeAdapter
 
 from contvines.number_text import figures
 from contvines.shared.modulation import BAND
@@ -23,6 +25,8 @@ MET = {
     "stuck": "stuck: moves with the oscillator",
 }
 """What simulated motions are."""
+Number = Annotated[float, BeforeValidator(lambda value: math.nan if value is None else value)]
+"""Not known where JSON has null."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +46,10 @@ class Place:
         Of the first one that is not known.
     """
 
-    value: float
-    worst: float
-    median: float
-    engaged: float
+    value: Number
+    worst: Number
+    median: Number
+    engaged: Number
     unknown: int
     samples: int
     why: str = ""
@@ -64,21 +68,13 @@ class Curve:
 class Start:
     """The start-up at the choice, in the study's units; see `orbits.design.start_up`."""
 
-    peak: float
-    bare_peak: float
-    settled: float
-    bare_settled: float
-    fastest_impact: float
-    worst_relative: float
+    peak: Number
+    bare_peak: Number
+    settled: Number
+    bare_settled: Number
+    fastest_impact: Number
+    worst_relative: Number
     series: dict[str, list[float]] = field(default_factory=dict, repr=False)
-
-
-def _nan(value: float | None) -> float:
-    return math.nan if value is None else value
-
-
-def _numbers(data: dict[str, Any]) -> dict[str, Any]:
-    return {key: _nan(value) if value is None else value for key, value in data.items()}
 
 
 @dataclass(frozen=True)
@@ -135,13 +131,13 @@ class Recommendation:
     units: dict[str, str]
     value: float | None
     own: float | None
-    tolerance: tuple[float, float]
-    cost: float
+    tolerance: tuple[Number, Number]
+    cost: Number
     theory: dict[str, float]
     places: list[Place]
     compared: dict[str, tuple[float, float]]
-    target: float
-    works: float
+    target: Number
+    works: Number
     met: dict[str, float]
     loads: dict[str, float]
     checked: tuple[float, float] | None
@@ -158,15 +154,7 @@ class Recommendation:
     @classmethod
     def from_dict(cls, data: dict[str, Any]) -> Recommendation:
         """From `to_dict`, through JSON: that has no nan."""
-        places = [Place(**_numbers(place)) for place in data["places"]]
-        start = data["start_up"] and Start(**_numbers(data["start_up"]))
-        pairs = {name: tuple(pair) for name, pair in data["compared"].items()}
-        ends = {key: tuple(_nan(end) for end in data[key]) for key in ("within", "tolerance")}
-        checked = data["checked"] and tuple(data["checked"])
-        curves = [Curve(**curve) for curve in data["curves"]]
-        made = {"places": places, "start_up": start, "compared": pairs, "checked": checked, "curves": curves}
-        numbers = {key: _nan(data[key]) for key in ("works", "target")}
-        return cls(**{**data, **ends, **numbers, **made})
+        return TypeAdapter(cls).validate_python(data)
 
     # ------------------------------------------------------------------ sentences
     def shown(self, name: str, value: float | None) -> str:
@@ -302,9 +290,8 @@ class Recommendation:
             share, top = self.met.get(kind, math.nan), self.met.get(f"{kind}_peak", math.nan)
             if math.isnan(share):
                 continue
-            told = (
-                f"of simulated starts; at most {self.shown('peak', top)}" if math.isfinite(top) else "not met"
-            )
+            told = "of simulated starts" if share > 0.0 or math.isfinite(top) else "not met"
+            told += f"; at most {self.shown('peak', top)}" if math.isfinite(top) else ""
             if kind == "modulated" and BAND[1] in self.met:
                 low, mean, high = (self.shown("peak", self.met[end]) for end in BAND)
                 told += f", per period {low} to {high} (mean {mean}); {100 * self.met['modulated_strong']:.3g} % of them strongly"

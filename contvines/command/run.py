@@ -269,7 +269,9 @@ def _picture(
         return plot_atlas(graph, x, y)
     from contvines.command.compare import compared
 
-    figure = compared(graph, compare, x, y)
+    # beside other machines it is the responses that matter, not how branches hang together
+    look: dict[str, Any] = {"marks": [], "labels": False, "color": "stability"} if compare else {}
+    figure = compared(graph, compare, x, y, **look)
     if graph.looked and x in (None, graph.parameter) and _shows_oscillator(graph, y):
         _add_simulated(figure.axes[0], graph, study)
     return figure
