@@ -97,16 +97,18 @@ class _Sheet:
                 lines[-1] = longer
         return lines
 
-    def _line(self, text: str, left: float, down: float, size: float, **look: str) -> None:
+    def _line(
+        self, text: str, left: float, size: float, weight: str = "normal", color: str = "black"
+    ) -> None:
         self.figure.text(
-            (MARGIN + left) / WIDE, (self.below - down) / HIGH, text, size=size, va="baseline", parse_math=False, **look
+            (MARGIN + left) / WIDE, self.below / HIGH, text, size=size, weight=weight, color=color, parse_math=False
         )  # fmt: skip
 
     def text(self, text: str, size: float = BODY, weight: str = "normal", color: str = "black") -> None:
         """A paragraph."""
         for line in self._wrapped(text, size, ROOM, weight):
             self.gap(LEADING * size)
-            self._line(line, 0.0, 0.0, size, weight=weight, color=color)
+            self._line(line, 0.0, size, weight, color)
         self.below -= 0.35 * size
 
     def head(self, title: str, rows: int) -> None:
@@ -117,7 +119,7 @@ class _Sheet:
         if needed > self.below - MARGIN and needed < HIGH - 2.0 * MARGIN:
             self.turn()
         self.gap(HEAD * 1.9)
-        self._line(title, 0.0, 0.0, HEAD, weight="bold")
+        self._line(title, 0.0, HEAD, "bold")
         self.below -= 0.4 * HEAD
         ends, height = (MARGIN / WIDE, 1.0 - MARGIN / WIDE), self.below / HIGH
         self.figure.add_artist(Line2D(ends, (height, height), color="0.6", lw=0.6))
@@ -133,7 +135,7 @@ class _Sheet:
             self.gap(LEADING * SMALL)
             for lines, start in zip(broken, starts):
                 if k < len(lines):
-                    self._line(lines[k], start, 0.0, SMALL)
+                    self._line(lines[k], start, SMALL)
         self.below -= 0.25 * SMALL
 
     def picture(self, figure: Figure) -> None:
