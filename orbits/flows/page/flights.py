@@ -145,45 +145,35 @@ def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
     onward[:-1] = nodes[1:, 1:]
     onward[-1] = data.twist * nodes[0, 1:]
     residual, own, following, derivative = work.residual, work.own, work.following, work.derivative
-    last = work.last_rates
+    slopes, explicit, along = (
+        np.zeros((length, n + 1, n)),
+        np.zeros((length, n + 1)),
+        np.zeros((length, n + 1)),
+    )
+    slopes[:, 1:] = data.identity
+    value = np.empty((length, n + 1))
+    value[:, 1:] = arrival
     for values, places, jumps in data.event_groups:
         if values is None:  # the strobes of a motion without events: at phase zero
-            residual[:, 0] = end - data.shift * np.arange(1, length + 1) / length
-            residual[:, 1:] = arrival - onward
-            own[:], following[:] = 0.0, data.minus
-            own[:, 1:, 1:] = by_state
-            own[:, 1:, 0] = -(by_state @ work.first_rates[:, :, None])[:, :, 0]
-            following[:, 0, 0] = 1.0
-            following[:, 1:, 0] = last
-            derivative[:, 0], derivative[:, 1:] = 0.0, by_number
+            value[:, 0], explicit[:, 0] = end - data.shift * np.arange(1, length + 1) / length, 1.0
             continue
-        table = values(arrival[places], end[places], numbers[places]).reshape(len(places), -1, n + 3)
         # columns of `table`: value, by states, by clock, by the parameter; rows: g, then J
-        flow, speed, moved = by_state[places], last[places], by_number[places]
-        if jumps:
-            slopes, explicit, along = table[:, :, 1 : n + 1], table[:, :, n + 1], table[:, :, n + 2]
-            value = table[:, :, 0].copy()
-        else:
-            m = len(places)
-            slopes = np.zeros((m, n + 1, n))
-            slopes[:, 0] = table[:, 0, 1 : n + 1]
-            slopes[:, 1:] = data.identity
-            explicit, along = np.zeros((m, n + 1)), np.zeros((m, n + 1))
-            explicit[:, 0], along[:, 0] = table[:, 0, n + 1], table[:, 0, n + 2]
-            value = np.empty((m, n + 1))
-            value[:, 0], value[:, 1:] = table[:, 0, 0], arrival[places]
-        value[:, 1:] -= onward[places]
-        residual[places] = value
-        through = slopes @ flow
-        own[places, :, 1:] = through
-        by_end = (slopes @ speed[:, :, None])[:, :, 0]
-        following[places] = data.minus
-        if data.forced:
-            own[places, :, 0] = -(through @ work.first_rates[places][:, :, None])[:, :, 0]
-            following[places, :, 0] = by_end + explicit
-        else:
-            own[places, :, 0] = by_end
-        derivative[places] = (slopes @ moved[:, :, None])[:, :, 0] + along
+        table = values(arrival[places], end[places], numbers[places]).reshape(len(places), -1, n + 3)
+        rows = slice(None) if jumps else slice(0, 1)
+        value[places, rows], slopes[places, rows] = table[:, :, 0], table[:, :, 1 : n + 1]
+        explicit[places, rows], along[places, rows] = table[:, :, n + 1], table[:, :, n + 2]
+    residual[:] = value
+    residual[:, 1:] -= onward
+    through = slopes @ by_state
+    by_end = (slopes @ work.last_rates[:, :, None])[:, :, 0]
+    own[:, :, 1:] = through
+    following[:] = data.minus
+    if data.forced:
+        own[:, :, 0] = -(through @ work.first_rates[:, :, None])[:, :, 0]
+        following[:, :, 0] = by_end + explicit
+    else:
+        own[:, :, 0] = by_end
+    derivative[:] = (slopes @ by_number[:, :, None])[:, :, 0] + along
     for j in data.pinned:  # the motion may be shifted along this state: the mean over the nodes is zero
         work.drift[j] = residual[-1, 1 + j]
         residual[-1, 1 + j] = nodes[:, 1 + j].mean()
