@@ -11,16 +11,16 @@ if TYPE_CHECKING:
 
 
 def dissipation(found: Findings) -> dict[str, float]:
-    """Power that impacts and friction dissipate where the stable response of the diagram is largest."""
+    """Power that impacts and friction dissipate where the stable response of the diagram is largest; nan of a page without ``energy=``."""
     from contvines.survey.outcomes import highest, stretches
 
     top = highest(stretches(found.graph))
-    if top is None:
+    if top is None or "impact_loss" not in top.stretch.branch.measure_names:
         return {"impact_power": np.nan, "friction_power": np.nan}
     orbit: Any = top.stretch.branch.orbit(top.index)
-    period = 2.0 * np.pi * orbit.periods / orbit.parameters["frequency"]
-    seconds = period * float(orbit.model.gauge("time", orbit.params))
-    return {f"{name}_power": orbit.measure(f"{name}_loss") / seconds for name in ("impact", "friction")}
+    seconds = orbit.period * float(orbit.model.gauge("time", orbit.params))
+    share = seconds * (1e-3 if orbit.model.units.get("impact_loss") == "J" else 1.0)  # shown in mW
+    return {f"{name}_power": orbit.measure(f"{name}_loss") / share for name in ("impact", "friction")}
 
 
 def pumping(found: Findings) -> dict[str, float]:

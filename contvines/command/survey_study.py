@@ -118,10 +118,14 @@ def outcomes_of(study: Study) -> list[Any]:
             if file.endswith(".py"):
                 place = own_code(study.path, file, f"[survey] outcomes: {said!r}")
                 found.append(UserOutcome.of(place, function))
-            elif study.sort in WRITTEN and said in OWN:
+            elif (
+                study.sort in WRITTEN
+                and said in OWN
+                and not (said == "dissipation" and "impact_loss" in measures_of(study))
+            ):
                 raise ValueError(
-                    f"[survey] outcomes: {said!r} is told by the built-in machines alone; for equations of your own give a "
-                    'function of your own: "file.py:function"'
+                    f"[survey] outcomes: {said!r} is told by the built-in machines (dissipation also by a page with energy=); for equations of "
+                    'your own give a function of your own: "file.py:function"'
                 )
             else:
                 found.append(outcome_named(said, OWN))

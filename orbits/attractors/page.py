@@ -412,7 +412,9 @@ def described(found: PageAttractor) -> tuple[PageAttractor, dict[str, float]]:
 
 
 def dots(found: PageAttractor, measures: Mapping[str, float]) -> list[float]:
-    """What a picture shows: the approach speed of every impact; of a machine without walls the first state's extremes."""
+    """What a picture shows: the page's response, or the approach speed of every impact; of a machine without walls the first state's extremes."""
+    if found.model.response in measures and found.model.response != "approach_speed":
+        return [measures[found.model.response]]
     if any(isinstance(contact, Wall) for contact in found.model.contacts):
         return found.approaches
     first = found.model.states[0]

@@ -37,7 +37,9 @@ def names(machine: Machine) -> tuple[str, ...]:
 
 
 def shown_first(machine: Machine) -> str:
-    """The measure that a diagram shows when none is asked for: impact speeds, or how far the first state goes."""
+    """The measure that a diagram shows when none is asked for: what the page says, impact speeds, or how far the first state goes."""
+    if machine.response is not None:
+        return machine.response
     return "approach_speed" if "approach_speed" in names(machine) else f"max_{machine.states[0]}"
 
 

@@ -59,6 +59,9 @@ class Machine(Varying):
         ``(state, phase, p)`` -> kinetic and potential energy of all bodies, in joules: with it impacts have masses, and orbits and transients the
         measures ``impulse``, ``impact_energy``, ``impact_loss``, ``friction_loss``, ``mean_force``, ``work_rate`` and, where a parameter is called
         ``contact_time`` (in seconds), ``peak_force``.
+    response : str, optional
+        The measure that diagrams, sweeps and surveys show: ``max_`` or ``min_`` with the name of the first state, or ``approach_speed`` of the
+        fastest impact, which is the default of a machine with walls.
 
     Raises
     ------
@@ -84,8 +87,9 @@ class Machine(Varying):
         starts: Mapping[str, tuple[float, float]] | None = None,
         units: Mapping[str, str] | None = None,
         energy: Callable | None = None,
+        response: str | None = None,
     ) -> None:
-        self.given_units, self.energy = dict(units or {}), energy
+        self.given_units, self.energy, self.response = dict(units or {}), energy, response
         self._units = Units(units, states, tuple(parameters), phase_rate)
         parameters = {key: self._units.number(key, value) for key, value in parameters.items()}
         names.check_names(name, states, parameters, phase_rate, contacts)
@@ -104,6 +108,7 @@ class Machine(Varying):
         image = None if mirror is None else MirrorImage(self.equations, params, mirror)
         images, turned = (None, frozenset()) if image is None else (image.images, image.turned)
         self._image = image
+        names.check_response(response, self.states, self.contacts)
         rides = checks.riding(self.equations, params)
         for j in self.equations.push if energy is not None else ():
             check_energy(

@@ -142,3 +142,17 @@ def check_starts(
             )
         ranges[name] = (low, high)
     return ranges
+
+
+def check_response(response: str | None, states: Sequence[str], contacts: Sequence[Any]) -> None:
+    """Refuse a response that orbits or simulations do not tell.
+
+    Raises
+    ------
+    PageError
+        If it is none of the names that would do.
+    """
+    walls = any(isinstance(contact, Wall) for contact in contacts)
+    known = [f"max_{states[0]}", f"min_{states[0]}", *(["approach_speed"] if walls else [])]
+    if response is not None and response not in known:
+        raise PageError(f"response = {response!r}: {', '.join(known)} would do")

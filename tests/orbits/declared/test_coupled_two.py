@@ -2,14 +2,19 @@
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import contvines as cv
 from contvines.command.compose import first_orbit
+from contvines.command.machine_outcomes import dissipation
 from contvines.command.study import check_study
+from contvines.survey.outcomes import Findings
 from orbits import Coupled, coupled_two
+from orbits.machines.page.names import check_response
 from orbits.problem import rebuild
 from orbits.simulation import simulate
 
@@ -135,3 +140,23 @@ def test_a_study_begins_elsewhere_where_nothing_recurs_in_the_middle(capsys):
     orbit = first_orbit(study)
     assert orbit.real and 7.0 < orbit.parameters["frequency"] < 9.0
     assert "settles from rest at frequency" in capsys.readouterr().err
+
+
+def test_dissipated_powers_are_losses_over_the_period():
+    orbit = coupled_two.attractor(START, frequency=8.2).orbit
+    graph = cv.diagram(orbit, over="frequency", within=(8.195, 8.205), depth=0)
+    found = dissipation(Findings(graph, orbit))
+    branch = graph["B1"]
+    top: Any = branch.orbit(int(np.argmax(branch.measure("max_q"))))  # the response that a diagram shows
+    for name in ("impact", "friction"):
+        power = 1e3 * top.measure(f"{name}_loss") * top.parameters["frequency"]  # mW
+        assert found[f"{name}_power"] == pytest.approx(power, rel=1e-3)
+
+
+def test_its_response_is_how_far_the_oscillator_goes():
+    orbit = coupled_two.attractor(START, frequency=8.2).orbit
+    problem = orbit.problem("frequency")
+    assert problem.default_measure == "max_q" and coupled_two.units["max_q"] == "mm"
+    assert orbit.measure("max_q") == pytest.approx(orbit.sample(4000)["q"].max(), rel=1e-6)
+    with pytest.raises(ValueError, match="response = 'max_x1': max_q, min_q, approach_speed would do"):
+        check_response("max_x1", coupled_two.states, coupled_two.contacts)
