@@ -12,7 +12,7 @@ from .branch import Branch
 from .ending import Ending
 from .half_branch import HalfBranch
 
-RESOLVED = 1e-8  # but between two unlike ones of those at which stability is lost, where a stable sliver may lie, down to this
+RESOLVED = 1e-8  # but beside one at which stability is lost, where a stable sliver may lie, down to this
 LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
 BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
 
@@ -45,7 +45,7 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
 
 def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
     """Whether solutions between neighbouring points of these kinds may be stable although those on both sides are not."""
-    return any(a != b and {a, b} <= LOST for a in one for b in other)
+    return any(a != b and {a, b} & LOST for a in one for b in other)
 
 
 def stability(

@@ -265,14 +265,14 @@ class Engine(Rows):
         return self.solve(u, p, self.at_parameter, p, along)
 
     def start(self, u: np.ndarray, p: float, tangent: np.ndarray | None = None) -> Solved | None:
-        """A first point near (u, p): at fixed p, or, where that fails (at a fold), nearest to the guess."""
+        """A first point near (u, p): at fixed p within the interval, or, where that fails (at a fold), nearest to the guess."""
         if tangent is not None and np.any(tangent):
             tangent = self.unit(np.asarray(tangent, dtype=float))
             border = self.weights * tangent
             found = self.solve(u, p, border, float(np.dot(border, self.join(u, p))), tangent)
             if found is not None and self.lower <= found.p <= self.upper:
                 return found
-        found = None
+        found, p = None, min(max(p, self.lower), self.upper)
         if tangent is None and not self.compiled and isinstance(self.problem, Rough):
             near = approach(self.problem, np.asarray(u, dtype=float), p)
             found = None if near is None else self.at_value(near, p)

@@ -235,7 +235,9 @@ def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, 
     if branch.closed:
         return False
     return any(
-        abs(branch.values[i] - p) <= engine.settings.same * (engine.scale[-1] + abs(p))
+        same_value(
+            Place(float(branch.values[i]), 0.0), Place(p, 0.0), engine.parameter_unit(p), engine.settings.same
+        )
         and is_end(branch, engine, i, key, vector)
         for i in (0, -1)
     )

@@ -21,7 +21,9 @@ TURN = 2.0 * np.pi
 AT_BORDER = 1e-4  # margins below this may make two events one
 WILD = 1e3  # multipliers above this blow rounding up within a period
 AGREED = 1e-9  # deviations below this need no second look
-BACKWARD = -1e-9  # duration of a flight, down to which it is rounding
+BACKWARD = (
+    -TURN * np.finfo(float).eps ** 0.5
+)  # what vanishes at a border like a root has half of the digits: rounding of a flight's duration
 DEFINITE = 1e-2  # strength of an event from which a simulation starts without doubt
 SHORT = 1e-4  # flights that are over so soon may swap the events at their ends
 STRETCHES = 32  # at most so many starts

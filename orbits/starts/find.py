@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from orbits.attractors.search import find_attractor
+from orbits.cycles.deviation import BACKWARD
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError
 from orbits.flows.solving import solved_at
@@ -242,7 +243,7 @@ def _stuck(orbit: Orbit) -> Orbit:
 
 def _proper(orbit: Orbit) -> bool:
     """Whether time runs forward through the nodes."""
-    return bool(np.all(orbit.durations > -1e-9))
+    return bool(np.all(orbit.durations >= BACKWARD))
 
 
 def _simulated(model: Varying, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:

@@ -16,7 +16,7 @@ from tools.fuzz.between import Between
 from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact, rounds_apart
 from tools.fuzz.motion import apart
-from tools.fuzz.searching import LIMITS
+from tools.fuzz.searching import LIMITS, search
 from tools.fuzz.tally import Tally
 
 pytestmark = pytest.mark.slow
@@ -37,6 +37,16 @@ FOUND = [
     ("absorber", 41),  # the same: a branch that comes back to others where it does not meet them
     ("coupled", 64),  # a fold just before a border
 ]
+LATER = [
+    (
+        "level",
+        2127,
+        127,
+    ),  # a branch 5e-8 beside the end of another one, with the same word, taken for that one
+    ("level", 4411, 109),  # the first point of a branch beyond a border, behind the end of the interval
+    ("level", 4411, 25),  # stable motions over 1e-8 of the parameter, between a doubling and a border
+    ("coupled", 9401, 139),  # a slip of no length at the limit of rest: minus half of the digits
+]
 
 
 def diagram(kind, seed, salt=SALT, **options):
@@ -51,6 +61,11 @@ def test_nothing_is_found_any_more(kind, seed):
     neighbours.judge(graph, tally)
     assert not [finding for finding in tally.findings if finding.check in CHECKS]
     assert tally.counts["branches"] > 10
+
+
+@pytest.mark.parametrize(("kind", "salt", "seed"), LATER)
+def test_simulation_agrees(kind, salt, seed):
+    assert search(kind, salt, seed).findings == []
 
 
 def test_a_branch_comes_home_at_a_period_doubling():
