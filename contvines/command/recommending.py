@@ -387,10 +387,9 @@ class _Work:
             seen.extend(Curve("stable", part.values.tolist(), part.response.tolist()) for part in parts)
             top = highest(parts)
             if top is not None:  # from itself: other starts may miss a motion that few of them lead to
-                part, at = top.stretch, inside(top, 0.5 * AGREES)
-                compared.append(
-                    (float(part.response[at - part.first]), _simulated(part.branch.orbit(at), measure))
-                )
+                u, p, response = inside(top, 0.5 * AGREES)
+                orbit = top.stretch.branch.problem.orbit(u, p)
+                compared.append((response, _simulated(orbit, measure)))
             return peak(found)
 
         job = Job(self.family, over, (low, high), (keep,), options={**options_of(self.study), "depth": 0})

@@ -103,30 +103,43 @@ def _refined(top: Top) -> Top:
     stretch, at = top.stretch, top.index - top.stretch.first
     a, b = max(at - 1, 0), min(at + 1, len(stretch.values) - 1)
     low, high = sorted((float(stretch.values[a]), float(stretch.values[b])))
-    between = _between(stretch, a, b) if low < high else None
-    if between is None:
+    solve = _solver(stretch, a, b) if low < high else None
+    if solve is None:
         return top
+
+    def lowered(p: float) -> float:
+        u = solve(p)
+        return np.inf if u is None else -_response(stretch, u, p)
+
     sharp = {"xatol": SHARP * (high - low)}
-    found: Any = minimize_scalar(lambda p: -between(p), bounds=(low, high), method="bounded", options=sharp)
+    found: Any = minimize_scalar(lowered, bounds=(low, high), method="bounded", options=sharp)
     return max(
         top, top._replace(response=-float(found.fun), value=float(found.x)), key=lambda one: one.response
     )
 
 
-def inside(top: Top, part: float) -> int:
-    """Index of the point that is farthest inside the stretch among those whose response is within a part of the largest one.
+def inside(top: Top, part: float) -> tuple[np.ndarray, float, float]:
+    """A solution inside the stretch whose response is about a part below the largest one: its unknowns, value and response.
 
     The largest response often stands at the very end of a stretch, where the motion touches a wall or loses its stability: the least disturbance
     leads away from there, and a simulation that begins there proves nothing.
     """
-    near = np.flatnonzero(top.stretch.response >= (1.0 - part) * top.response)
-    if not near.size:
-        return top.index
-    return top.stretch.first + int(near[np.argmax(np.abs(top.stretch.values[near] - top.value))])
+    stretch, at = top.stretch, top.index - top.stretch.first
+    values, response, level = stretch.values, stretch.response, (1.0 - part) * top.response
+    below = np.flatnonzero(~(response >= level))
+    for outer in (*below[below < at][-1:].tolist(), *below[below > at][:1].tolist()):
+        inner = outer + (1 if outer < at else -1)
+        p = float(np.interp(level, response[[outer, inner]], values[[outer, inner]]))
+        solve = _solver(stretch, *sorted((outer, inner)))
+        u = None if solve is None else solve(p)
+        if u is not None:
+            return u, p, _response(stretch, u, p)
+    middle = len(values) // 2  # all of it is as high
+    return stretch.branch.points[stretch.first + middle], float(values[middle]), float(response[middle])
 
 
-def _between(stretch: Stretch, a: int, b: int) -> Callable[[float], float] | None:
-    """The response of the motion at a value between points a and b of a stretch; None for a branch without its problem."""
+def _solver(stretch: Stretch, a: int, b: int) -> Callable[[float], np.ndarray | None] | None:
+    """The motion at a value between points a and b of a stretch; None for a branch without its problem."""
     from ..continuation.engine import Engine
     from ..continuation.settings import Settings
 
@@ -137,7 +150,7 @@ def _between(stretch: Stretch, a: int, b: int) -> Callable[[float], float] | Non
     engine = Engine(branch.problem, (low, high), Settings())
     points = branch.points[stretch.first : stretch.last + 1]
 
-    def response(p: float) -> float:
+    def solve(p: float) -> np.ndarray | None:
         for i in range(a, b):
             first, last = stretch.values[i], stretch.values[i + 1]
             if first != last and (first - p) * (last - p) <= 0.0:
@@ -147,10 +160,15 @@ def _between(stretch: Stretch, a: int, b: int) -> Callable[[float], float] | Non
                 chord = np.abs(points[i + 1] - points[i]).max()
                 # a motion farther from the chord than its ends from one another is one of another branch
                 if solved is not None and np.abs(solved.u - guess).max() <= chord:
-                    return float(branch.measure_of(stretch.measure, solved.u[None, :], np.array([p]))[0])
-        return -np.inf
+                    return solved.u
+        return None
 
-    return response
+    return solve
+
+
+def _response(stretch: Stretch, u: np.ndarray, p: float) -> float:
+    """Of a solution."""
+    return float(stretch.branch.measure_of(stretch.measure, u[None, :], np.array([p]))[0])
 
 
 def gaps(graph: Graph) -> list[tuple[float, float]]:

@@ -108,12 +108,12 @@ def confirmed(one: Drawn, half_width: float, depth: int) -> float:
     complete(graph, population_of(seed, OVER), 5)
     top = highest(stretches(graph))
     assert top is not None
-    stretch, index = top.stretch, inside(top, 0.5 * AGREE)
-    orbit = stretch.branch.orbit(index)
+    u, p, _ = inside(top, 0.5 * AGREE)
+    orbit = top.stretch.branch.problem.orbit(u, p)
     first = {name: float(values[0]) for name, values in orbit.sample(400).items()}
     start = {name: first[name] for name in ("phase", "w", "w_rate", "v", "v_rate")}
     machine, _ = one.family.machine_at({"half_width": half_width})
-    (row,) = sweep(machine, OVER, [float(stretch.values[index - stretch.first])], start=start)
+    (row,) = sweep(machine, OVER, [p], start=start)
     return row.measures[MEASURE]
 
 

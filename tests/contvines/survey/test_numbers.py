@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import contvines as cv
 from contvines.survey import outcomes
+from contvines.survey.stretches import highest, inside, stretches
 
 
 def branch(word, values, heights, real=True):
@@ -51,6 +53,18 @@ def test_peaks(found):
     assert lower["lower_peak"] == pytest.approx(2.4, abs=0.01) and lower["lower_peak_at"] == pytest.approx(
         0.6, abs=0.01
     )
+
+
+def test_a_largest_response_at_the_end_is_looked_at_from_inside():
+    """u' = p^2 - u: the stable solution u = p^2 is largest at the end, p = 1, and a fifth lower near p = 0.9."""
+    graph = cv.diagram(
+        cv.FlowProblem(lambda x, q: [q.p**2 - x[0]], [0.25], {"p": 0.5}), over="p", within=(0.0, 1.0)
+    )
+    top = highest(stretches(graph))
+    assert top is not None and top[:2] == pytest.approx((1.0, 1.0))
+    u, p, response = inside(top, 0.19)
+    assert u[0] == pytest.approx(p**2, rel=1e-9) and response == pytest.approx(p**2, rel=1e-9)
+    assert response == pytest.approx(0.81, rel=0.03)
 
 
 def test_ranges(found):

@@ -12,7 +12,7 @@ from orbits.attractors.sweep import sweep
 from orbits.design import Family
 from orbits.machines.physical import physical
 from tests.contvines.survey.circles import Circles
-from tools.benchmarks.peaks import judged
+from tools.benchmarks.peaks import drawn, judged
 
 pytestmark = pytest.mark.slow
 
@@ -84,7 +84,7 @@ def test_the_sliding_motion_counts_where_the_walls_are_far():
 
 @pytest.mark.parametrize("number", [0, 4])
 def test_drawn_machines_have_the_peaks_of_simulations(number):
-    found = judged(number, machines=2, depth=1, values=61)
+    found = judged(number, drawn(number, 2), depth=1, values=61)
     assert not any(verdict.wrong for verdict in found)
     assert any(not verdict.note for verdict in found)
 
