@@ -375,6 +375,7 @@ class _Work:
         from contvines.survey.outcomes import peak
         from contvines.survey.stretches import highest, inside, stretches
         from contvines.survey.work import Job, work
+        from orbits.attractors.search import beginning_with
         from orbits.attractors.sweep import sweep
 
         over, (low, high) = self.study.parameter, self.study.within
@@ -388,8 +389,8 @@ class _Work:
             top = highest(parts)
             if top is not None:  # from itself: other starts may miss a motion that few of them lead to
                 u, p, response = inside(top, 0.5 * AGREES)
-                orbit = top.stretch.branch.problem.orbit(u, p)
-                compared.append((response, _simulated(orbit, measure)))
+                met = beginning_with(top.stretch.branch.problem.orbit(u, p), REPLAYED, LONGEST)
+                compared.append((response, met.get(measure, -math.inf)))
             return peak(found)
 
         job = Job(self.family, over, (low, high), (keep,), options={**options_of(self.study), "depth": 0})
@@ -447,18 +448,6 @@ class _Work:
                 "bare": (seen.bare[thin] * length).tolist(),
             },
         )
-
-
-def _simulated(orbit: Any, measure: str) -> float:
-    """A measure of what the simulation settles on that begins with a motion; -inf for one without events."""
-    from orbits.attractors.search import described, goes_on
-    from orbits.simulation.runs import simulator_of
-
-    if not len(orbit.nodes):
-        return -math.inf
-    simulator = simulator_of(orbit.model, orbit.params)
-    simulator.begin(orbit.word, orbit.nodes[0])
-    return float(described(goes_on(simulator, REPLAYED, LONGEST))[1][measure])
 
 
 def _place(found: Survey, i: int, value: float) -> Place:

@@ -107,6 +107,15 @@ def modulated(found: Any, measures: Mapping[str, float]) -> str:
     return observing(found.model).modulated(found, measures)
 
 
+def beginning_with(orbit: Any, transient: float, max_period: int) -> dict[str, float]:
+    """Measures of what the simulation settles on that begins with a motion; none of one without events."""
+    if not len(orbit.nodes):
+        return {}
+    simulator = simulator_of(orbit.model, orbit.params)
+    simulator.begin(orbit.word, orbit.nodes[0])
+    return described(goes_on(simulator, transient, max_period))[1]
+
+
 def measure_names(model: Varying) -> tuple[str, ...]:
     """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
     return observing(model).measure_names(model)

@@ -22,12 +22,17 @@ from contvines.command.study import read_study
 from contvines.survey import survey
 from contvines.survey.completion import complete
 from contvines.survey.stretches import highest, inside, stretches
+from orbits.attractors.search import beginning_with
 from orbits.attractors.sweep import sweep
 from orbits.design import Family
 from orbits.machines.physical import physical
 
 OVER, MEASURE = "frequency", "max_abs_q1"
 AGREE = 0.01
+REPLAYED, LONGEST = (
+    400,
+    24,
+)  # forcing periods of a motion that is simulated from itself, and of the longest that may recur
 RANDOM = (12, 6)  # values, and random states at each
 
 
@@ -110,11 +115,7 @@ def confirmed(one: Drawn, half_width: float, depth: int) -> float:
     assert top is not None
     u, p, _ = inside(top, 0.5 * AGREE)
     orbit = top.stretch.branch.problem.orbit(u, p)
-    first = {name: float(values[0]) for name, values in orbit.sample(400).items()}
-    start = {name: first[name] for name in ("phase", "w", "w_rate", "v", "v_rate")}
-    machine, _ = one.family.machine_at({"half_width": half_width})
-    (row,) = sweep(machine, OVER, [p], start=start)
-    return row.measures[MEASURE]
+    return beginning_with(orbit, REPLAYED, LONGEST).get(MEASURE, -np.inf)
 
 
 @dataclass(frozen=True)
