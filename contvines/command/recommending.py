@@ -242,7 +242,7 @@ class _Work:
             values = np.geomspace(low, high, PLACES).tolist()
             unit = self.units.get(self.name, "")
             self.assumed.append(
-                f"[survey] gives no range of {self.name}: looked at from {low:.3g} to {high:.3g} {unit}".rstrip()
+                f"[survey] gives no range of {self.name.replace('_', ' ')}: looked at from {low:.3g} to {high:.3g} {unit}".rstrip()
                 + f", {SPREAD[0]:g} to {SPREAD[1]:g} times the widest by theory"
             )
         own = self.own()
@@ -287,7 +287,7 @@ class _Work:
         """All that is told of the choice."""
         study = self.study
         unknown = [
-            f"the response at {self.name} = {figures(place.value)}"
+            f"the response at {self.name.replace('_', ' ')} = {figures(place.value)} {self.units.get(self.name, '')}".rstrip()
             + (f" of {place.unknown} of {place.samples} samples" if place.samples > 1 else "")
             + (f" ({place.why})" if place.why else "")
             for place in places

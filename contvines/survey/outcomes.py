@@ -15,6 +15,7 @@ import numpy as np
 from contvines.shared.modulation import BAND, modulation_of
 
 from ..graph.measures import default_measure
+from ..number_text import figures_in
 from .stretches import LEAST, gaps, highest, stretches, unseen
 
 if TYPE_CHECKING:
@@ -125,13 +126,13 @@ def unknown(found: Findings) -> str:
     if not _judged(graph):
         return ""
     name, unit = graph.parameter, graph.units.get(graph.parameter, "")
-    reasons = []
+    reasons, number = [], figures_in(graph.within)
     open_ = _unknown_parts(found)
     if open_:
         low, high = max(open_, key=lambda gap: gap[1] - gap[0])
         part = sum(b - a for a, b in open_) / (graph.within[1] - graph.within[0])
         reasons.append(
-            f"no stable motion is known in {100.0 * part:.3g} % of the interval, most of it {name} = {low:.6g} to {high:.6g}"
+            f"no stable motion is known in {100.0 * part:.3g} % of the interval, most of it {name} = {number(low)} to {number(high)}"
             f" {unit}".rstrip()
         )
     kinds = dict.fromkeys(met.kind for met in found.unbranched)
@@ -139,7 +140,7 @@ def unknown(found: Findings) -> str:
         where = sorted({met.value for met in found.unbranched if met.kind == kind})
         more = f" and {len(where) - 1} more values" if len(where) > 1 else ""
         reasons.append(
-            f"a motion without a branch ({kind}) is met at {name} = {where[0]:.6g} {unit}".rstrip() + more
+            f"a motion without a branch ({kind}) is met at {name} = {number(where[0])} {unit}".rstrip() + more
         )
     if not graph.complete:
         reasons.append(str(graph.message))
