@@ -87,14 +87,16 @@ def picture(
     }
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
-    if page:  # impact speeds, or how far the first state goes
-        walls = any(hasattr(contact, "gap") for contact in model.contacts)
-        measure = "approach_speed" if walls else f"max_{model.states[0]}"
+    if page:
+        from orbits.flows.page.measures import shown_first
+
+        measure = shown_first(model)
     else:
         measure = model.swept_measure
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
-        bands: list[Any] = [(row.value, *row.band) for row in rows if row.band]
+        # bands are of displacements
+        bands: list[Any] = [(row.value, *row.band) for row in rows if row.band and measure.startswith("max_")]
         return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, bands=bands, **look)
     first: list[tuple[float, float]] = []
     others: list[tuple[float, float]] = []

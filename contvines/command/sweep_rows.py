@@ -11,7 +11,7 @@ from tempfile import gettempdir
 from typing import IO, Any
 
 from contvines.command.compose import machine
-from contvines.command.study_data import Sort, Study
+from contvines.command.study_data import Study
 from contvines.graph.table import with_unit
 from contvines.shared.modulation import BAND, SILENT
 
@@ -139,7 +139,7 @@ class Rows:
 
     def __init__(self, target: Path, study: Study, down: bool, names: list[str]) -> None:
         self.target, self.names = target, names
-        units = machine(study).units if study.sort is Sort.PHYSICAL else {}
+        units = machine(study).units
         self.units = {
             "value": units.get(study.parameter, ""),
             **{name: units.get(name, "") for name in names},

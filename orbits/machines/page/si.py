@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from contvines.shared.modulation import BAND
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.page.formulas import PageError
 from orbits.machines.physical.quantities import QuantityError
@@ -56,4 +57,5 @@ class Units:
         of_states = {
             f"{kind}_{name}": self.said[name] for name in states if name in self.said for kind in OF_A_STATE
         }
-        return {**self.said, **of_states, "period": "s", "time": "s"}
+        bands = {name: self.said[states[0]] for name in BAND if states[0] in self.said}
+        return {**self.said, **of_states, **bands, "period": "s", "time": "s"}
