@@ -82,7 +82,8 @@ def picture(
 
     model, page = study.model, study.sort is Sort.PAGE
     look: dict[str, Any] = {
-        **({} if page else {"units": model.units, "notation": model.notation}),
+        "units": model.units,
+        **({} if page else {"notation": model.notation}),
         "figsize": size,
     }
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
