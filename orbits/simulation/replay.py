@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -62,6 +62,21 @@ class Replay:
         return bool(np.isfinite(self.error))
 
 
+class _Cycle(NamedTuple):
+    """A claimed cycle as bare arrays, for a stepper."""
+
+    engine: Machine
+    params: np.ndarray
+    codes: np.ndarray
+    modes: np.ndarray
+    nodes: np.ndarray
+    periods: int
+
+    def begin(self) -> np.ndarray:
+        """The state just after the first event."""
+        return state_of(self.engine, self.params, int(self.codes[0]), int(self.modes[0]), self.nodes[0])
+
+
 def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int = 200) -> Replay:
     """Replay an orbit: start exactly at its first node and compare events and nodes over one period.
 
@@ -111,7 +126,7 @@ def replay_nodes(
     nodes = np.asarray(nodes, dtype=float).reshape(len(codes), -1)
     there = go_round(engine, params, codes, modes, nodes[0])
     if there.message:
-        motion = _motion(model, engine, params, codes, modes, nodes, periods)
+        motion = _motion(model, _Cycle(engine, params, codes, modes, nodes, periods))
         return Replay(np.inf, there.message, nothing, motion=motion)
     claimed = np.concatenate([nodes[1:], nodes[:1]])
     claimed[-1, 0] += TWO_PI * periods
@@ -133,11 +148,9 @@ def replay_nodes(
     growth = float(np.sort(np.abs(multipliers))[::-1][free])
     expected = np.log(loss / 1e-15) / np.log(growth) if growth > 1.0 else np.inf
     wanted = int(min(most, max(1.0, expected)))
-    tracked = _tracked(engine, params, codes, modes, nodes, periods, loss, wanted)
-    returned = None
-    if growth < 1.0 - 1e-6:
-        returned = _returns(engine, params, codes, modes, nodes, periods, growth)
-    return Replay(error, "", multipliers, tracked, float(expected), returned)
+    cycle = _Cycle(engine, params, codes, modes, nodes, periods)
+    returned = _returns(cycle, growth) if growth < 1.0 - 1e-6 else None
+    return Replay(error, "", multipliers, _tracked(cycle, loss, wanted), float(expected), returned)
 
 
 def _stuck(model: Model, params: np.ndarray) -> Replay:
@@ -147,16 +160,9 @@ def _stuck(model: Model, params: np.ndarray) -> Replay:
     return Replay(0.0 if held else np.inf, sentence, np.empty(0, complex))
 
 
-def _motion(
-    model: Model,
-    engine: Machine,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    periods: int,
-) -> float:
-    begin = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
+def _motion(model: Model, cycle: _Cycle) -> float:
+    engine, params, codes, _, nodes, periods = cycle
+    begin = cycle.begin()
     left, right = engine.walls(params)
     if not right <= begin[1] <= left:
         return np.inf
@@ -183,16 +189,8 @@ def _freest(codes: np.ndarray) -> int:
     return 0
 
 
-def _tracked(
-    engine: Machine,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    periods: int,
-    loss: float,
-    wanted: int,
-) -> int:
+def _tracked(cycle: _Cycle, loss: float, wanted: int) -> int:
+    engine, params, codes, modes, nodes, periods = cycle
     there = go_round(engine, params, codes, modes, nodes[0], wanted)
     n = len(codes)
     cycles = len(there.nodes) // n
@@ -206,32 +204,25 @@ def _tracked(
     return cycles
 
 
-def _returns(
-    engine: Machine,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    periods: int,
-    growth: float,
-) -> bool:
+def _returns(cycle: _Cycle, growth: float) -> bool:
     """Start a little off the orbit, wait until multipliers have shrunk that ten millionfold, and compare.
 
     Beside a border, or where deviations grow a thousandfold before they shrink, the orbit may attract from very near only: smaller
     displacements are tried as well. Where the orbit itself is known less well than that, because it is ill conditioned, starts are to
     come to where the simulation settles that starts on it.
     """
+    engine, params, codes, _, nodes, periods = cycle
     cycles = min(200_000.0 / periods, np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3))) + 10.0)
 
     def later(size: float, wanted: np.ndarray, wait: float = cycles) -> tuple[float, np.ndarray]:
         """The motion from a start so far off, after these cycles, and its distance from the nodes wanted."""
-        state = state_of(engine, params, int(codes[0]), int(modes[0]), nodes[0])
+        state = cycle.begin()
         state[2] *= 1.0 + size
         if codes[0] > 1:
             state[0] += size
         engine.launch(state, params)
         skip(engine, state, params, state[4] + wait * periods, int(1000 * (1.0 + wait) * periods))
-        return _nearest(engine, params, codes, modes, wanted, periods, state)
+        return _nearest(cycle._replace(nodes=wanted), state)
 
     tries = ((DISPLACED, NEAR), (1e-8, 1e-9), (1e-10, 1e-8), (1e-11, 1e-8))
     if any(later(size, nodes)[0] < near for size, near in tries):
@@ -244,16 +235,9 @@ def _returns(
     return any(later(size, nodes)[0] < min(ILL, SHRUNK * later(size, nodes, 0.0)[0]) for size in SMALLER)
 
 
-def _nearest(
-    engine: Machine,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    periods: int,
-    state: np.ndarray,
-) -> tuple[float, np.ndarray]:
+def _nearest(cycle: _Cycle, state: np.ndarray) -> tuple[float, np.ndarray]:
     """How near the motion from a state comes to the orbit's nodes, and its own nodes there."""
+    engine, params, codes, modes, nodes, periods = cycle
     seen, after, rows, _ = collect(engine, state, params, state[4] + 2.0 * periods + 1.0, 3 * len(codes) + 3)
     found = nodes_of(engine, params, seen, after, rows)
     n, best = len(codes), (np.inf, nodes)
