@@ -25,6 +25,7 @@ TOUCH = 1e-7  # rate below which a surface is touched rather than crossed: the d
 NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impacts have piled up
 SLOW = 1e-6  # squared approach speed below which impacts may be piling up
 HALVINGS = 6  # of the way to the top of a hop, where something else happens on it
+TOGETHER = 1e-11  # a quantity so near to zero, relative to 1 + its rate, vanishes together with another
 FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
 
 
@@ -50,6 +51,9 @@ class Stepper:
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
         self.count = 0  # events so far
+        self._last = (
+            -1
+        )  # the friction that has turned, stuck or slipped, where another may do so at the same instant
         self._cache: dict[tuple[int, ...], tuple[Any, Any, Any, np.ndarray, Any]] = {}
         self._pushes: dict[tuple[int, tuple[int, ...]], Any] = {}
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
@@ -57,6 +61,15 @@ class Stepper:
             w: [(j, places[j]) for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
             for w, contact in enumerate(machine.contacts)
             if isinstance(contact, Wall)
+        }
+        self._several = sum(isinstance(contact, DryFriction) for contact in machine.contacts) > 1
+        self._tied = {  # frictions that stop what closes and opens a wall's gap
+            w: [
+                j
+                for (wall, j), sign in machine.alphabet.flips.items()
+                if wall == w and sign is not None and isinstance(machine.contacts[j], DryFriction)
+            ]
+            for w in self._touched
         }
         self._values = self.compiled.contact_values()
         self._impacts = {w: self.compiled.impact_map(w) for w in self._touched}
@@ -87,6 +100,7 @@ class Stepper:
             self.base, self.clock = TWO_PI * turns, clock - TWO_PI * turns
         else:
             self.clock = 0.0
+        self._last = -1
         if modes is not None:
             self.modes = tuple(modes)
             self._fresh = True
@@ -177,6 +191,13 @@ class Stepper:
                 self._hop = -self._gap_rate(wall) / push
         return HIT
 
+    def _off(self, wall: int) -> None:
+        """Of a body that sticks at a wall: the gap is opened by roundoff, for it would fall through zero by that again and again."""
+        numbers = self._tools(self.modes)[3]
+        slopes = self.compiled.gap_slopes(wall).one(self.state, self.clock, numbers)
+        gap = float(self._values.one(self.state, self.clock, numbers)[wall])
+        self.state += (FIRST_EVENT * (1.0 + np.abs(self.state).max()) - gap) * slopes / float(slopes @ slopes)
+
     def _push_back(self, wall: int) -> float:
         """Acceleration of a free wall's gap."""
         values = self._pushes.get((wall, self.modes))
@@ -190,12 +211,10 @@ class Stepper:
         self.state[:] = self.compiled.settled(wall).one(
             self.state, self.clock, self.compiled.numbers(self.params, self.modes)
         )
-        tied = [j for (w, j), sign in self.machine.alphabet.flips.items() if w == wall and sign is not None]
         modes = list(self.modes)
         modes[wall] = HELD
-        for j in tied:  # the same contact keeps the velocity at zero: friction need not
-            if isinstance(self.machine.contacts[j], DryFriction):
-                modes[j] = ABSENT
+        for j in self._tied[wall]:  # the same contact keeps the velocity at zero: friction need not
+            modes[j] = ABSENT
         self.modes = tuple(modes)
         return HOLD
 
@@ -214,6 +233,11 @@ class Stepper:
             If the motion blows up, or a switch would slide.
         """
         end = until - self.base
+        if self._last >= 0:
+            event = self._at_once()
+            if event is not None:
+                self.count += 1
+                return event
         while True:
             run, _, guards, numbers, watch = self._tools(self.modes)
             before, began = self.state.copy(), self.clock
@@ -235,8 +259,22 @@ class Stepper:
             event = self._happened(guards[place])
             if event is not None:
                 self.count += 1
+                self._last = event[0] if self._several and event[1] in (SLIP, TURN, STICK) else -1
                 self._rebase()
                 return event
+
+    def _at_once(self) -> tuple[int, int, int] | None:
+        """What happens together with the event before: alike bodies begin to slip, and come to rest, at one instant; a quantity that begins at
+        zero is not seen to fall through it.
+        """
+        for value, rate, guard in zip(*self._guards(self.modes)):
+            if guard.contact == self._last or guard.kind not in (SLIP, TURN):
+                continue
+            if rate < -TOUCH and abs(value) < TOGETHER * (1.0 - rate):
+                self._last = guard.contact
+                return self._happened(guard)
+        self._last = -1
+        return None
 
     def _lost(self, state: np.ndarray, clock: float) -> str:
         """Why a flight from a state came to no number."""
@@ -317,6 +355,9 @@ class Stepper:
     def _happened(self, guard: Guard) -> tuple[int, int, int] | None:
         j, kind = guard.contact, guard.kind
         if kind == HIT:
+            if any(self.modes[f] == STUCK for f in self._tied[j]):
+                self._off(j)
+                return None
             return j, self._impact(j), 0
         if kind == TURN:
             before = self.modes[j]

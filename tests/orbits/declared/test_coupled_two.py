@@ -160,3 +160,16 @@ def test_its_response_is_how_far_the_oscillator_goes():
     assert orbit.measure("max_q") == pytest.approx(orbit.sample(4000)["q"].max(), rel=1e-6)
     with pytest.raises(ValueError, match="response = 'max_x1': max_q, min_q, approach_speed would do"):
         check_response("max_x1", coupled_two.states, coupled_two.contacts)
+
+
+def test_an_absorber_that_sticks_at_its_wall_does_not_hit_it_and_both_slip_at_once():
+    at_wall = {"x2": -10.0}
+    assert (
+        len(simulate(coupled_two, at_wall, periods=50, events=100, base_amplitude=1e-3)) == 0
+    )  # held for ever
+    seconds, step = 2 * math.pi * 8.0, 1e-6  # equal frictions give way, and hold again, at one instant
+    expected = sorted((round(row[1] / step), row[0], row[1]) for row in newton(VALUES, at_wall, 4))
+    run = simulate(coupled_two, at_wall, events=4)
+    found = sorted((round(c / seconds / step), x, c / seconds) for c, x in zip(run.clocks[1:], run.letters))
+    assert [row[1] for row in found] == [row[1] for row in expected] == ["u1", "u2", "s1", "s2"]
+    np.testing.assert_allclose([row[2] for row in found], [row[2] for row in expected], atol=1e-9)
