@@ -21,6 +21,7 @@ from .solutions import solutions_at
 
 MANY, FEW, MANY_ACROSS = 1024, 256, 100
 """Starts that tell a share: many of a population whose basins are drawn with so many starts each way, few where each start is flown alone."""
+MIRRORED = "its mirror image"
 AT_ONCE = 256  # starts of kicks, the smallest first
 LEVELS = 24  # starts along each ray from the attractor outwards
 HALVINGS = 14  # of the part of a ray in which the motion is lost
@@ -120,7 +121,7 @@ class Robustness:
             changes, at = self.shown(self.kick), self.shown(self.place)
             kick = ", ".join(f"{name} {told(f'{x:+.4g}', name)}" for name, x in zip(self.names, changes))
             place = ", ".join(f"{name} = {told(f'{x:.4g}', name)}" for name, x in zip(self.names, at))
-            text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {short_word(self.reaches)}"
+            text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {self.reaches if self.reaches == MIRRORED else short_word(self.reaches)}"
         else:
             text += "  no kick within the box of starts leads elsewhere"
         for name, (first, last) in self.parameters.items():
@@ -329,4 +330,4 @@ class _Kicked:
         names = np.array([m.word or m.kind for m in motions], dtype=object)
         possible = np.array([m.kind != "impossible" for m in motions])
         lost = ((index != index[0]) | (mirrored != mirrored[0])) & possible[index]
-        return lost[1:], names[index[1:]]
+        return lost[1:], np.where(index == index[0], MIRRORED, names[index])[1:]

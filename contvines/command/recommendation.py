@@ -303,6 +303,7 @@ class Recommendation:
         """Loads and noise."""
         names = {
             "impact_speed": ("fastest impact", "of periodic and modulated motions"),
+            "approach_speed": ("fastest impact", "of periodic motions"),
             "impulse": ("impulse of an impact", "largest; periodic motions"),
             "mean_force": ("mean impact force", "over a period"),
             "impact_rate": ("impacts per second", "noise: how often"),

@@ -17,6 +17,7 @@ from contvines.command.recommendation import MET, Curve, Place, Recommendation, 
 from contvines.command.study_data import Sort, Study
 from contvines.number_text import figures
 from contvines.shared.modulation import BAND
+from orbits.flows.catalogue import flow_of
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
@@ -29,7 +30,7 @@ PLACES, LATER = (
 )  # values of the first look, and of the later ones between the neighbours of the best
 SAMPLES = 16  # where the study does not say
 QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
-LOADS = ("impact_speed", "impulse", "mean_force", "impact_rate", "impact_energy")
+LOADS = ("impact_speed", "approach_speed", "impulse", "mean_force", "impact_rate", "impact_energy")
 VALUES, STARTS = (
     9,
     6,
@@ -295,7 +296,9 @@ class _Work:
         ]
         has_bare = self.model.flow != "page" and "damping" in self.model.parameter_names
         compared = (
-            {} if not has_bare else self._compared(self.model if best is None else self._at(best.value))
+            self._compared(self.family.machine_at({} if best is None else {self.name: best.value})[0])
+            if has_bare
+            else {}
         )
         if not has_bare:
             unknown.append(
@@ -325,12 +328,15 @@ class _Work:
             for name in (*(f"{kind}_peak" for kind in MET), *BAND, "modulated_strong")
         }
         shares |= {name: top for name, top in tops.items() if math.isfinite(top)}
-        most = {name: _largest(rows[name]) for name in LOADS}
+        has = flow_of(self.model).measure_names(self.model)
+        most = {name: _largest(rows[name]) for name in LOADS if name in has}
+        if not most:
+            unknown.append("loads: a page tells them of walls, with energy=")
         unknown += [
             f"{name}: no motion that was met has it" for name, value in most.items() if math.isnan(value)
         ]
-        model = self._at(best.value)
-        checked, curves = self._checked(best.value, model)
+        model, loose = self.family.machine_at({self.name: best.value})
+        checked, curves = self._checked(best.value, model, loose)
         if checked is not None and abs(checked[1] - checked[0]) > AGREES * checked[0]:
             unknown.insert(
                 0, f"the largest response at the choice: {checked[0]:.4g} by the diagram, {checked[1]:.4g} by simulation"
@@ -358,17 +364,15 @@ class _Work:
             found[self.name] = f"chosen; {found[self.name]} in the study"
         return found
 
-    def _at(self, value: float) -> Any:
-        change = getattr(self.model, "with_", None) or self.model.changed
-        return change(**{self.name: value})
-
     def _compared(self, model: Any) -> dict[str, tuple[float, float]]:
         from contvines.command.compare import peaks_compared
         from orbits.design.references import KINDS
 
         return peaks_compared(model, self.study.parameter, self.study.within, KINDS)
 
-    def _checked(self, value: float, model: Any) -> tuple[tuple[float, float] | None, list[Curve]]:
+    def _checked(
+        self, value: float, model: Any, own: dict[str, float]
+    ) -> tuple[tuple[float, float] | None, list[Curve]]:
         """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value where it
         is next to the largest); of simulations up and down, if these meet more. The responses."""
         from contvines.command.survey_study import options_of
@@ -381,7 +385,7 @@ class _Work:
         over, (low, high) = self.study.parameter, self.study.within
         seen: list[Curve] = []
         compared: list[tuple[float, float]] = []
-        measure = model.default_measure
+        measure = flow_of(model).default_measure(model)
 
         def keep(found: Findings) -> dict[str, float]:
             parts = stretches(found.graph)
@@ -400,7 +404,7 @@ class _Work:
         step, top = (high - low) / (CHECK - 1), row.columns["peak_at"]
         near = np.linspace(max(low, top - ABOUT * step), min(high, top + ABOUT * step), FINE)
         grid = np.union1d(np.linspace(low, high, CHECK), near)
-        loose: dict[str, Any] = {k: v for k, v in self.study.loose.items() if k != over}
+        loose: dict[str, Any] = {k: v for k, v in own.items() if k != over}
         for run in (grid, grid[::-1]):
             rows = sweep(model, over, run, nudge=0.0, **loose)
             seen.append(Curve("simulated", [r.value for r in rows], [r.measures[measure] for r in rows]))
