@@ -26,6 +26,7 @@ FAR = 1e4  # times the box: escaped
 BRIEF = (3, 12)  # values, and starts at each, of a brief look
 TRIED = (4, 2, 2)  # motions that recur nowhere, after which no others are looked at by themselves
 NEWTON = 30
+GOLDEN = 60  # steps to the root
 GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
 BLOCKS = 20
 SIGMAS = 3.0
@@ -105,11 +106,15 @@ class FlowPopulation:
         return self._box
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts (Sobol, scrambled by the seed), shape (count, d)."""
-        from scipy.stats import qmc
+        """Low-discrepancy starts, shape (count, d): multiples of 1 / g, 1 / g^2, ... with g^(d + 1) = g + 1 (Roberts 2018), moved by the seed.
 
-        draw = qmc.Sobol(self.node, scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
-        points = draw.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
+        Sobol's of scipy.stats would take longer to import than many a diagram takes.
+        """
+        g = 1.5
+        for _ in range(GOLDEN):
+            g = (1.0 + g) ** (1.0 / (self.node + 1))
+        first = np.random.default_rng(seed).random(self.node)
+        points = (first + np.arange(count)[:, None] * g ** -np.arange(1.0, self.node + 1)) % 1.0
         return self._box[:, 0] + points * self.size
 
     # ------------------------------------------------------------------ what attracts
