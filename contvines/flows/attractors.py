@@ -18,6 +18,7 @@ STILL = 1e-9  # size of a motion, relative to the state, that is rest
 SAMPLES = 400  # states of a period that are handed over
 FIRST = 50.0  # time scales of the first transient
 DOUBLINGS = 12  # of the transient
+BESIDE = 1e-3  # of a state: distance from an equilibrium at which a motion begins instead of there
 
 
 class AtRest(ValueError):
@@ -125,7 +126,9 @@ def _free(
     fastest = float(np.abs(np.linalg.eigvals(matrix)).max())
     span = transient if transient is not None else FIRST / (fastest if fastest > 0.0 else 1.0)
     if not rate(0.0, x).any():
-        x = x + 1e-3 * field.lengths * (-1.0) ** np.arange(len(x))
+        x = x + BESIDE * field.lengths / np.arange(
+            1.0, len(x) + 1
+        )  # upwards: concentrations may be zero there
     x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
     for _ in range(doublings):
         run = _run(field, p, x, 0.0, span, dense=True, rough=True)

@@ -139,7 +139,7 @@ def load_flow(path: str | Path, name: str) -> FlowProblem | None:
     Raises
     ------
     ValueError
-        If the file does not run.
+        If the file does not run, or has other flows but nothing of that name.
     """
     file = Path(path).resolve()
     text = file.read_bytes()
@@ -159,6 +159,10 @@ def load_flow(path: str | Path, name: str) -> FlowProblem | None:
         del sys.modules[module_name]
         raise ValueError(f"{path}: the file does not run: {type(error).__name__}: {error}") from error
     flow = getattr(module, name, None)
+    if flow is None:
+        others = [key for key, value in vars(module).items() if isinstance(value, FlowProblem)]
+        if others:
+            raise ValueError(f"{path}: it has no flow {name!r}; it has {', '.join(others)}")
     if not isinstance(flow, FlowProblem):
         return None
     flow.origin = str(file), name, digest

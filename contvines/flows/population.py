@@ -29,6 +29,8 @@ NEWTON = 30
 GOLDEN = 60  # steps to the root
 GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
 BLOCKS = 20
+FEW = 8  # motions at least, copies of those there are ...
+BESIDE = 1e-3  # ... begun so far from them, in units of the box
 SIGMAS = 3.0
 SAME = 1e-6  # equilibria, relative to the box
 
@@ -46,6 +48,25 @@ class Settled:
     error: float = float("nan")
     state: np.ndarray | None = field(default=None, repr=False)
     curve: np.ndarray | None = field(default=None, repr=False)  # states on it
+
+
+@dataclass(frozen=True)
+class WithVectors:
+    """A field whose states are those of a flow, then a vector that the linearised flow carries along."""
+
+    field: Any
+    events: tuple[()] = ()
+
+    @property
+    def forced(self) -> bool:
+        """Whether f depends on time."""
+        return self.field.forced
+
+    def __call__(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
+        """Rates, shape (n, 2 d)."""
+        states, vectors = np.hsplit(x, 2)
+        turned = np.einsum("nab,nb->na", self.field.jacobian(states, p, t), vectors)
+        return np.hstack([self.field(states, p, t), turned])
 
 
 class FlowPopulation:
@@ -152,7 +173,7 @@ class FlowPopulation:
                 return motions, index, mirrored
         left = np.flatnonzero(index < 0)
         if left.size:
-            self._add(motions, index, left, self._wandering(march.x[left[0]], p))
+            self._add(motions, index, left, self._wandering(march.x[left[:BLOCKS]], p))
         return motions, index, mirrored
 
     def _add(self, motions: list[Settled], index: np.ndarray, which: np.ndarray, motion: Settled) -> None:
@@ -292,44 +313,37 @@ class FlowPopulation:
         return bool((np.linalg.eigvals(self.field.jacobian(x[None], p)[0]).real < 0.0).all())
 
     def _wandering(self, x: np.ndarray, p: float) -> Settled:
-        """A motion that does not recur, told by the growth of a vector along it; blocks give the error of the mean."""
-        from scipy.integrate import solve_ivp
-
-        d, forced = self.node, self.field.forced
-
-        def rate(t: float, y: np.ndarray) -> np.ndarray:
-            at = np.array([t]) if forced else None
-            return np.concatenate(
-                [self.field(y[None, :d], p, at)[0], self.field.jacobian(y[None, :d], p, at)[0] @ y[d:]]
-            )
-
+        """Motions that do not recur, told by the growth of vectors along them; motions and blocks of time give the error of the mean."""
+        d, count = self.node, max(len(x), FEW)
+        states = x[np.arange(count) % len(x)]
+        rng = np.random.default_rng(2)
+        states[len(x) :] += BESIDE * self.size * rng.standard_normal((count - len(x), d))
         try:
-            speed = float(
-                np.abs(
-                    np.linalg.eigvals(self.field.jacobian(x[None], p, np.zeros(1) if forced else None)[0])
-                ).max()
-            )
+            first = np.zeros(1) if self.field.forced else None
+            speed = float(np.abs(np.linalg.eigvals(self.field.jacobian(x[:1], p, first)[0])).max())
             span = (
                 float(self.field.length_of_period(p)) * 10.0
-                if forced
+                if self.field.forced
                 else GROWTH / BLOCKS / max(speed, 1e-12)
             )
-            y, logs, t = np.concatenate([x, np.ones(d) / np.sqrt(d)]), [], 0.0
-            for _ in range(BLOCKS):
-                y = solve_ivp(
-                    rate, (t, t + span), y, method="LSODA", rtol=1e-7, atol=1e-10 * float(self.size.min())
-                ).y[:, -1]
-                size = float(np.linalg.norm(y[d:]))
-                logs.append(np.log(size) / span)
-                y[d:] /= size
-                t += span
+            vectors = self.size * rng.standard_normal((count, d))
+            march = March(WithVectors(self.field), p, np.hstack([states, vectors]), np.tile(self.size, 2))
+            logs = []
+            for k in range(1 + -(-BLOCKS // count)):
+                before = march.t.copy()
+                march.go(np.arange(count), MOST_STEPS, until=(k + 1) * span)
+                sizes = np.linalg.norm(march.x[:, d:] / self.size, axis=1)
+                logs.append(np.log(sizes) / (march.t - before))
+                march.x[:, d:] /= sizes[:, None]
+                march.slope[:, d:] /= sizes[:, None]
         except ValueError:
-            return Settled("slow", state=x)
-        mean, error = float(np.mean(logs)), float(np.std(logs, ddof=1) / np.sqrt(BLOCKS))
+            return Settled("slow", state=x[0])
+        found = np.concatenate(logs[1:])  # in the first block vectors turn to where they grow
+        mean, error = float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
         if not np.isfinite(mean):
-            return Settled("slow", state=x)
+            return Settled("slow", state=x[0])
         kind = "chaotic" if mean > SIGMAS * error else "quasi-periodic" if mean > -SIGMAS * error else "slow"
-        return Settled(kind, exponent=mean, error=error, state=x)
+        return Settled(kind, exponent=mean, error=error, state=x[0])
 
     # ------------------------------------------------------------------ what does not attract
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:

@@ -57,7 +57,7 @@ def summary(graph: Graph, width: int | None = None) -> str:
         f"stable in {with_unit(graph.parameter, unit)}",
         f"largest {with_unit(measure, graph.units.get(measure))}",
     )
-    lines = Table(head, rows).lines(width) if rows else ["no stable motion"]
+    lines = Table(head, rows).lines(width) if rows else ["no stable motion on these branches"]
     lines.insert(
         0, fitted(f"stable motions of {len(graph.branches)} branches, the widest first") if rows else ""
     )

@@ -90,6 +90,18 @@ def test_lorenz_cycles_end_as_a_homoclinic_orbit():
     assert end.multipliers.real.max() > 1e10
 
 
+def test_a_motion_that_begins_at_an_unstable_equilibrium_leaves_it_upwards():
+    """Prey and predator of Rosenzweig and MacArthur: below zero they escape; above they coexist, at rest where prey is d / (e - d h) = 2 / 3."""
+
+    def f(x, p):
+        eaten = x[0] * x[1] / (1 + 0.5 * x[0])
+        return [x[0] * (1 - x[0] / p.K) - eaten, 0.6 * eaten - 0.3 * x[1]]
+
+    flow = cv.FlowProblem(f, [0.0, 0.0], {"K": 2.0})
+    with pytest.raises(ValueError, match=r"comes to rest at \[0.666667 0.888889\]"):
+        flow.attractor()
+
+
 def test_what_attracts_is_solved_for():
     flow = cv.FlowProblem(
         lambda x, p: [p.a - (p.b + 1) * x[0] + x[0] ** 2 * x[1], p.b * x[0] - x[0] ** 2 * x[1]],

@@ -75,6 +75,21 @@ def test_what_escapes_and_what_does_not_recur():
     assert [m.kind for m in motions] == ["escaped"]
 
 
+def test_two_rates_that_share_no_period_make_a_torus():
+    def rings(x, p):
+        return [*ring(x[:2], 1.0), *ring(x[2:], p.turn)]
+
+    def ring(x, turn):
+        growth = 1 - x[0] ** 2 - x[1] ** 2
+        return [growth * x[0] - turn * x[1], turn * x[0] + growth * x[1]]
+
+    flow = cv.FlowProblem(rings, [0.5, 0.1, 0.5, 0.1], {"turn": 2**0.5})
+    motions, index, _ = flow.population().settle(
+        np.array([[0.6, 0.1, 0.9, 0.3], [0.2, 0.9, -0.4, 0.3]]), 2**0.5
+    )
+    assert [(m.kind, round(m.exponent, 2)) for m in motions] == [("quasi-periodic", 0.0)]
+
+
 def test_an_atlas_has_what_no_branch_of_the_diagram_reaches():
     """Beside the equilibrium, which has no Hopf point here, a cycle lives up to a fold, where m (1 - m) is at most 0.06."""
 

@@ -64,7 +64,7 @@ def test_what_a_motion_settles_on(study, monkeypatch, capsys):
         (('parameter = "m"', 'parameter = "k"'), "no such parameter"),
         (("[continue]", "[start]\nstate = [1.0]\n[continue]"), "2 states"),
         (("within = [-0.2, 0.3]", "within = [0.2, 0.3]"), "lies outside"),
-        (("oscillator", "pendulum"), "pendulum"),
+        (("oscillator", "pendulum"), "no flow 'pendulum'; it has oscillator"),
         (("[continue]", "[start]\nbox = [[-1.0, 1.0]]\n[continue]"), "box has 1 pair"),
         (("[continue]", "[start]\nbox = [[-1.0, 1.0], [2.0, 1.0]]\n[continue]"), "low < high"),
     ],
