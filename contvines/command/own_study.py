@@ -123,7 +123,10 @@ def _page(data: dict[str, Any], path: Path, machine: Any) -> Study:
         return ""
 
     parameters = {**machine.parameters, **{key: float(value) for key, value in values.items()}}
-    wrong = wrong_intervals(file, parameters[file.continue_.parameter], refusal)
+    over, (low, high) = file.continue_.parameter, file.continue_.within
+    if over not in values and not low <= parameters[over] <= high:
+        parameters[over] = 0.5 * (low + high)
+    wrong = wrong_intervals(file, parameters[over], refusal)
     known = (*machine.states, "phase")
     for key in file.start.state or {}:
         if key not in known:

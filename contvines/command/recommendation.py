@@ -283,9 +283,10 @@ class Recommendation:
     def behaviour(self) -> list[tuple[str, str, str]]:
         """Where it works, and what happens else."""
         said = "not known" if math.isnan(self.works) else f"{100 * self.works:.3g} %"
-        found = [
-            ("works", said, f"of the samples: at most {self.shown('peak', self.target)} whatever coexists")
-        ]
+        found = []
+        if not math.isnan(self.target):
+            most = self.shown("peak", self.target)
+            found.append(("works", said, f"of the samples: at most {most} whatever coexists"))
         for kind, name in MET.items():
             share, top = self.met.get(kind, math.nan), self.met.get(f"{kind}_peak", math.nan)
             if math.isnan(share):

@@ -4,9 +4,11 @@ import json
 import math
 import re
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from contvines.command.cli import main
 from contvines.command.recommendation import Place, Recommendation
@@ -165,3 +167,27 @@ def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path
     assert run("report", "machine-recommend.json", "--pdf", "a.pdf") == 0
     assert "a.pdf (set by matplotlib, as no browser" in capsys.readouterr().out
     assert page.count("not known") <= 1 + len(found.unknown)  # nothing is hidden, nothing is dumped
+
+
+@pytest.mark.slow
+def test_a_wall_lined_with_rubber(tmp_path):
+    """Nearer walls quiet it more; the response at the choice is that of scipy's integration of the page's equations."""
+    shutil.copy(Path(__file__).parents[3] / "examples" / "machines" / "rubber_wall.py", tmp_path)
+    (tmp_path / "study.toml").write_text(
+        '[model]\nname = "rubber_wall.py:machine"\n[continue]\nparameter = "frequency"\nwithin = [1.44, 1.5]\n'
+        "[survey]\nsamples = 1\nvary.gap = [0.4, 0.42, 0.44, 0.46, 0.48]\n"
+    )
+    found = recommend(tmp_path / "study.toml", workers=1)
+    assert found.value == 0.4 and found.checked[1] == pytest.approx(found.checked[0], rel=0.01)
+
+    def laws(t, y):
+        press = 30.0 * (y[0] - 0.4) + 1.5 * y[1]
+        force = press if y[0] > 0.4 and press > 0.0 else 0.0
+        return [y[1], 0.5 * np.cos(1.5 * t) - 0.04 * y[1] - y[0] - force]
+
+    period = 2 * np.pi / 1.5
+    start = [0.5, 1.0]  # of the large motion, with which the small one coexists
+    run = solve_ivp(laws, (0, 60 * period), start, rtol=1e-8, atol=1e-10, max_step=0.02)
+    late = run.y[0, run.t > 55 * period].max()
+    peak = max(curve.y[-1] for curve in found.curves if curve.name == "stable" and curve.x[-1] == 1.5)
+    assert late == pytest.approx(peak, rel=1e-3)
