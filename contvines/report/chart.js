@@ -4,6 +4,7 @@ const loci = Object.fromEntries(data.loci.map((l) => [l.label, l]));
 const kinds = [...new Set(data.loci.map((l) => l.name))];
 const tint = ["#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4"];
 const shade = ["#1d3550", "#4a3022", "#24402b", "#38294a", "#4a4220", "#1f4444", "#472a36", "#3a3a36"];
+const hatches = [null, "line-ne-open", "circle", "line-nw-open", "line-ew-open", "x-thin-open", "line-ns-open", "cross-thin-open"]; // as in plots/chart.py
 const file = `cv.load("${data.source}"${data.trust ? ", trust=True" : ""})`;
 let here = null; // { locus, index } or { point }
 
@@ -18,6 +19,16 @@ function traces() {
     const index = data.regions.map((r) => names.indexOf(r.name) + 0.5);
     const z = (data.raster[0] || []).map((_, j) => data.raster.map((row) => (row[j] < 0 ? null : index[row[j]])));
     found.push({ type: "heatmap", x0: data.corner[0], dx: data.cell[0], y0: data.corner[1], dy: data.cell[1], z, zmin: 0, zmax: n, colorscale: scale, showscale: false, hoverinfo: "skip" });
+    // marks on a grid of the cells, alike where the same is stable: regions are told apart without colours, too
+    const every = Math.max(1, Math.round(z.length / 45));
+    names.forEach((_, k) => {
+      const symbol = hatches[k % hatches.length], x = [], y = [];
+      if (!symbol) return;
+      z.forEach((row, i) => row.forEach((value, j) => {
+        if (value === k + 0.5 && i % every === 0 && j % every === 0) { x.push(data.corner[0] + j * data.cell[0]); y.push(data.corner[1] + i * data.cell[1]); }
+      }));
+      found.push({ type: "scatter", mode: "markers", x, y, hoverinfo: "skip", showlegend: false, marker: { symbol, size: symbol === "circle" ? 2 : 7, color: dark.matches ? "#8a8a8a" : "#a8a8a8", line: { width: 0.8, color: dark.matches ? "#8a8a8a" : "#a8a8a8" } } });
+    });
     const named = data.regions.filter((r) => r.share > 0.012);
     found.push({ type: "scatter", mode: "text", x: named.map((r) => r.at[p]), y: named.map((r) => r.at[q]), text: named.map((r) => r.short),
       textfont: { size: 10, color: ink() }, hoverinfo: "skip", showlegend: false });
@@ -105,7 +116,7 @@ made([...settled(data.model, "model"), [`${p} within`, data.within[0].map((v) =>
 // ------------------------------------------------------------------ the page
 $("title").textContent = `${data.model.name || "problem"}: ${data.names[p]} and ${data.names[q]}`;
 $("about").textContent = [many(data.loci, "locus", "loci"), many(data.points, "point of codimension two", "points of codimension two"), many(data.regions, "region", "regions")].join(", ") + (data.finished ? "" : ", unfinished") +
-  "; heavy lines are bifurcations, dashed ones borders, dotted ones virtual; tints say what a simulation settles on.";
+  "; heavy lines are bifurcations, dashed ones borders, dotted ones virtual; tints and hatches tell what a simulation settles on.";
 $("virtual").closest("label").hidden = data.loci.every((l) => l.real.every(Boolean));
 $("tints").closest("label").hidden = !data.regions.length;
 for (const id of ["virtual", "tints"]) $(id).addEventListener("change", () => draw());
