@@ -136,7 +136,7 @@ class Resumable:
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during long work.
+    """Raised when Ctrl-C stops a long computation.
 
     Attributes
     ----------

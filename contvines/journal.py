@@ -29,7 +29,7 @@ class Journal(Protocol):
 
 
 class NullJournal:
-    """Remembers nothing."""
+    """A journal that keeps nothing."""
 
     def recall(self, key: str) -> dict[str, Any] | None:
         return None
@@ -64,7 +64,7 @@ class Part:
 
 
 class MemoryJournal:
-    """Remembers in memory; for tests and interactive work."""
+    """A journal in memory; for tests and interactive work."""
 
     def __init__(self) -> None:
         self.entries: dict[str, dict[str, Any]] = {}

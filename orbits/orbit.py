@@ -20,7 +20,7 @@ REAL = -1e-12  # margins from here to zero, in units of the machine's own size, 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit(Cycle):
-    """A cycle that is claimed to solve its equations: how well, how stable, and whether a machine can follow it.
+    """A periodic orbit with its residual, its multipliers (stability) and its margins (whether a machine can follow it).
 
     The attributes are those of `orbits.cycles.cycle.Cycle`.
     """

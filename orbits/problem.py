@@ -302,7 +302,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
 
     @property
     def spelling(self) -> str:
-        """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
+        """The word as printed: one spelling for one motion; `word` begins where the nodes do."""
         return self.word.spelled(self.mirrored)
 
     @property

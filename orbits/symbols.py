@@ -1,4 +1,4 @@
-"""Elementary functions on numbers, arrays and symbols alike: what a page that declares a machine may use.
+"""Elementary functions on numbers, arrays and symbols alike: the functions of machine files.
 
 A page is run once with symbols in place of numbers. The operators ``+ - * / **`` and the functions of this module are
 recorded; what cannot be recorded (a comparison, ``abs``, ``math.cos``) is refused with a sentence that says what would do.

@@ -299,7 +299,7 @@ REFUSED = {
     "left the range of numbers": lambda: box(motion=lambda s, phase, p, contact: (s.v, 50 * s.x**3)).simulate(
         {"x": -3.0, "v": -1.0}, periods=2
     ),
-    "offers no proofs, for flights on a page have no closed form": lambda: (
+    "offers no proofs, for flights of declared machines have no closed form": lambda: (
         page("impact_oscillator").orbit("R", 1, frequency=2.0).prove()
     ),
     "no state": lambda: box(starts={"y": (0, 1)}),

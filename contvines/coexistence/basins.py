@@ -174,7 +174,7 @@ def basins(
     fixed: Mapping[str, float] | None = None,
     saddles: Graph | None = None,
 ) -> Basins:
-    """Simulate a plane of starts and tell what each reaches.
+    """Basins of attraction: simulate a plane of initial states and name the attractor that each reaches.
 
     Parameters
     ----------

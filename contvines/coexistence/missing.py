@@ -57,4 +57,4 @@ def told(graph: Graph, command: str) -> str:
         word = short_word(about.name)
         names.append(f"{word} ({about.share:.0%} of starts at {graph.parameter} = {about.value:.6g})")
     more = f" and {len(best) - 3} more" if len(best) > 3 else ""
-    return f"simulation also finds {', '.join(names)}{more}, on no branch here: {command}"
+    return f"simulation also finds {', '.join(names)}{more}, not on any branch; {command}"

@@ -26,7 +26,7 @@ def basins(
     ] = None,
     points: Annotated[
         int | None,
-        typer.Option("--points", help="Starts across and up; by default 200, of machines on a page 60."),
+        typer.Option("--points", help="Starts across and up; by default 200, of declared machines 60."),
     ] = None,
     saddles: Annotated[
         Path | None,

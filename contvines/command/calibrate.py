@@ -95,7 +95,7 @@ def calibrate(
     read = read_study(study)
     if read.sort is Sort.PAGE and release is not None:
         raise ValueError(
-            f"--release {release}: a page says where its motions begin: give [start] state and --impacts."
+            f"--release {release}: the study of a declared machine says where its motions begin: give [start] state and --impacts."
         )
     names = list(dict.fromkeys(unknown or ["restitution"]))
     if release is None:

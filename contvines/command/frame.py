@@ -145,6 +145,9 @@ def finished_of(target: Path, fingerprint: str, quiet: bool, *, problems: bool) 
         return None
 
 
+MOST_NAMED = 24  # labels in one sentence
+
+
 # ---------------------------------------------------------------------- results
 def load_file(file: Path, trust: bool = False, problems: bool = True, charts: bool = False) -> Any:
     """The graph of a file, or its chart where the verb takes charts."""
@@ -160,8 +163,11 @@ def check_special(graph: "Graph", file: Path, label: str) -> None:
     """Refuse a label that is not that of a special point."""
     if label not in graph.special:
         what = "is a branch" if label in graph.branches else "is no label of it"
+        alike = [name for name in graph.special if name.rstrip("0123456789") == label.rstrip("0123456789")]
+        known = [*(alike or graph.special)]
+        more = f" and {len(known) - MOST_NAMED} more" if len(known) > MOST_NAMED else ""
         raise ValueError(
-            f"{file}: {label} {what}; its special points are {', '.join(graph.special) or 'none'}."
+            f"{file}: {label} {what}; its special points are {', '.join(known[:MOST_NAMED]) or 'none'}{more}."
         )
 
 

@@ -118,7 +118,7 @@ def _states(study: Study, text: str) -> dict[str, float]:
         if name not in machine.states or not value:
             known = ", ".join(machine.states)
             raise ValueError(
-                f"--release {text!r}: {name!r} is no state with a value{did_you_mean(name, machine.states)}; of a page it is a list such as "
+                f"--release {text!r}: {name!r} is no state with a value{did_you_mean(name, machine.states)}; of a declared machine it is a list such as "
                 f'"{example}", and the states are {known}.'
             )
         try:

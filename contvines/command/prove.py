@@ -87,7 +87,7 @@ def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]
     orbit = first_orbit(read_study(file))
     if not hasattr(orbit, "prove"):
         raise ValueError(
-            f"{file}: its machine offers no proofs, for flights on a page have no closed form; machines of orbits that have one do"
+            f"{file}: its machine offers no proofs, for flights of declared machines have no closed form; machines of orbits that have one do"
         )
     return {"start": orbit.prove(bits=bits)}
 

@@ -35,7 +35,9 @@ EXAMPLE = "[random] psd = [[2, 0.1], [20, 0.1]]"
 def random(
     study: Annotated[
         Path,
-        typer.Argument(metavar="STUDY.toml", help="The study, with a section [random] (coupled, or a page)."),
+        typer.Argument(
+            metavar="STUDY.toml", help="The study, with a section [random] (coupled, or a declared machine)."
+        ),
     ],
     seed: Annotated[
         int | None, typer.Option("--seed", metavar="N", min=0, help="Of the draws, in place of the study's.")

@@ -198,7 +198,7 @@ def _run(
     if command == "diagram" and graph.missing:
         from contvines.coexistence.missing import told
 
-        say(told(graph, f"contvines atlas {path} adds what is connected to it"), quiet)
+        say(told(graph, f"run contvines atlas {path} to add it"), quiet)
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 

@@ -12,6 +12,7 @@ from contvines.command.conditions import check_varied, without_tables
 from contvines.command.study_data import Study
 from contvines.command.study_errors import StudyError as StudyError
 from contvines.command.toml_text import TomlError, toml_data
+from contvines.shared.near_names import did_you_mean
 from orbits.machines.catalogue import PAGES, STRUCTURE
 
 
@@ -32,7 +33,8 @@ def read_study(path: str | Path) -> Study:
     try:
         return study_of(path.read_text(encoding="utf-8"), path)
     except FileNotFoundError:
-        why = "there is no such file; give the path of a TOML study."
+        near = did_you_mean(path.name, (other.name for other in path.parent.glob("*.toml")))
+        why = f"there is no such file{near}; give the path of a TOML study."
     except IsADirectoryError:
         why = "this is a folder; give the path of a TOML study."
     except OSError as error:

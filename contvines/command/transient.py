@@ -21,14 +21,16 @@ LONGEST = 1e5  # that a motion is followed after a record, in radians of the osc
 def transient(
     study: Annotated[
         Path,
-        typer.Argument(metavar="STUDY.toml", help="The study whose machine is meant (coupled, or a page)."),
+        typer.Argument(
+            metavar="STUDY.toml", help="The study whose machine is meant (coupled, or a declared machine)."
+        ),
     ],
     release: Annotated[
         str | None,
         typer.Option(
             "--release",
             metavar="LENGTH",
-            help='Let go from this displacement, "5 mm": a free decay (of a page: "x = 5 mm, v = 0.1 m/s").',
+            help='Let go from this displacement, "5 mm": a free decay (of a declared machine: "x = 5 mm, v = 0.1 m/s").',
         ),
     ] = None,
     record: Annotated[
@@ -60,7 +62,7 @@ def transient(
         typer.Option(
             "--time",
             metavar="TIME",
-            help="The share of the energy that is taken in so much time; of a page: how long it is followed.",
+            help="The share of the energy that is taken in so much time; of a declared machine: how long it is followed.",
         ),
     ] = None,
     tail: Annotated[
@@ -105,7 +107,7 @@ def transient(
     if read.sort is Sort.PAGE:
         if record is not None:
             raise ValueError(
-                f"{study}: --record: of a page the base is part of its equations; --start-up or --release would do."
+                f"{study}: --record: the base is part of the equations of a declared machine; --start-up or --release would do."
             )
         found = of_page(read, release, begin, over, time)
     elif start_up:

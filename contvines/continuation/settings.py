@@ -43,7 +43,7 @@ WHOLE = ("max_iterations", "max_points", "first_chunk", "chunk", "max_branches",
 @hinted
 @dataclass(frozen=True)
 class Settings:
-    """How to continue. Lengths are in the metric in which the parameter interval has length 1 and u its rms norm.
+    """Settings of the continuation. Lengths are in the metric in which the parameter interval has length 1 and u its rms norm.
 
     Attributes
     ----------

@@ -38,7 +38,7 @@ def diagram(
     kinds: Sequence[Kind] | None = None,
     interrupt: OnInterrupt = "raise",
 ) -> Graph:
-    """All branches that hang together with a solution: traced, switched, each listed once.
+    """All branches connected to a solution: traced, switched, each listed once.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ from .regions import Region
 @hinted
 @dataclass(eq=False)
 class Chart(Resumable):
-    """What happens in the plane of two parameters.
+    """Loci, points of codimension two and regions in the plane of two parameters.
 
     Attributes
     ----------

@@ -77,7 +77,7 @@ class ChartProgress(NamedTuple):
         """For a progress line."""
         return (
             f"{self.message}  |  {self.done} of {self.known} starts of loci known so far{time_left(self.seconds)}; "
-            f"{self.loci} loci, {self.points} points"
+            f"{self.loci} {'locus' if self.loci == 1 else 'loci'}, {self.points} points"
         )
 
 

@@ -25,7 +25,7 @@ class Turn(NamedTuple):
 @hinted
 @dataclass(eq=False)
 class Locus:
-    """The special points of one kind that hang together, in the plane of two parameters.
+    """A connected curve of special points of one kind in the plane of two parameters.
 
     Attributes
     ----------

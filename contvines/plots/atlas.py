@@ -52,7 +52,7 @@ def plot_atlas(
     legend : bool or str
         Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`, for both panels.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
 
     Raises
     ------

@@ -57,7 +57,7 @@ def plot_basins(
     legend : bool or str
         Name the motions and their shares, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
     """
     from matplotlib.colors import to_rgb
     from matplotlib.lines import Line2D

@@ -40,7 +40,7 @@ def plot_cycle(
     figsize : (float, float), optional
         In inches.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
     coordinates : (int, int)
         Of the phase portrait; of a single state, the state over time.
 

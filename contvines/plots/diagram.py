@@ -81,7 +81,7 @@ def plot_diagram(
         Inches, of a new figure.
     style : str or mapping, optional
         "aps", "elsevier", "springer" (one column), "grey", "slides", a style of matplotlib's, several of them ("aps,grey"), or
-        rcParams; they come before the house's.
+        rcParams; they come before the package's.
 
     Returns
     -------

@@ -44,7 +44,7 @@ def plot_transient(
     legend : bool or str
         Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
     """
     from matplotlib import rcParams
 

@@ -48,7 +48,7 @@ def plot_multipliers(
     legend : bool or str
         Whether the curves are named, or where: a place that matplotlib knows.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
 
     Raises
     ------

@@ -44,7 +44,7 @@ def plot_network(
     axes : Axes, optional
         Drawn on; without, a new figure that is as large as the graph needs, or `figsize` (inches).
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
     """
     from matplotlib.patches import FancyArrowPatch
 

@@ -31,7 +31,7 @@ def plot_portrait(
     axes : Axes, optional
         Drawn on (an orbit draws its phase portrait alone there); without, a new figure of `figsize` inches.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
     **options
         For the orbit's own `plot()`.
     """

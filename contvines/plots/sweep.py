@@ -53,7 +53,7 @@ def plot_sweep(
     bands : (parameter value, lowest, mean, highest) of the largest responses per forcing period of modulated motions.
     axes : drawn on; without, a new figure of `figsize` inches.
     legend : whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
-    style : a style or rcParams of matplotlib's that come before the house's.
+    style : a style or rcParams of matplotlib's that come before the package's.
     units : of the parameter and the measure by name, where they have some.
     notation : labels of axes by name of parameter or measure; the graph's by default.
     """

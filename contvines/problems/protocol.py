@@ -249,7 +249,7 @@ class Solution:
 
 
 class ProblemDefaults:
-    """Answers of a problem without symmetries, margins, larger problems and further parameters, and with unknowns of order 1."""
+    """Default answers of a problem without symmetries, margins, larger problems and further parameters, and with unknowns of order 1."""
 
     parameter = "p"
     spectrum = "none"

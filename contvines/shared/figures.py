@@ -1,4 +1,4 @@
-"""Figures in the house's style that pyplot does not keep; the user's own settings come before the house's."""
+"""Figures in the package's style that pyplot does not keep; the user's own settings come before the package's."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from .near_names import did_you_mean
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,16 +24,21 @@ WINDOWLESS = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")  # backends
 
 @contextmanager
 def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Draw in the house's style; what the user has set, and `style`, come before it; settings stay as they were.
+    """Draw in the package's style; what the user has set, and `style`, come before it; settings stay as they were.
 
     Parameters
     ----------
     style : str, mapping or None
         A name of :data:`STYLES` ("aps", "elsevier", "springer", "grey", "slides") or of matplotlib's styles, the path of a
         style sheet, or several of these joined by commas, "aps,grey"; or rcParams.
+
+    Raises
+    ------
+    ValueError
+        If there is no style of this name.
     """
     import matplotlib as mpl
-    from matplotlib.style import context
+    from matplotlib.style import context, library
 
     default: Any = mpl.rcParamsDefault
     # reading the backend would choose one, which imports pyplot
@@ -40,7 +47,13 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     own = {name: settings[name] for name in names if settings[name] != default[name]}
     chosen: list[Any] = ["default", HOUSE, own]
     if isinstance(style, str):
-        chosen += [STYLES.get(name, name) for name in style.split(",")]
+        for name in map(str.strip, style.split(",")):
+            if not (name in STYLES or name in library or name == "default" or set(name) & set("./")):
+                raise ValueError(
+                    f"style = {name!r}: there is no such style{did_you_mean(name, [*STYLES, *library])}; "
+                    f"choose from {', '.join(sorted(STYLES))}, a style of matplotlib's, or the path of a style sheet."
+                )
+            chosen.append(STYLES.get(name, name))
     elif style is not None:
         chosen.append(dict(style))
     with context(chosen):

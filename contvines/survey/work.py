@@ -31,13 +31,13 @@ class Job:
         ``outcome(found) -> {column: number}``; see `contvines.survey.outcomes`.
     gaps : int
         At how many values, at least, the system is simulated where its diagram has no stable response, if the family can: there lie
-        modulated and chaotic motions, and those that hang together with no branch.
+        modulated and chaotic motions, and those that are not connected to any branch.
     values, starts : int
         At how many values of the interval it is simulated besides, and from how many starts each.
     options : dict
         Of `contvines.diagram`.
     atlas : mapping, optional
-        Of `contvines.atlas`: with it an atlas of each system is made, so that motions count that hang together with nothing else.
+        Of `contvines.atlas`: with it an atlas of each system is made, so that motions count that are not connected to others.
     """
 
     family: Callable[[Mapping[str, float], Any], Any]

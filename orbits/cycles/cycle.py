@@ -68,7 +68,7 @@ class Cycle:
 
     @property
     def spelling(self) -> str:
-        """The word as people are told it: one spelling for one motion; `word` begins where the nodes do."""
+        """The word as printed: one spelling for one motion; `word` begins where the nodes do."""
         return self.word.spelled(self.model.has_mirror(self.params))
 
     @property

@@ -52,7 +52,7 @@ def animate(
     figsize : (float, float)
         Inches.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
 
     Returns
     -------

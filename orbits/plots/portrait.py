@@ -67,7 +67,7 @@ def portrait(
     figsize : (float, float), optional
         Inches, of a new figure.
     style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the house's.
+        A style or rcParams of matplotlib's that come before the package's.
 
     Returns
     -------

@@ -245,7 +245,7 @@ def _critical(
 def _refuse_pages(model: Model) -> None:
     if model.flow == "page":
         raise ProofError(
-            f"the machine {model.name!r} offers no proofs, for flights on a page have no closed form; "
+            f"the machine {model.name!r} offers no proofs, for flights of declared machines have no closed form; "
             "the built-in machines do"
         )
 

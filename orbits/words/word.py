@@ -138,7 +138,7 @@ class Word:
         return joint.join(parts)
 
     def spelled(self, mirror: bool = True) -> str:
-        """The word as people are told it: of the shaken machines one spelling for one motion, from whichever event and in whichever mirror image.
+        """The word as printed: of the shaken machines one spelling for one motion, from whichever event and in whichever mirror image.
 
         That of `canonical`, without signs where the letters alone mean this motion. Words of pages stand as they are read.
         """

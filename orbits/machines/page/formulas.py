@@ -42,7 +42,7 @@ class Named:
     def __getattr__(self, name: str) -> Any:
         known = ", ".join(k for k in self.__dict__ if k != "_what")
         raise PageError(
-            f"{self._what}.{name}: the page declares no such {'parameter' if self._what == 'p' else 'contact'}; "
+            f"{self._what}.{name}: the machine declares no such {'parameter' if self._what == 'p' else 'contact'}; "
             f"it has {known or 'none'}"
         )
 

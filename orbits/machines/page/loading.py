@@ -24,7 +24,7 @@ def load_page(path: str | Path, name: str) -> Any:
     """
     file = Path(path).resolve()
     if not file.is_file():
-        raise FileNotFoundError(f"{path}: there is no such file; name the page that declares the machine")
+        raise FileNotFoundError(f"{path}: there is no such file; name the file that declares the machine")
     text = file.read_text(encoding="utf-8")
     module_name = f"_page_{file.stem}_{digest_of(str(file) + text)}"
     module = sys.modules.get(module_name)
@@ -38,7 +38,9 @@ def load_page(path: str | Path, name: str) -> Any:
             spec.loader.exec_module(module)
         except Exception as error:
             del sys.modules[module_name]
-            raise ValueError(f"{path}: the page does not run: {type(error).__name__}: {error}") from error
+            raise ValueError(
+                f"{path}: the machine file does not run: {type(error).__name__}: {error}"
+            ) from error
     machine = getattr(module, name, None)
     if not isinstance(machine, Machine):
         known = [key for key, value in vars(module).items() if isinstance(value, Machine)]

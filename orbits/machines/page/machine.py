@@ -136,7 +136,7 @@ class Machine(Varying):
 
     @property
     def notation(self) -> dict[str, str]:
-        """Labels of axes by name of measure; states and parameters (never "phase") are shown by the names on the page."""
+        """Labels of axes by name of measure; states and parameters (never "phase") are shown by the names in the machine file."""
         found = {name: SYMBOLS[name] for name in ("phase", *self.load_names) if name in SYMBOLS}
         if "peak_force" in found:
             found["peak_force"] += f" (half sine over {CONTACT})"

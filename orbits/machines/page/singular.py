@@ -93,4 +93,4 @@ def _line(error: Exception) -> str:
     if not frames or frames[-1].lineno is None:
         return ""
     text = linecache.getline(frames[-1].filename, frames[-1].lineno).strip()
-    return f" (line {frames[-1].lineno} of the page: {text})" if text else ""
+    return f" (line {frames[-1].lineno} of the machine file: {text})" if text else ""

@@ -195,6 +195,7 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
         (("orbit", "notes.txt", "B1"), "notes.txt: this is not a .vines file"),
         (("diagram", EXAMPLE, "-o", "notes.txt"), "notes.txt: this is not a .vines file"),
         (("diagram", EXAMPLE, "-o", "g.vines"), "g.vines: this file belongs to another study"),
+        (("diagram", EXAMPLE.with_suffix(".tml")), "there is no such file (did you mean"),
         (("diagram", EXAMPLE, "-o", "none/g.vines"), "there is no folder 'none'"),
         (("diagram", EXAMPLE, "-o", "."), "this is a folder"),
         (("diagram", EXAMPLE, "--plot", "a.doc"), "must end in .png"),

@@ -105,7 +105,7 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     assert cv.load("stop.vines")["B1"].problem is None
     assert cv.load("stop.vines", trust=True)["B1"].problem is not None
     (study.parent / "stop.py").write_text(PAGE + "# another\n")
-    assert "the page has changed since the result was made" in run("show", "stop.vines").output
+    assert "the machine file has changed since the result was made" in run("show", "stop.vines").output
     done = run("orbit", "stop.vines", "B1", "--trust")
     assert done.exit_code != 0 and "make the result anew" in str(done.exception)
     assert "does not hold" not in str(done.exception)
@@ -203,4 +203,4 @@ def test_a_page_is_calibrated(study):
     assert done.exit_code == 0, done.exception
     assert json.loads(done.stdout)["values"]["restitution"] == pytest.approx(0.66, abs=1e-6)
     refused = run("calibrate", study, "--impacts", "hits.csv", "--release", "1")
-    assert "a page says where its motions begin" in str(refused.exception)
+    assert "a declared machine says where its motions begin" in str(refused.exception)

@@ -42,7 +42,7 @@ def stepped(state, phase, p, contact):
 
 BAD = {
     "rates": ({"motion": lambda s, ph, p, c: (s.v,)}, "motion returns 1 rate for 2 states .x, v.; return one rate per state"),
-    "parameter": ({"motion": lambda s, ph, p, c: (s.v, p.mass)}, "p.mass: the page declares no such parameter; it has forcing"),
+    "parameter": ({"motion": lambda s, ph, p, c: (s.v, p.mass)}, "p.mass: the machine declares no such parameter; it has forcing"),
     "branching": ({"motion": stepped}, r"a comparison \(>\) of a symbol has no single formula.*declare a Switch"),
     "absolute": ({"motion": lambda s, ph, p, c: (s.v, -abs(s.x))}, "the absolute value of a symbol.*Switch"),
     "math": ({"motion": lambda s, ph, p, c: (s.v, math.cos(ph))}, "take cos, sin, sqrt, exp ... from orbits.symbols"),
@@ -66,7 +66,7 @@ BAD = {
     "strangers": ({"mirror": {"R": "L"}}, "'L' is no contact; there are R"),
     "number": ({"parameters": {"forcing": "one", "frequency": 1.0, "gap": 1.0}}, "forcing = 'one' is not a number"),
     "state": ({"motion": lambda s, ph, p, c: (s.speed, -s.x)}, "state.speed: there is no state of this name; the states are x, v"),
-    "contact": ({"motion": rubbing}, "contact.floor: the page declares no such contact; it has none"),
+    "contact": ({"motion": rubbing}, "contact.floor: the machine declares no such contact; it has none"),
     "list": ({"contacts": wall()}, r"contacts = Wall.* must be a list, for example \[Wall"),
     "stranger": ({"contacts": ["R"]}, "contacts has 'R'; it may have Wall, DryFriction and Switch"),
     "pushes": ({"contacts": [wall(push=[0.0, -1.0])]}, "wall 'R': push = .* must say how an impulse changes the states by name"),
