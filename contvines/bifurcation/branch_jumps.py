@@ -16,7 +16,6 @@ from .located import Located, Role
 from .location_error import singular_within
 from .segment import Segment
 
-EXACT = 1e-12  # residual, in units of the rows, of a point where it is known what these are: halfway between two branches it is larger
 NOISY = 2e3  # times the noise of the equations: places are no better than this
 
 
@@ -48,7 +47,7 @@ def inexact(segment: Segment, event: Located) -> bool:
     unit = segment.engine.parameter_unit(event.point.p)
     noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
     least = max(segment.engine.settings.located, NOISY * noise)
-    solved = EXACT if scaled and not noise and event.kind == "branch-point" else least
+    solved = segment.engine.settings.exact if scaled and not noise and event.kind == "branch-point" else least
     vague = event.error > 10.0 * least * unit
     if vague and event.kind == "branch-point":
         # no better than the rounding of its matrix allows

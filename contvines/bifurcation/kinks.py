@@ -15,7 +15,6 @@ from .scan import Spectra
 from .segment import Segment
 
 PLACES = np.linspace(0.0, 1.0, 9)
-STEEP = 0.25  # part of the slope at first by which the sides of a kink are at least as steep when looked at nearer
 ZOOMS = 8
 AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
 
@@ -75,7 +74,7 @@ def kinked(segment: Segment) -> bool:
             return False
         if zoom == 0:
             first = steepness
-        elif steepness < STEEP * first:
+        elif steepness < engine.settings.steep * first:
             return False
         low, high = float(places[k - 1]), float(places[k + 1])
     return True

@@ -14,7 +14,6 @@ from .segment import Segment
 
 ENTRY = 2.0**-50  # relative error of an entry: of several roundings, half a unit in the last place each
 BENT = 1e6  # condition of the second derivatives from which a step says nothing
-ALONG = 1e-4  # way along the tangent (in the metric) over which the change of a matrix is looked at
 
 
 def blurred(segment: Segment, event: Located, test: Callable[[Solved], float]) -> Located:
@@ -94,10 +93,11 @@ def _slope(
 ) -> float:
     """How y (F_u, F_p) x changes along a direction of length one in the metric."""
     values = []
-    for side in (-ALONG, ALONG):
+    offset = engine.settings.offset
+    for side in (-offset, offset):
         engine.residual(u + side * way[:-1], p + side * float(way[-1]))
         values.append(_image(engine, left, vector))
-    return (values[1] - values[0]) / (2.0 * ALONG)
+    return (values[1] - values[0]) / (2.0 * offset)
 
 
 def _null_vectors(

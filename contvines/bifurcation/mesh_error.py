@@ -39,7 +39,7 @@ def mesh_error(engine: Engine, special: Any) -> float | None:
     u, p, tangent = special.u, float(special.value), engine.unit(special.tangent)
     singular = special.kind in SINGULAR
     here = None if singular else _on(engine, u, p, tangent)
-    beside = _on(engine, *_moved(u, p, tangent, settings.mesh_offset), tangent)
+    beside = _on(engine, *_moved(u, p, tangent, settings.offset), tangent)
     coarse = beside if singular else here
     if coarse is None or beside is None:
         return None
@@ -54,9 +54,7 @@ def mesh_error(engine: Engine, special: Any) -> float | None:
     missed = _vanishing(finer, special, fine.row) - (second if singular else first)
     found, along = abs(fine.p - coarse.p), abs(coarse.tangent[-1] / engine.inner(tangent, coarse.tangent))
     if missed:
-        found += (
-            along * abs(missed) * settings.mesh_offset / abs(second - first) if second != first else math.inf
-        )
+        found += along * abs(missed) * settings.offset / abs(second - first) if second != first else math.inf
     return settings.mesh_caution * found if math.isfinite(found) else None
 
 

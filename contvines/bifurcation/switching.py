@@ -14,19 +14,16 @@ from ..continuation.engine import Engine, Solved
 from ..problems.protocol import Problem
 
 KERNEL = 4  # null vectors that are followed at most
-EXACTLY = 1e-10  # ... beside a branch point, where isolated solutions are nearly singular
 MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
 SLANTED = 300.0  # times the amplitude: how far off the first point may be, where two branches cross at a small angle
 GRAZING = 1e4  # ... if nothing is found at that
 # the branch that is known bends away, and is met again at a distance that grows like the root of the amplitude
 LEAST = 1.6
 ATTEMPTS = 22  # halvings of the amplitude
-UPRIGHT, VISIBLE = 1e-14, 1e-4  # a change of the parameter that is none, over at least this length
+ROUNDING = float(np.finfo(float).eps)
+UPRIGHT = 64.0 * ROUNDING  # a change of the parameter, in its unit, that is none
 MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
-CROOKED = 0.5  # part of what a side lacks of proportion that is left at half the distance: a quarter of a smooth one, seven tenths of a root
-ALIKE = 1e-5  # null vectors of one point grow alike; what grows by less than this part is none
-ASIDE = (1e-15, -3e-15, 1e-14, -3e-14)  # of the unknowns
-SINGULAR = 1e-5  # a bordered system with a smaller singular direction (relative) counts as singular
+ASIDE = (4.0 * ROUNDING, -16.0 * ROUNDING, 64.0 * ROUNDING, -128.0 * ROUNDING)  # of the unknowns
 
 
 @dataclass(frozen=True)
@@ -63,10 +60,10 @@ class Departure:
     slope: float
     family: bool = False
 
-    def upright(self, unit: float) -> bool:
-        """Whether the parameter, in this unit, does not change along the branch."""
+    def upright(self, unit: float, visible: float) -> bool:
+        """Whether the parameter, in this unit, does not change along the branch, over more than the `visible` length."""
         moved = max(abs(self.ahead.p - self.origin.p), abs(self.slope) * self.amplitude)
-        return moved <= UPRIGHT * unit and self.amplitude > VISIBLE
+        return moved <= UPRIGHT * unit and self.amplitude > visible
 
 
 def null_vectors(
@@ -74,7 +71,7 @@ def null_vectors(
     u: np.ndarray,
     p: float,
     tangent: np.ndarray,
-    singular: float = SINGULAR,
+    isolated: bool = False,
     most: int | None = None,
 ) -> list[np.ndarray]:
     """Null vectors of [[F_u, F_p], [tangent]]: images of random vectors under its inverse, made orthonormal in the metric.
@@ -86,8 +83,8 @@ def null_vectors(
     multipliers cross at once; none where (u, p) is not a branch point.
     """
     border = engine.weights * tangent
-    found: list[np.ndarray] = []
-    first = 0.0
+    settings, found, first = engine.settings, list[np.ndarray](), 0.0
+    singular = settings.isolated if isolated else settings.null
     for random in _sides(min(KERNEL if most is None else most, KERNEL, engine.n), engine.n):
         side = engine.join(engine.row_sizes * random, 0.0)
         image = engine.apply_inverse(border, side) if found else _evaluated(engine, u, p, border, side)
@@ -99,7 +96,7 @@ def null_vectors(
             image = image - engine.inner(image, other) * other
         growth = size * engine.norm(image) * math.sqrt(engine.n / float(random @ random))
         first = max(first, growth)
-        if growth < 1.0 / singular or growth < ALIKE * first:
+        if growth < 1.0 / singular or growth < settings.null * first:
             break
         found.append(_oriented(engine, engine.unit(image)))
     return found
@@ -243,7 +240,7 @@ def _multiple(
 
 def _in_a_family(engine: Engine, point: Solved) -> bool:
     """Whether a point off the branch point is singular, too: one of a continuous family of equivalent solutions."""
-    return len(null_vectors(engine, point.u, point.p, point.tangent, EXACTLY)) > 0
+    return len(null_vectors(engine, point.u, point.p, point.tangent, isolated=True)) > 0
 
 
 def _at(
@@ -319,7 +316,7 @@ def _straight(engine: Engine, z: np.ndarray, found: Departure) -> np.ndarray | N
     """
     if found.back is None:
         return None
-    rough, straight = False, None
+    settings, rough, straight = engine.settings, False, None
     for side, first in ((1.0, found.ahead), (-1.0, found.back)):
         nearer = (
             _at(engine, z, found.direction, side * found.amplitude * part, 0.0, GRAZING)
@@ -327,7 +324,7 @@ def _straight(engine: Engine, z: np.ndarray, found: Departure) -> np.ndarray | N
         )
         gaps = [engine.join(point.u, point.p) - z for point in (first, *nearer) if point is not None]
         left = [engine.norm(wide - 2.0 * narrow) for wide, narrow in pairwise(gaps)]
-        if len(left) == 2 and left[1] <= max(CROOKED * left[0], engine.settings.critical * found.amplitude):
+        if len(left) == 2 and left[1] <= max(settings.crooked * left[0], settings.critical * found.amplitude):
             straight = engine.unit(side * gaps[0])
         else:
             rough = True
@@ -384,7 +381,7 @@ def _lined(
                 return None
             origin = origin._replace(tangent=engine.unit(chord if back is not None else direction), sign=0.0)
             best = Departure(engine.problem, origin, ahead, back, direction, amplitude, curvature, slope)
-            if abs(wide - narrow) <= 0.02 * abs(narrow) + 1e-9 / amplitude**2:
+            if abs(wide - narrow) <= 0.02 * abs(narrow) + engine.settings.located / amplitude**2:
                 return best
         amplitude = half
     return best

@@ -12,7 +12,6 @@ from .branch import Branch
 from .ending import Ending
 from .half_branch import HalfBranch
 
-RESOLVED = 1e-8  # but beside one at which stability is lost, where a stable sliver may lie, down to this
 LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"}
 BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
 
@@ -35,7 +34,7 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
         )
         segment = Segment(engine, *ends)
         narrow = a_sliver(kinds.get(i, BEGINNING), kinds.get(i + 1, BEGINNING))
-        if not segment.length > (RESOLVED if narrow else engine.settings.one_place):
+        if not segment.length > (engine.settings.sliver if narrow else engine.settings.one_place):
             continue
         middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
         if middle is not None:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Located, Role
 from ..continuation.engine import Engine, Solved
@@ -21,9 +23,10 @@ if TYPE_CHECKING:
     from ..journal import Journal
 
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
-SHOWN = 1e-10  # margins of a special point that are certainly positive
 ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
-UNRESOLVED = 1e-15  # changes of the parameter (in its unit), times the distance at which they are seen, that are rounding
+UNRESOLVED = (
+    4.0 * np.finfo(float).eps
+)  # changes of the parameter (in its unit), times the distance at which they are seen, that are rounding
 TURNING = ("fold", "branch-point")  # what rounding makes of solutions of nearly singular systems
 
 
@@ -113,7 +116,7 @@ def _unresolved(engine: Engine, origin: Solved, half: HalfBranch, i: int) -> boo
 
 def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
     """The first point of a branch that leaves a point with positive margins, brought so near that it has them, too, if it can be."""
-    if point is None or float(engine.smallest_margin(origin.row)) < SHOWN:
+    if point is None or float(engine.smallest_margin(origin.row)) < engine.settings.inside:
         return point
     closer: Solved | None = point
     while closer is not None and engine.distance(origin, closer) > engine.settings.resolution:

@@ -116,7 +116,7 @@ def correct(kernels, data, work, u, p, border, target, tolerance, max_sweeps, st
     sign = 0.0
     for sweep in range(max_sweeps):
         residual = kernels.linearise(data, u, p, work)
-        if not residual < 1e300:
+        if not math.isfinite(residual):
             return p, -2, sign, size
         gap = remainder(border, u, p, target)
         sign = kernels.bordered(data, work, border, gap, step, tangent)
@@ -196,7 +196,7 @@ def points(
                 residual = kernels.linearise(data, u, p, work)
                 if what == LINEARISE:
                     break
-                if not residual < 1e300:
+                if not math.isfinite(residual):
                     sweeps = -2
                     break
                 gap = remainder(border, u, p, gap)
@@ -213,7 +213,7 @@ def points(
         if sweeps >= 0 and what == EVERYTHING:
             kernels.inspect(data, u, p, work, row)
             norm, same, across = orient(tangent, along, border, metric)
-            if norm < 1e300:
+            if math.isfinite(norm):
                 if same < 0.0:
                     norm, across = -norm, -across
                 put(tangent, tangent, norm)

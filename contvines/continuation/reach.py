@@ -17,11 +17,10 @@ from .engine import Engine, Solved
 DOUBLINGS = 26
 # a doubling that takes so much less than the one before, and so little of the interval, is one of the last
 SHRINKS, SMALL = 0.5, 0.05
-CREEP, MANY = 1e-6, 600  # steps shorter than this (in the metric), so many of them in a row, lead nowhere
+MANY = 600  # short steps in a row that lead nowhere
 OFF = 2.0  # times `escape`, of cycles at one value of the parameter: as of families of a linear oscillator, which have all amplitudes
 ALONE = 1e-3  # ... which have a multiplier that is nearer to 1
 FAR = 1e6  # times `escape`: further away a branch has run away in any case
-ROUNDING = 1e-12  # changes of the parameter, in its unit, that are none
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
 
 
@@ -81,7 +80,9 @@ class Reach:
             room = self.engine.upper - value if ahead else value - self.engine.lower
             last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
             # where the parameter stands still its turns are those of rounding
-            stands = moved <= max(ROUNDING, 10.0 * self.engine.noise) * self.engine.scale[-1]
+            stands = (
+                moved <= max(self.engine.settings.rounding, 10.0 * self.engine.noise) * self.engine.scale[-1]
+            )
             turned = self.turned and not stands
             comparable = self.moved < np.inf and not turned
             bound = (
@@ -104,7 +105,7 @@ class Reach:
             return False
         steps = np.diff(np.column_stack([chunk.points, chunk.values]), axis=0)
         way = float(np.sqrt((steps**2) @ self.engine.weights).sum())
-        self.slow = self.slow + len(chunk) - 1 if way < CREEP * (len(chunk) - 1) else 0
+        self.slow = self.slow + len(chunk) - 1 if way < self.engine.settings.creep * (len(chunk) - 1) else 0
         return self.slow >= MANY
 
     def _distances(self, points: np.ndarray) -> np.ndarray:

@@ -19,6 +19,10 @@ BETWEEN = (
     "min_step",
     "max_step",
     "amplitude",
+    "crooked",
+    "null",
+    "isolated",
+    "creep",
     "resolution",
     "upright",
     "rounding",
@@ -26,6 +30,11 @@ BETWEEN = (
     "close",
     "near",
     "shown",
+    "inside",
+    "sliver",
+    "exact",
+    "together",
+    "steep",
     "tied",
     "at_end",
     "critical",
@@ -33,7 +42,7 @@ BETWEEN = (
     "located",
     "stationary",
     "one_place",
-    "mesh_offset",
+    "offset",
     "symmetric",
     "same",
 )
@@ -62,6 +71,15 @@ class Settings:
         Steps: points per call of the compiled loop: the first call, later calls.
     amplitude : float
         Switching: distance from a special point at which the branch that leaves it is first corrected.
+    crooked : float
+        Switching: part of what a side of a branch lacks of proportion that is left at half the distance, above which it turns round: a quarter of
+        a smooth one, seven tenths of a root.
+    null : float
+        Switching: a bordered system with a smaller singular direction (relative) is singular, and null vectors whose growth differs by more are none.
+    isolated : float
+        Switching: the same beside a branch point, where isolated solutions are nearly singular.
+    creep : float
+        Ends: steps (in the metric) shorter than this, many in a row, lead nowhere.
     escape : float
         Ends: a branch whose unknowns are further than this (rms) from its start has run away.
     max_branches : int
@@ -85,6 +103,16 @@ class Settings:
     shown : float
         Special points: margins that are certainly positive where a virtual branch is real between two points: where a doubled branch passes
         through the border of its root, as one round gets what another one loses, margins are known to half their digits.
+    inside : float
+        Special points: margins of a special point above which it lies at no border.
+    sliver : float
+        Special points: length (in the metric) beside a point at which stability is lost, down to which a stable stretch is looked for.
+    exact : float
+        Special points: residual of a branch point, in units of the rows; halfway between two branches it is larger.
+    together : float
+        Special points: distance from the circle (the axis) within which multipliers cross at once, double ones, known to half of their digits, included.
+    steep : float
+        Special points: part of the slope at first by which the sides of a kink are at least as steep when looked at nearer.
     tied : float
         Special points: margins that differ by less vanish together.
     at_end : float
@@ -99,8 +127,8 @@ class Settings:
         Special points: the parameter's part of a unit tangent, in its unit, that may be that of a fold.
     one_place : float
         Special points: distance (in the metric) below which two are at one place, and a fold at a border is the border.
-    mesh_offset : float
-        Special points: distance (in the metric) over which the slope of a multiplier is told when a finer mesh is asked for the error.
+    offset : float
+        Special points: distance (in the metric) over which slopes are told that say how errors move a point.
     mesh_caution : float
         Special points: times the difference to a mesh with halved intervals, the stated error of one on a mesh.
     symmetric : float
@@ -121,6 +149,10 @@ class Settings:
     first_chunk: int = 64
     chunk: int = 256
     amplitude: float = 2e-3
+    crooked: float = 0.5
+    null: float = 1e-5
+    isolated: float = 1e-10
+    creep: float = 1e-6
     escape: float = 50.0
     max_branches: int = 200
     resolution: float = 3e-7
@@ -131,6 +163,11 @@ class Settings:
     close: float = 1e-6
     near: float = 1e-4
     shown: float = 1e-6
+    inside: float = 1e-10
+    sliver: float = 1e-8
+    exact: float = 1e-12
+    together: float = 1e-3
+    steep: float = 0.25
     tied: float = 1e-9
     at_end: float = 1e-7
     critical: float = 1e-4
@@ -138,7 +175,7 @@ class Settings:
     located: float = 1e-9
     stationary: float = 1e-6
     one_place: float = 1e-5
-    mesh_offset: float = 1e-4
+    offset: float = 1e-4
     mesh_caution: float = 2.0
     symmetric: float = 1e-6
     same: float = 1e-6

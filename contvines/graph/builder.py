@@ -14,7 +14,7 @@ from ..branches.assembly import filled, make_branch
 from ..branches.beginning import from_border
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
-from ..branches.opening import SHOWN, on_this_side
+from ..branches.opening import on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.loop import MARGIN
@@ -32,9 +32,9 @@ from .schedule_branches import SWITCHING, leave, tell_dead_end
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-NOWHERE = 1e-12  # a branch shorter than this is none, and ...
-BRIEF = 1e-9  # ... one shorter than this whose margins are rounding all along, and ...
-BEYOND = -1e-13  # ... one whose margins are less all along, though no less than what counts as rounding
+BEYOND = (
+    0.1 * MARGIN
+)  # a branch whose margins are less all along is none, though they are no less than what counts as rounding
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
@@ -258,15 +258,16 @@ def refined(
 
 def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
     """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
+    nowhere = run.settings.rounding
     whole, unit = half.joined(), run.unit(half.end)
     length = whole.values.max() - whole.values.min()
     if len(half) > 2 and whole.smallest[1:-1].max() < BEYOND:
         return True
-    if length > BRIEF * unit:
+    if length > run.settings.located * unit:
         return False
     across = engine.join(np.ptp(whole.points, axis=0), 0.0)
     return bool(
-        whole.smallest.max() <= NOWHERE or (length <= NOWHERE * unit and engine.norm(across) <= NOWHERE)
+        whole.smallest.max() <= nowhere or (length <= nowhere * unit and engine.norm(across) <= nowhere)
     )
 
 
@@ -299,7 +300,7 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 # off the point where the known branch ends, or it would be taken for that branch, but not past a border
                 step = run.settings.amplitude
                 margin = float(engine.smallest_margin(first.row))
-                side = margin >= MARGIN if abs(margin) > SHOWN else None
+                side = margin >= MARGIN if abs(margin) > run.settings.inside else None
             elif abs(first.tangent[-1]) <= run.settings.stationary * run.unit(first.p) or first.sign == 0.0:
                 # off a fold or branch point, which would else lie on neither of the two halves
                 step = run.settings.first_step
@@ -324,7 +325,7 @@ def _bring_near(engine: Engine, pending: Pending) -> None:
 
 def room(engine: Engine, border: Solved, step: float) -> float | None:
     """A first step from a border that ends where the branch is real, if the usual one does not: it may be real in a short window only."""
-    for length in (step, 0.1 * step, 0.01 * step, 1e-3 * step):
+    for length in (step, 0.1 * step, 0.01 * step, 0.001 * step):
         found = beside(engine, border, length)
         if found is not None and float(engine.smallest_margin(found.row)) >= MARGIN:
             return None if length == step else length

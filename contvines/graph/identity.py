@@ -169,7 +169,7 @@ def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p
             continue
         found = engine.at_value(guess, p)
         if found is None:
-            if here == key and same_vector(near, vector, 1e-4, engine.scale):
+            if here == key and same_vector(near, vector, engine.settings.near, engine.scale):
                 return True
             continue
         here, near = engine.problem.canonical(found.u, p)
@@ -208,7 +208,7 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
             return False
         if engine.inner(point.tangent, found.tangent) < 0.9:
             length *= 0.25
-            if length < 1e-8:
+            if length < engine.settings.sliver:
                 return False
             continue
         before, gap, point, length = gap, away(found), found, 2.0 * length

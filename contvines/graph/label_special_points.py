@@ -179,7 +179,7 @@ def _kind(run: Run, engine: Engine, event: Located) -> str:
         for vector in null_vectors(engine, event.point.u, event.point.p, event.point.tangent):
             u = vector[:-1]
             image = test.image_direction(event.point.u, u)
-            if np.abs(image + u).max() < 1e-3 * np.abs(u).max():
+            if np.abs(image + u).max() < engine.settings.aside * np.abs(u).max():
                 return test.kind
     return event.kind
 

@@ -28,7 +28,6 @@ from .queue import Origin, Pending
 from .run import Run
 
 DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
-CRITICAL = 1e-3  # distance from the boundary within which multipliers cross there, double ones included
 SLANTED = 0.1  # change of the parameter, in its unit and per amplitude, of a branch that goes through a point without turning there
 
 FAMILY = (
@@ -123,7 +122,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             unit = run.unit(point.value)
             transcritical = abs(departure.slope) > SLANTED * unit * departure.amplitude
             turns = abs(point.tangent[-1]) <= SLANTED * unit * engine.amplitude(point.tangent)
-            if departure.upright(unit):
+            if departure.upright(unit, run.settings.near):
                 run.remark(point.label, VERTICAL)
             elif generic and transcritical and turns:  # a pitchfork: the known branch is the one that bends
                 curvature = fold_coefficient(engine, here)
@@ -188,7 +187,7 @@ def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         if not found:
             run.remark(point.label, "no cycle that leaves here was found")
         for departure in found:
-            if departure.upright(run.unit(point.value)):
+            if departure.upright(run.unit(point.value), run.settings.near):
                 run.remark(point.label, VERTICAL)
             run.queue.append(
                 Pending(
@@ -229,7 +228,7 @@ def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
     """How many multipliers are critical, and so how many null vectors there may be; None where the multipliers do not tell."""
     if engine.problem.spectrum != "map":
         return None
-    return int((np.abs(spectrum - critical) < CRITICAL).sum()) or None
+    return int((np.abs(spectrum - critical) < engine.settings.together).sum()) or None
 
 
 def _cubic(problem: Any, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -46,7 +47,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
     costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in COEFFICIENTS}
     at: References | None = None
     for i in range(len(places) - 1):
-        if not plane.at(places[i]) < 1e300:
+        if not math.isfinite(plane.at(places[i])):
             continue
         at = References(plane, problem, at)
         tests = [
@@ -100,7 +101,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
 def _singular(plane: Plane, places: list[Place]) -> bool:
     """Whether the equations are singular at a few places of a border, and so at all of them."""
     few = places[:: max(1, len(places) // FEW)]
-    tests = [abs(plane.first.null_vectors().test) for place in few if plane.at(place) < 1e300]
+    tests = [abs(plane.first.null_vectors().test) for place in few if math.isfinite(plane.at(place))]
     return bool(tests) and float(np.median(tests)) < SINGULAR
 
 
@@ -341,7 +342,7 @@ def _where_born(locus: LocusProblem, places: list[Place]) -> list[tuple[int, Pla
         kinds = (FIRST_OF_EQUILIBRIA if still else FIRST_OF_CYCLES).get(locus.condition, ())
         parent = begin(own, "hopf" if still else own.flip_kind, u, place.p, locus.over, 0, locus.bounds)
         plane, guess = Plane(parent), Place(u, place.p, place.q)
-        if not plane.at(guess) < 1e300:
+        if not math.isfinite(plane.at(guess)):
             continue
         at = References(plane, parent)
         for look in looks(own, parent.condition):

@@ -101,12 +101,12 @@ def locus_linearise(data, U, q, work):
         state[KNOWN] = min(state[KNOWN], 0.0)
         calls.assign(second, first, p)
         largest = calls.linearise(second, u, q, base)
-        if not largest < 1e300:
+        if not math.isfinite(largest):
             return math.inf
         columns[1] = Q
     calls.assign(first, second, q)
     largest = calls.linearise(first, u, p, base)
-    if not largest < 1e300:
+    if not math.isfinite(largest):
         return math.inf
     residuals[:n] = F + U[n + 1] * borders[B, :n] if kind == BRANCH else F
     if not still:

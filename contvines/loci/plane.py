@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from typing import NamedTuple
@@ -137,7 +138,7 @@ class Plane:
         scale = self.locus.sizes_at(u, p, q)
         last, change, halvings = np.inf, np.zeros(len(u) + 2), 0
         for _ in range(ITERATIONS):
-            if not self.at(Place(u, p, q)) < 1e300:
+            if not math.isfinite(self.at(Place(u, p, q))):
                 return None
             line = self.first
             null = line.null_vectors()
@@ -210,7 +211,7 @@ class Plane:
         for sign in (1.0, -1.0):
             shifted = sign * h * direction
             moved = Place(place.u + shifted[:-2], place.p + shifted[-2], place.q + shifted[-1])
-            if not self.at(moved) < 1e300:
+            if not math.isfinite(self.at(moved)):
                 return np.full(len(conditions), np.nan)
             ends.append(np.array([f(self) for f in conditions]))
         with np.errstate(invalid="ignore"):  # a margin without anything to watch is infinite on both sides

@@ -104,7 +104,7 @@ def tests(data, work, u, p, q, values):
     kind, calls = data[KIND], data[CALLS]
     calls.assign(first, data[SECOND], q)
     residual = calls.linearise(first, u, p, trial)
-    if not residual < 1e300:
+    if not math.isfinite(residual):
         return residual
     if kind == FOLD:
         values[0] = null_test(

@@ -7,6 +7,7 @@ h = a (p - p0)^2 + b (q - q0) + ... along the branches the borders are at p - p0
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -74,14 +75,14 @@ def _best(value: Callable[[float], float]) -> float:
 
 
 def _margin(plane: Plane, place: Place, index: int) -> float:
-    return float(plane.row[2 * plane.m + index]) if plane.at(place) < 1e300 else np.nan
+    return float(plane.row[2 * plane.m + index]) if math.isfinite(plane.at(place)) else np.nan
 
 
 def _on_branch(plane: Plane, guess: Place, index: int) -> float:
     """The margin of the solution at a pair of parameter values, near a guess; NaN if Newton's method does not find it."""
     place, line, last = guess, plane.first, np.inf
     for _ in range(SWEEPS):
-        if not plane.at(place) < 1e300:
+        if not math.isfinite(plane.at(place)):
             return np.nan
         null = line.null_vectors()
         x, s = line.solve(-line.residual, null.column, null.row)

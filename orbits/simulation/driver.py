@@ -52,8 +52,10 @@ def _check(state: np.ndarray, walls: tuple[float, float]) -> None:
     if not np.all(np.isfinite(state)):
         raise SimulationError("the start is not finite: give numbers for phase, w and w_rate")
     left, right = walls
-    if not right <= state[W] <= left:
+    rounding = 16.0 * np.finfo(float).eps * (left - right)  # of a motion that begins at a wall
+    if not right - rounding <= state[W] <= left + rounding:
         raise SimulationError(f"w = {state[W]:g} lies outside the cavity: give {right:g} <= w <= {left:g}")
+    state[W] = min(max(state[W], right), left)
 
 
 def collect(

@@ -23,10 +23,6 @@ from ..multiplier_counts import balance, counts, sizes_by_sort
 from ..multiplier_tests import passing
 from ..segment import Segment
 
-EXACT = (
-    1e-13  # residual of a branch point where a side branch turns; halfway between two branches it is larger
-)
-
 
 def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
     """The branch points of a segment whose folds and meetings are known."""
@@ -42,7 +38,7 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
         if root is not None and not _near(segment, root.position, met):
             turning = _near(segment, root.position, folds)
             # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
-            if not turning or (root.point.residual <= EXACT and singular(engine, root.point)):
+            if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
                 points.append(Located.at(root, _kind(segment, root)))
     return points
 

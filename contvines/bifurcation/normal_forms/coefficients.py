@@ -18,6 +18,7 @@ Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., sections 5.4
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -133,7 +134,7 @@ class Forms:
         """The Jacobian of a problem, given by its kernels, data and workspace."""
         kernels, data, work = calls
         here = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
-        if not kernels.linearise(data, here, self.p, work) < 1e300:
+        if not math.isfinite(kernels.linearise(data, here, self.p, work)):
             return None
         return self._in_units(kernels.matrix(data, work))
 
@@ -223,7 +224,7 @@ class Forms:
                 except (ValueError, ArithmeticError):
                     return np.full(self.n, np.nan)
         kernels, data, work = self.open_calls
-        if not kernels.linearise(data, moved, self.p, work) < 1e300:
+        if not math.isfinite(kernels.linearise(data, moved, self.p, work)):
             return np.full(self.n, np.nan)
         return np.array(work[0].reshape(-1)[: self.n]) / rows
 

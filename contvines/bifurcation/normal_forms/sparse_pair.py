@@ -10,6 +10,7 @@ taken from F_u at Chebyshev nodes on the lines along the real and the imaginary 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -53,7 +54,7 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
     work, data = problem.workspace(), problem.data
 
     def jacobian(v: np.ndarray) -> Any:
-        known = problem.kernels.linearise(data, v * units, p, work) < 1e300
+        known = math.isfinite(problem.kernels.linearise(data, v * units, p, work))
         return work.jacobian if known else None
 
     here = u / units

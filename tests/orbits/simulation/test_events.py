@@ -133,6 +133,8 @@ def test_stuck_forever_and_free_drift():
     assert "rest" in run.ended
     assert run.end[1] == 0.3
     assert simulate(machine, {"w": 0.3}, periods=2, amplitude=held * (1 + 1e-6)).letters[:2] == "us"
+    # at rest where rounding has put it behind the wall
+    assert simulate(machine, {"w": np.nextafter(1.0, 2.0)}, periods=2, amplitude=held).end[1] == 1.0
     drift = Absorber(restitution=1.0, friction=0.0, gravity=0.2)
     bounces = simulate(drift, {"w_rate": 0.5}, events=10, amplitude=0.0)
     assert bounces.letters == "LRLRLRLRLR"
