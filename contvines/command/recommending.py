@@ -24,28 +24,20 @@ if TYPE_CHECKING:
     from contvines.survey.outcomes import Findings
     from contvines.survey.plan import Plan
 
-PLACES, LATER = (
-    13,
-    (7, 5),
-)  # values of the first look, and of the later ones between the neighbours of the best
+PLACES = 13  # values of the first look
+LATER = (7, 5)  # of the later ones, between the neighbours of the best
 SAMPLES = 16  # where the study does not say
 QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
 LOADS = ("impact_speed", "approach_speed", "impulse", "mean_force", "impact_rate", "impact_energy")
-VALUES, STARTS = (
-    9,
-    6,
-)  # values of the parameter and starts at each, from which it is told what is met at the choice
+VALUES, STARTS = 9, 6  # of the parameter, and at each, from which it is told what is met at the choice
 REPLAYED, LONGEST = (
     400,
     24,
-)  # forcing periods of a motion that is simulated from itself, and of the longest that may recur
+)  # forcing periods of a motion simulated from itself, and of the longest that may recur
 AGREES = 0.01  # of the diagram's largest response: simulations up and down that exceed it by more are told
 CHECK = 61  # values of the simulation up and down
 SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
-ABOUT, FINE = (
-    8,
-    321,
-)  # of its steps to either side of the largest response it looks closer, at so many values: a jump may end a motion
+ABOUT, FINE = 8, 321  # steps to either side of the largest response where it looks closer, at so many values
 DRAWN = 4000  # instants of the start-up that are kept
 
 
@@ -286,6 +278,9 @@ class _Work:
         self, places: list[Place], best: Place | None, cost: float, target: float | None
     ) -> Recommendation:
         """All that is told of the choice."""
+        from contvines.command.compare import peaks_compared
+        from orbits.design.references import KINDS
+
         study = self.study
         unknown = [
             f"the response at {self.name.replace('_', ' ')} = {figures(place.value)} {self.units.get(self.name, '')}".rstrip()
@@ -295,11 +290,8 @@ class _Work:
             if place.unknown
         ]
         has_bare = self.model.flow != "page" and "damping" in self.model.parameter_names
-        compared = (
-            self._compared(self.family.machine_at({} if best is None else {self.name: best.value})[0])
-            if has_bare
-            else {}
-        )
+        model, loose = self.family.machine_at({} if best is None else {self.name: best.value})
+        compared = peaks_compared(model, study.parameter, study.within, KINDS) if has_bare else {}
         if not has_bare:
             unknown.append(
                 "the response of a bare, a tuned and a friction-damped machine, start-up: they are told of the machine 'coupled' alone"
@@ -335,16 +327,15 @@ class _Work:
         unknown += [
             f"{name}: no motion that was met has it" for name, value in most.items() if math.isnan(value)
         ]
-        model, loose = self.family.machine_at({self.name: best.value})
         checked, curves = self._checked(best.value, model, loose)
         if checked is not None and abs(checked[1] - checked[0]) > AGREES * checked[0]:
             unknown.insert(
-                0, f"the largest response at the choice: {checked[0]:.4g} by the diagram, {checked[1]:.4g} by simulation"
+                0, f"the largest response at the choice: {figures(checked[0])} by the diagram, {figures(checked[1])} by simulation"
             )  # fmt: skip
         return Recommendation(
             **given, value=best.value, tolerance=_tolerance(places, best, cost), works=works, met=shares,
             loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked,
-            start_up=self._start_up(model) if has_bare else None, curves=curves + (self._lines(model) if has_bare else []),
+            start_up=self._start_up(model, compared["bare"][1]) if has_bare else None, curves=curves + (self._lines(model) if has_bare else []),
         )  # fmt: skip
 
     def _machine(self) -> dict[str, str]:
@@ -358,17 +349,12 @@ class _Work:
         for name, values in self.drawn.items():
             unit = self.model.units.get(name, "")
             found[name] = (
-                f"{values.min():.3g} to {values.max():.3g} {unit}".rstrip() + f" in {len(values)} samples"
+                f"{figures(values.min())} to {figures(values.max())} {unit}".rstrip()
+                + f" in {len(values)} samples"
             )
         if self.name in found:
             found[self.name] = f"chosen; {found[self.name]} in the study"
         return found
-
-    def _compared(self, model: Any) -> dict[str, tuple[float, float]]:
-        from contvines.command.compare import peaks_compared
-        from orbits.design.references import KINDS
-
-        return peaks_compared(model, self.study.parameter, self.study.within, KINDS)
 
     def _checked(
         self, value: float, model: Any, own: dict[str, float]
@@ -425,11 +411,10 @@ class _Work:
             Curve(kind, values.tolist(), (reference(kind, model, params) * length).tolist()) for kind in KINDS
         ]
 
-    def _start_up(self, model: Any) -> Start:
+    def _start_up(self, model: Any, at: float) -> Start:
         from contvines.command.measured import scales
         from orbits.design.start_up import start_up
 
-        at = self._compared(model)["bare"][1]
         params = model.vector_at(self.study.parameter, at, self.study.loose)
         length, _, seconds, _ = scales(model, params)
         seen = start_up(model, params)

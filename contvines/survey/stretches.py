@@ -77,14 +77,16 @@ def highest(parts: Sequence[Stretch]) -> Top | None:
     Beside the largest of the points the motion is solved for at further values: on the stretches whose response may rise, between
     points, above that of all others by as much as it falls to the neighbours.
     """
-    tops = [_top(part) for part in parts if np.any(np.isfinite(part.response))]
+    tops = [top for top in map(at_points, parts) if np.isfinite(top.response)]
     sure = max((top.response for top in tops), default=-np.inf)
     refined = [_refined(top) if top.response + _fall(top) >= sure else top for top in tops]
     return max(refined, key=lambda top: top.response, default=None)
 
 
-def _top(stretch: Stretch) -> Top:
-    """At the points."""
+def at_points(stretch: Stretch) -> Top:
+    """The largest response at the points of a stretch; -inf where it has none."""
+    if not np.isfinite(stretch.response).any():
+        return Top(-np.inf, np.nan, stretch.first, stretch)
     at = int(np.nanargmax(stretch.response))
     return Top(float(stretch.response[at]), float(stretch.values[at]), stretch.first + at, stretch)
 

@@ -13,7 +13,7 @@ from ..graph.shortening import motion_name
 from ..graph.table import with_unit
 from ..number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
-from .stretches import gaps, stretches
+from .stretches import at_points, gaps, stretches
 
 MOST = 8  # motions that are listed
 LEAST = 1e-3  # of the interval: motions that are stable on less are counted only
@@ -39,15 +39,14 @@ def summary(graph: Graph, width: int | None = None) -> str:
     listed = [row for row in found if row[0] >= LEAST * length][:MOST] or found[:MOST]
     rows = []
     for _, (word, kind), parts in listed:
-        top = max(parts, key=lambda part: _largest(part)[0])
-        height, at = _largest(top)
+        top = max((at_points(part) for part in parts), key=lambda top: top.response)
         ends = [f"{number(a)}..{number(b)}" for a, b in _united(parts)]
         rows.append(
             (
                 word,
                 kind,
                 ", ".join(ends[:3]) + (f" and {len(ends) - 3} more" if len(ends) > 3 else ""),
-                f"{figures(height)} at {number(at)}" if np.isfinite(height) else "-",
+                f"{figures(top.response)} at {number(top.value)}" if np.isfinite(top.response) else "-",
             )
         )
     unit = graph.units.get(graph.parameter)
@@ -84,14 +83,6 @@ def _kind(about: Mapping[str, Any]) -> str:
     if "impacts" in about and not about["impacts"]:
         said.append("no impacts")
     return ", ".join(said)
-
-
-def _largest(part: Any) -> tuple[float, float]:
-    """The largest response at the points of a stretch, and where; -inf where it has none."""
-    if not np.isfinite(part.response).any():
-        return -np.inf, np.nan
-    index = int(np.nanargmax(part.response))
-    return float(part.response[index]), float(part.values[index])
 
 
 def _united(parts: list[Any]) -> list[tuple[float, float]]:
