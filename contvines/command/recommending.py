@@ -164,7 +164,12 @@ class _Work:
         from contvines.command.compose import check_shaken, machine
         from contvines.command.survey_study import family_of, plan_and_machine, units_of
         from contvines.survey.plan import Plan
+        from orbits.design import Family
 
+        if study.sort is Sort.FLOW:
+            raise ValueError(
+                f"{study.path}: contvines recommend is for machines; contvines survey --best chooses of flows."
+            )
         if "samples" not in study.survey.model_fields_set:
             survey = study.survey.model_copy(update={"samples": SAMPLES})
             study = dataclasses.replace(study, survey=survey)
@@ -199,7 +204,9 @@ class _Work:
                 )
             model = model.told_by(self.name)
         self.plan, self.model = plan, model
-        self.family, self.units = family_of(study, model), units_of(study, model)
+        family = family_of(study, model)
+        assert isinstance(family, Family)
+        self.family, self.units = family, units_of(study, model)
         self.drawn = plan.samples
         self.samples = plan.shape[-1] if plan.samples else 1
         self.params = model.vector(study.loose)

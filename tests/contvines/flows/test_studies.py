@@ -116,6 +116,8 @@ def test_a_survey_of_flows(study, monkeypatch, capsys):
     study.write_text(
         STUDY + '[survey]\nvary = { c = [1.0, 4.0] }\noutcomes = ["peak", "first:hopf", "largest:period"]\n'
     )
+    assert run(monkeypatch, "recommend", "study.toml") == 1
+    assert "recommend is for machines; contvines survey --best" in capsys.readouterr().err
     assert not run(monkeypatch, "survey", "study.toml", "--workers", "1", "--json")
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert [row["c"] for row in rows] == [1.0, 4.0]
