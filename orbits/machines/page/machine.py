@@ -20,7 +20,7 @@ from orbits.machines.page.compiled import Compiled
 from orbits.machines.page.energies import CONTACT, UNITS, check_energy, impact_mass, load_names
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.mirror import MirrorImage
-from orbits.machines.page.page import Page, page_of
+from orbits.machines.page.page import Page, again, object_name, page_of
 from orbits.machines.page.patterns import Equations
 from orbits.machines.page.si import Units
 from orbits.machines.parameters import ParameterError
@@ -122,6 +122,15 @@ class Machine(Varying):
     def __repr__(self) -> str:
         kind = "self-excited" if self.phase_rate is None else f"forced at {self.phase_rate}"
         return f"<Machine {self.name}: {', '.join(self.states)}; {kind}; letters {' '.join(self.alphabet.letters)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Other processes run its page."""
+        name = object_name(self)
+        if not name:
+            raise ParameterError(
+                f"the machine {self.name!r} cannot go to another process: declare it under a name at the top of a file, or work with workers = 1"
+            )
+        return again, (self.page.path, name)
 
     # ------------------------------------------------------------------ facts
     @property

@@ -2,6 +2,7 @@
 
 import json
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from contvines.command.compose import first_orbit
 from contvines.command.machine_outcomes import dissipation
 from contvines.command.study import check_study
 from contvines.survey.outcomes import Findings
-from orbits import Coupled, coupled_two
+from orbits import Coupled, Machine, coupled_two
 from orbits.machines.page.names import check_response
 from orbits.problem import rebuild
 from orbits.simulation import simulate
@@ -173,3 +174,13 @@ def test_an_absorber_that_sticks_at_its_wall_does_not_hit_it_and_both_slip_at_on
     found = sorted((round(c / seconds / step), x, c / seconds) for c, x in zip(run.clocks[1:], run.letters))
     assert [row[1] for row in found] == [row[1] for row in expected] == ["u1", "u2", "s1", "s2"]
     np.testing.assert_allclose([row[2] for row in found], [row[2] for row in expected], atol=1e-9)
+
+
+def test_it_goes_to_other_processes_and_a_machine_without_a_name_says_why_not():
+    again = pickle.loads(pickle.dumps(coupled_two))
+    assert again.settings() == coupled_two.settings()
+    ball = Machine(
+        name="ball", states=("x", "v"), parameters={"g": 1.0}, motion=lambda s, phase, p, contact: (s.v, -p.g)
+    )
+    with pytest.raises(ValueError, match="'ball' cannot go to another process"):
+        pickle.dumps(ball)
