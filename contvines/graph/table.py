@@ -64,10 +64,11 @@ def title(graph: Graph) -> str:
 def branches_table(graph: Graph) -> Table:
     """A row per branch: what it is, where it is and is stable, and the special points at its ends, or why it ends."""
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
-    number = figures_in(graph.within)
     rows = []
     for branch in graph.branches.values():
         low, high = branch.range
+        inner = [] if branch.stable is None else branch.stable_intervals()
+        number = figures_in(graph.within, [low, high, *(end for interval in inner for end in interval)])
         stable = stable_text(branch, number)
         where = f"{number(low)}..{number(high)}"
         proved = told(graph, branch.label)
