@@ -18,18 +18,17 @@ from .own_test import of_plane, tested
 from .plane import CLOSE, Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
-from .starts import SINGULAR, begin
+from .starts import SINGULAR, ZERO, begin
 from .touching import touching_form
 
-END = 1e-8  # points closer than this part of the interval to its ends are the ends
-ENDING = 1e-8  # a locus that ends at a resonance ends this close to it
+END = 1e-8  # part of the interval, angle, margin: closer to an end, a resonance or a border a point is there
 CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
 APART = 1e-5  # a pair is complex if its imaginary part exceeds this
 DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
 FEW = 4  # places at which a border is asked whether its equations are singular
 NOISY = 1e-7  # corrections below this may no longer shrink where a test is a coefficient; their size is the point's error
-ROUGHLY = 1e-6  # corrections below this no longer shrink where a test has a few digits only
-VANISHED = 1e-6  # of its terms, or of what it is at the ends of its segment: a coefficient that is zero
+ROUGHLY = CRITICAL  # corrections below this no longer shrink where a test has a few digits only
+VANISHED = CRITICAL  # of its terms, or of what it is at the ends of its segment: a coefficient that is zero
 REACH = 3.0  # lengths of a segment at which a solution still belongs to it
 BISECTIONS = 4  # after which a coefficient has grown if it changes its sign through infinity
 
@@ -64,7 +63,7 @@ def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
         for look, test, a, b in pairs:
             at_end = (
                 look.test == "angle"
-                and min(abs(a) if i == 0 else 1.0, abs(b) if i == len(places) - 2 else 1.0) < ENDING
+                and min(abs(a) if i == 0 else 1.0, abs(b) if i == len(places) - 2 else 1.0) < END
             )
             # a test that vanishes at a point itself changes its sign on one side of it
             if not (((a >= 0.0) != (b >= 0.0) and np.isfinite(a + b)) or at_end):
@@ -194,7 +193,7 @@ def solved(
     if not _holds(kind, plane):
         return None
     margins = plane.row[2 * plane.m :]
-    zero = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < 1e-8))
+    zero = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < END))
     return PlanePoint(
         label="",
         kind=kind,
@@ -202,7 +201,7 @@ def solved(
         value=(place.p, place.q),
         u=place.u,
         multipliers=plane.problem.to_multipliers(plane.spectrum),
-        real=not bool((margins < -1e-8).any()),
+        real=not bool((margins < -END).any()),
         error=error,
         residual=residual,
         margins=zero,
@@ -252,12 +251,12 @@ def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[i
             if j in problem.masked:
                 continue
             a, b = rows[i][j], rows[i + 1][j]
-            ends = (last and abs(b) < 1e-9) or (i == 0 and abs(a) < 1e-9)
+            ends = (last and abs(b) < ZERO) or (i == 0 and abs(a) < ZERO)
             if not (np.isfinite(a) and np.isfinite(b)) or not (a * b < 0.0 or ends):
                 continue
             guess = (
                 places[i]
-                if i == 0 and abs(a) < 1e-9
+                if i == 0 and abs(a) < ZERO
                 else places[i + 1]
                 if ends
                 else _between(places[i], places[i + 1], a / (a - b))

@@ -18,6 +18,7 @@ STEP = 1e-5  # of central differences of the conditions, relative to the unknown
 ITERATIONS, HALVINGS = 16, 4  # of Newton's method
 FAST = 0.1  # part of the last correction below which slopes of a costly condition need not be renewed
 ROUNDOFF = 1e-12  # relative size of a derivative that is none
+SETTLED = 64.0 * np.finfo(float).eps  # corrections that are rounding
 CLOSE = 1e-9  # corrections below this no longer shrink: roundoff of the conditions
 
 
@@ -27,6 +28,11 @@ class Place(NamedTuple):
     u: np.ndarray
     p: float
     q: float
+
+
+def settled(size: float, last: float, close: float = CLOSE) -> bool:
+    """Whether a correction is the last: rounding of the unknowns, or one that is below `close` and shrinks no more."""
+    return size < SETTLED or (size < close and size > 0.3 * last)
 
 
 class Plane:
@@ -184,7 +190,7 @@ class Plane:
                 return None
             change[-2:] = dp, dq
             u, p, q = u + change[:-2], p + float(dp), q + float(dq)
-            if size < 1e-14 or (size < close and size > 0.3 * last and kept is None):
+            if settled(size, last, close if kept is None else 0.0):
                 last = size
                 break
             kept = slopes[1:, -1] if rough is not None and size < FAST * last else None

@@ -33,7 +33,7 @@ from .long_period import lengthened
 from .own_test import of_own_kind, with_condition
 from .problem import LocusProblem
 from .sides import impossible_side
-from .starts import begin, first_point, regular_side
+from .starts import ZERO, begin, first_point, regular_side
 
 if TYPE_CHECKING:
     from ..journal import Journal
@@ -204,7 +204,7 @@ def _traced(
     journal = NullJournal() if journal is None else journal
     own = int(problem.base.n_margins)
     margins = engine.margins(start.row)
-    real = not np.any(margins[:own] < -1e-9)
+    real = not np.any(margins[:own] < -ZERO)
 
     def notice(points: int, value: float) -> None:
         if progress is not None:
