@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -115,11 +116,11 @@ class Detector(SegmentSearch):
             found.sort(key=lambda e: e.position)
             leaping = leap(segment, found)
             if leaping is not None and leaping.role is Role.LEAP:
-                return [*events, leaping._replace(position=float(i))]
+                return [*events, replace(leaping, position=float(i))]
             if leaping is not None:
                 found = sorted([*found, leaping], key=lambda e: e.position)
             found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
-            found = [e._replace(error=e.rounding) if e.rounding > e.error else e for e in found]
+            found = [replace(e, error=e.rounding) if e.rounding > e.error else e for e in found]
             found = self._within(segment, found)
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
             found = [_placed(e, i + _inside(e.position), bracket) for e in found]
@@ -255,8 +256,8 @@ def _plain(place: float, point: Solved) -> Located:
 
 def _placed(event: Located, position: float, bracket: tuple[float, float]) -> Located:
     """An event at its position, with the bracket in which it was seen; what is unresolved has one of its own."""
-    return event._replace(
-        position=position, bracket=event.bracket if event.role is Role.UNRESOLVED else bracket
+    return replace(
+        event, position=position, bracket=event.bracket if event.role is Role.UNRESOLVED else bracket
     )
 
 

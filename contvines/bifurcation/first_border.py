@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,8 @@ TOLD = 10.0  # times that: a difference of margins which is no rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 
 
-class Border(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Border:
     """A border of a segment: where it is, and the margin that vanishes there."""
 
     root: Root

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from .segment import Segment
 
 
-class Test(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Test:
     """A test function that passes zero on a segment.
 
     Attributes

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -65,7 +66,7 @@ def locate(
         None if the ends do not bracket a zero or the segment cannot be solved.
     """
     if isinstance(test, Aim):
-        aim = test._replace(anyway=1) if fallback_zero else test
+        aim = replace(test, anyway=1) if fallback_zero else test
         hit = segment.search(aim, tolerance, jump)
         if hit is None:
             return None

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
 
 from ..continuation.engine import Solved
 from .locate import Root
@@ -26,7 +26,8 @@ class Role(StrEnum):
     LANDING = "landing"  # the same, before a step that ends next to a meeting: with another one
 
 
-class Located(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Located:
     """A point that was located on a chunk.
 
     Attributes

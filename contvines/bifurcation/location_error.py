@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -34,7 +35,7 @@ def blurred(segment: Segment, event: Located, test: Callable[[Solved], float]) -
     if not change > 0.0:
         return event
     error = engine.problem.blur(engine.work) * abs(b.p - a.p) / change
-    return event._replace(error=max(event.error, error)) if math.isfinite(error) else event
+    return replace(event, error=max(event.error, error)) if math.isfinite(error) else event
 
 
 def singular_within(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> float:

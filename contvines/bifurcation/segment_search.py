@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -113,7 +114,7 @@ class SegmentSearch:
             for test in kind.tests(part, ()):
                 event = self.zero(kind, part, test)
                 if event is not None:
-                    found.append(event._replace(position=start + length * event.position))
+                    found.append(replace(event, position=start + length * event.position))
         return found
 
     def _own(self, segment: Segment) -> list[Located]:
@@ -124,7 +125,7 @@ class SegmentSearch:
                 event = self.zero(own.kind, segment, Test(own.at, number))
                 if event is not None:
                     role = Role.STOP if own.kind.ends else Role.SPECIAL
-                    found.append(event._replace(role=role, name=own.name))
+                    found.append(replace(event, role=role, name=own.name))
         return found
 
     # ------------------------------------------------------------------ where a branch ends
@@ -155,7 +156,7 @@ class SegmentSearch:
         border = find_border(segment, real)
         if border is None:
             return [], None
-        root, index = border
+        root, index = border.root, border.index
         kind = self.engine.problem.margin_kind(index)
         point, before = one_sided(segment, root)
         blur = rounding(segment, root, index, before)
@@ -295,13 +296,13 @@ class SegmentSearch:
     def before(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
         """The special points of the first part of a segment."""
         part = self.search(Segment(self.engine, segment.a, middle), real, depth)
-        return [e._replace(position=s * e.position) for e in part]
+        return [replace(e, position=s * e.position) for e in part]
 
     def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
         """The special points of a segment from its two parts."""
         second = self.search(Segment(self.engine, middle, segment.b), real, depth)
         return self.before(segment, s, middle, real, depth) + [
-            e._replace(position=s + (1.0 - s) * e.position) for e in second
+            replace(e, position=s + (1.0 - s) * e.position) for e in second
         ]
 
 

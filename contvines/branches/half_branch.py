@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -69,7 +69,7 @@ class HalfBranch:
         """The same points in opposite order, tangents turned round."""
         last = len(self) - 1
         events = [
-            (last - i, e._replace(point=e.point._replace(tangent=-e.point.tangent)))
+            (last - i, replace(e, point=e.point._replace(tangent=-e.point.tangent)))
             for i, e in self.events[::-1]
         ]
         return HalfBranch(

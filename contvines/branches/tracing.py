@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import count as count_from
 from typing import TYPE_CHECKING, Any
 
@@ -99,7 +100,7 @@ def trace_half(
             retrace = Retrace(count, part * engine.norm(engine.join(change[0], float(change[1]))))
         elif events and events[-1].role is Role.LEFT:
             status, count = Status.LEFT_INTERVAL, int(events[-1].position) + 1
-            events[-1] = events[-1]._replace(role=Role.PLAIN)
+            events[-1] = replace(events[-1], role=Role.PLAIN)
         elif events and events[-1].ends_branch:
             status, count = Status.BORDER, int(events[-1].position) + 1
         elif status == Status.BORDER:

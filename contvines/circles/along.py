@@ -8,7 +8,7 @@ on: there each circle is looked for on the plane across the last change of (ampl
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -36,7 +36,8 @@ LINGERS = 0.5  # part of its rotation at birth below which a circle's motion is 
 Sections = Callable[[float], Section]
 
 
-class Reach(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Reach:
     """How far circles are followed.
 
     amplitude : float

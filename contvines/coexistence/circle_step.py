@@ -38,7 +38,7 @@ def next_point(
         a, b = sides[low][0], sides[high][0]
         if not (np.isfinite(a) and np.isfinite(b)) or a * b > 0.0:
             continue
-        value, segment, beyond = a, known[2], False
+        value, segment, beyond, half = a, known[2], False, 0.0
         for k in range(REFINED):  # Illinois' rule, and every third time the middle: the motion may jump
             half = 0.5 * (low + high) if k % 3 == 2 or a == b else low + (high - low) * a / (a - b)
             value, segment, beyond = offset(middle + half)

@@ -17,7 +17,7 @@ def dissipation(found: Findings) -> dict[str, float]:
     top = highest(stretches(found.graph))
     if top is None or "impact_loss" not in top.stretch.branch.measure_names:
         return {"impact_power": np.nan, "friction_power": np.nan}
-    orbit: Any = top.stretch.branch.orbit(top.index)
+    orbit: Any = top.stretch.branch.orbit(top.place)
     seconds = orbit.period * float(orbit.model.gauge("time", orbit.params))
     share = seconds * (1e-3 if orbit.model.units.get("impact_loss") == "J" else 1.0)  # shown in mW
     return {f"{name}_power": orbit.measure(f"{name}_loss") / share for name in ("impact", "friction")}

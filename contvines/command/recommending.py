@@ -162,7 +162,7 @@ class _Work:
         progress: bool,
     ) -> None:
         from contvines.command.compose import check_shaken, machine
-        from contvines.command.survey_study import family_of, plan_and_machine, units_of
+        from contvines.command.survey_study import machines_of, plan_and_machine, units_of
         from contvines.survey.plan import Plan
         from orbits.design import Family
 
@@ -204,7 +204,7 @@ class _Work:
                 )
             model = model.told_by(self.name)
         self.plan, self.model = plan, model
-        family = family_of(study, model)
+        family = machines_of(study, model)
         assert isinstance(family, Family)
         self.family, self.units = family, units_of(study, model)
         self.drawn = plan.samples

@@ -13,7 +13,9 @@ from contvines.command.study_data import Sort, Study
 from contvines.shared.near_names import did_you_mean
 
 if TYPE_CHECKING:
+    from contvines.flows.family import FlowFamily
     from contvines.survey.plan import Plan
+    from orbits.design import Family
 
 WRITTEN = (Sort.PAGE, Sort.FLOW)  # equations in a Python file
 TEXTS = ("within", "values", "normal", "uniform")
@@ -72,13 +74,18 @@ def names_of(study: Study) -> Iterable[str]:
     return [entry.name for entry in study.model.settable]
 
 
-def family_of(study: Study, model: Any):
+def family_of(study: Study, model: Any) -> Family | FlowFamily:
     """The machines, or flows, of a study's survey."""
     if study.sort is Sort.FLOW:
         from contvines.flows.family import FlowFamily
 
         file, name, _ = model.origin
         return FlowFamily(file, name, study.parameter, study.parameters, study.state)
+    return machines_of(study, model)
+
+
+def machines_of(study: Study, model: Any) -> Family:
+    """The machines of a study's survey."""
     from orbits.design import Family
 
     return Family(

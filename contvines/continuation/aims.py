@@ -4,7 +4,8 @@ native/march.hpp has the same functions for compiled problems.
 """
 
 import math
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,8 @@ NO_COLUMNS = np.zeros(0, np.int64)
 LIMIT = 1.0  # test functions of multipliers are clipped here; only the neighbourhood of zero matters
 
 
-class Aim(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Aim:
     """What passes zero: the smallest of some margins, the parameter's part of the tangent, the sign of the determinant, or a multiplier.
 
     ``columns`` are those of the margins in a row; ``count`` multipliers stand in front as (re, im) pairs, of a ``kind`` of spectrum, and

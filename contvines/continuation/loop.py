@@ -102,8 +102,8 @@ def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch)
         p = extrapolate(points, values, tangents, i, h, metric, u)
         fixed = p > upper or p < lower
         length = h
+        bound = upper if p > upper else lower
         if fixed:
-            bound = upper if p > upper else lower
             if start == bound:
                 return i, h, LEFT_INTERVAL
             for _ in range(3):

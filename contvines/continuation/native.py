@@ -139,7 +139,7 @@ class NativeLoop:
     ) -> int:
         """See :func:`contvines.continuation.corrector.points`."""
         columns = np.ascontiguousarray(aim.columns, dtype=np.int64)
-        aimed = pack(aim.what, len(columns), columns, *aim[2:])
+        aimed = pack(aim.what, len(columns), columns, aim.count, aim.kind, aim.sort, aim.rank, aim.anyway)
         return _points()(
             self.at,
             what,

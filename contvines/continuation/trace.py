@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Generator, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -31,7 +32,8 @@ FEWEST = 8  # points in a chunk, however many unknowns there are
 AGAIN = 32  # points that are traced again with shorter steps
 
 
-class Retrace(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Retrace:
     """Wish to go on from the last of the first ``count`` points of a chunk, at first with steps of at most ``longest``."""
 
     count: int

@@ -122,7 +122,8 @@ class Events:
         for k in range(len(self)):
             j = int(np.argmin(rough[:, k]))
             low, high = edges[j - 1] - (j == 0), edges[(j + 1) % count] + (j == count - 1)
-            places = np.array([low, edges[j], high])
+            places, i = np.array([low, edges[j], high]), 1
+            here = rough[[j - 1, j, (j + 1) % count], k]
             for _ in range(ROUNDS):
                 places = np.linspace(low, high, CLOSER + 1)
                 here = values(places)[:, k]

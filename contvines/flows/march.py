@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from scipy.integrate import RK45
 
 from ..problems.functions import NotEvaluable
-
-if TYPE_CHECKING:
-    from .field import Field
+from .field import Field
 
 RELATIVE = 1e-7  # error of a step, relative to the state
 ABSOLUTE = 1e-9  # ... and relative to the size of the box
@@ -18,19 +16,27 @@ SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 TABLEAU = RK45.A[:, :5], RK45.B, RK45.C, RK45.E
 
 
+class Rates(Protocol):
+    """What moves without events: rates of states (n, d) at times."""
+
+    @property
+    def forced(self) -> bool: ...
+    def __call__(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray: ...
+
+
 class March:
     """Motions that go on from where they are.
 
     Parameters
     ----------
-    field : Field
+    field : Field or Rates
     p : float
     x : ndarray, shape (n, d)
     size : ndarray, shape (d,)
         What counts as large in each coordinate.
     """
 
-    def __init__(self, field: Field, p: float, x: np.ndarray, size: np.ndarray) -> None:
+    def __init__(self, field: Field | Rates, p: float, x: np.ndarray, size: np.ndarray) -> None:
         self.field, self.p, self.size = field, p, size
         self.x, self.t = np.array(x, dtype=float), np.zeros(len(x))
         self.slope = self._rates(self.x, self.t)
@@ -56,11 +62,11 @@ class March:
 
     def _stop(self, rows: np.ndarray) -> None:
         """Those that are beyond an event become NaN."""
-        events = self.field.events
-        if not len(events) or not rows.size:
+        field = self.field
+        if not isinstance(field, Field) or not len(field.events) or not rows.size:
             return
         with np.errstate(all="ignore"):
-            beyond = (events(self.x[rows], self.field.values.at(self.p), self.t[rows]) < 0.0).any(axis=1)
+            beyond = (field.events(self.x[rows], field.values.at(self.p), self.t[rows]) < 0.0).any(axis=1)
         self.stopped[rows[beyond]] = True
         self.x[rows[beyond]] = np.nan
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..problems.registry import rebuild
 from .attractors import AtRest, Escaped, Irregular, Stopped
+from .field import Field
 from .march import March
 
 BLOCK, STEPS = (
@@ -54,8 +55,7 @@ class Settled:
 class WithVectors:
     """A field whose states are those of a flow, then a vector that the linearised flow carries along."""
 
-    field: Any
-    events: tuple[()] = ()
+    field: Field
 
     @property
     def forced(self) -> bool:

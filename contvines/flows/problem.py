@@ -397,7 +397,10 @@ class FlowProblem:
         """What tables call a cycle."""
         return {"word": "cycle"}
 
-    own_measures: tuple[str, ...] = ()
+    @property
+    def own_measures(self) -> tuple[str, ...]:
+        """Measures beside those of any flow."""
+        return ()
 
     def measure_of(self, what: str, state: str) -> str:
         """What the largest, smallest or mean value of a state is called."""

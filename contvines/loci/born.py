@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +41,8 @@ AMPLITUDES_OF_CYCLES = (
 )  # likewise of flows; where they are smaller the tests are all but zero
 
 
-class Candidate(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Candidate:
     """A special point at (p, q) from which a locus may be traced; ``index`` is that of the margin at a border."""
 
     problem: Problem

@@ -13,6 +13,7 @@ import numpy as np
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..continuation.solved import Solved
 from ..problems.abilities import Attracting
 from .layout import BRANCH, FOLD
 from .locus import Locus
@@ -95,28 +96,34 @@ class KnownMotions:
 
     def _carried(self, start: Start, place: tuple[float, float]) -> dict[str, Any] | None:
         for steps in STEPS:
-            u, solved = start.u, None
-            for share in np.arange(1, steps + 1) / steps:
-                p = start.p + share * (place[0] - start.p)
-                q = start.q + share * (place[1] - start.q)
-                problem: Any = start.problem.against(start.problem.parameter, {self.over: float(q)})
-                wide = self.within[0][1] - self.within[0][0]
-                engine = Engine(problem, (p - wide, p + wide), Settings())
-                solved = engine.at_value(u, p)
-                if solved is None:
-                    break
-                u = solved.u
-            if solved is not None:
-                row = solved.row
-                if not bool(engine.stable(row)) or not float(engine.smallest_margin(row)) > INSIDE:
-                    return None
-                deviation = problem.replay(u, p)
-                if deviation is not None and not deviation < AGREES:
-                    return None
-                while (smaller := problem.root(u, p)) is not None:
-                    problem, u = smaller
-                return problem.attractor(u, p) if isinstance(problem, Attracting) else None
+            reached = self._followed(start, place, steps)
+            if reached is None:
+                continue
+            engine, solved = reached
+            problem, u, p = engine.problem, solved.u, solved.p
+            if not bool(engine.stable(solved.row)) or not float(engine.smallest_margin(solved.row)) > INSIDE:
+                return None
+            deviation = problem.replay(u, p)
+            if deviation is not None and not deviation < AGREES:
+                return None
+            while (smaller := problem.root(u, p)) is not None:
+                problem, u = smaller
+            return problem.attractor(u, p) if isinstance(problem, Attracting) else None
         return None
+
+    def _followed(self, start: Start, place: tuple[float, float], steps: int) -> tuple[Engine, Solved] | None:
+        """The motion of a start carried in so many equal steps to a place."""
+        wide, reached, u = self.within[0][1] - self.within[0][0], None, start.u
+        for share in np.arange(1, steps + 1) / steps:
+            p = start.p + share * (place[0] - start.p)
+            q = start.q + share * (place[1] - start.q)
+            problem = start.problem.against(start.problem.parameter, {self.over: float(q)})
+            engine = Engine(problem, (p - wide, p + wide), Settings())
+            solved = engine.at_value(u, p)
+            if solved is None:
+                return None
+            reached, u = (engine, solved), solved.u
+        return reached
 
 
 def _told(problem: Any) -> bool:

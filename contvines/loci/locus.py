@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from ..continuation.settings import Settings
 from .plane_point import PlanePoint
 
 
-class Turn(NamedTuple):
+@dataclass(frozen=True)
+class Turn:
     """A point at which the locus turns round in the second parameter."""
 
     index: int

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from ..continuation.hints import hinting
 from ..graph.shortening import short_word
 from .basins import COLORS
 from .diagram import draw_diagram
-from .figures import freeze, new_figure, settle, styled, thin_ticks
+from .figures import Size, Style, freeze, given_axes, new_figure, settle, styled, thin_ticks
 from .legends import NARROW, draw_legend, place_legend
 from .picture import lay_out_again
 from .style import axis_label
@@ -35,8 +35,8 @@ def plot_atlas(
     *,
     axes: Sequence[Axes] | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
     **options: Any,
 ) -> Figure:
     """Draw the diagram and, beneath it, which share of the starts reaches which motion, stacked against the parameter.
@@ -48,11 +48,9 @@ def plot_atlas(
     x, y, options
         As for :func:`contvines.plots.diagram.plot_diagram`; x is the parameter of the shares, too.
     axes : two Axes, optional
-        Drawn on, the diagram on the first; without, a new figure of `figsize` inches. A small one has no key of the diagram.
-    legend : bool or str
-        Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`, for both panels.
-    style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+        Drawn on, the diagram on the first.
+    legend, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`; a small figure has no key of the diagram.
 
     Raises
     ------
@@ -61,28 +59,23 @@ def plot_atlas(
     """
     if not graph.attractors:
         raise ValueError("the graph has no attractors: contvines atlas makes one with, from a study")
-    if axes is not None and len(np.atleast_1d(np.asarray(axes, dtype=object))) != 2:
-        raise ValueError("axes: an atlas needs two axes, for example plt.subplots(2, 1)[1]")
     with styled(style):
         own = axes is None
         if axes is None:
             size = figsize or (7.2, 6.4)
             figure = new_figure(figsize=size)
-            upper, lower = figure.subplots(
-                2, 1, sharex=True, height_ratios=(2.4, 1) if size[1] > LOW else (1.8, 1)
-            )
+            heights = (2.4 if size[1] > LOW else 1.8, 1)
+            upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=heights)
         else:
-            upper, lower = axes
-            figure: Any = upper.get_figure(root=True)
+            figure, (upper, lower) = given_axes(axes, (2,), "an atlas is drawn on")
         small = own and figure.get_size_inches()[1] < LOW
-        picture = draw_diagram(upper, graph, x, y, own=False, legend=False, **options)
+        picture = draw_diagram(upper, graph, x, y, False, legend=False, **options)
         if own:
             upper.set_xlabel("")
             upper.tick_params(labelbottom=False)
         draw_shares(lower, graph, FEW if small else MOST)
-        lower.set_xlabel(
-            axis_label(graph.parameter, unit=graph.units.get(graph.parameter), notation=graph.notation)
-        )
+        unit = graph.units.get(graph.parameter)
+        lower.set_xlabel(axis_label(graph.parameter, unit=unit, notation=graph.notation))
         if small and len(lower.get_ylabel()) > 8:
             lower.set_ylabel("share")
         # a high figure has both keys; they stand below one another where there is no room beside the panels
@@ -133,12 +126,10 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
         if key is not None and sum(key[0] == other for other, _ in order) > 1:
             name = f"{name}, k={key[1]}"
         color = "0.8" if key is None else COLORS[k % len(COLORS)]
-        axes.bar(
-            edges[:-1], heights, np.diff(edges), bottoms, align="edge", color=color, label=name, linewidth=0
-        )
+        look = {"align": "edge", "color": color, "linewidth": 0}
+        axes.bar(edges[:-1], heights, np.diff(edges), bottoms, label=name, **look)
         bottoms += heights
-    axes.set_ylim(0.0, 1.0)
-    axes.set_ylabel("share of starts")
+    axes.set(ylim=(0.0, 1.0), ylabel="share of starts")
     axes.grid(False)
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from .diagram import LOW
-from .figures import new_axes, settle, styled, thin_ticks
+from .figures import LOW, Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label
 
@@ -20,20 +18,8 @@ if TYPE_CHECKING:
 
     from ..coexistence.basins import Basins
 
-COLORS = (
-    "#2a6f97",
-    "#e9a23b",
-    "#7b3f8c",
-    "#3f8f4f",
-    "#c0483f",
-    "#8a8a8a",
-    "#17807e",
-    "#c77dab",
-    "#b8b042",
-    "#5b6fd6",
-    "#4d4d4d",
-    "#8fcf8a",
-)
+COLORS = ("#2a6f97", "#e9a23b", "#7b3f8c", "#3f8f4f", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
+COLORS += ("#b8b042", "#5b6fd6", "#4d4d4d", "#8fcf8a")
 NAMED = 3  # words of manifolds in the legend
 IMAGE = 0.45  # how much lighter the basin of a mirror image is
 
@@ -44,20 +30,16 @@ def plot_basins(
     *,
     axes: Axes | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw which motion each start reaches; mirror images have the same colour, lighter.
 
     Parameters
     ----------
     basins : Basins
-    axes : Axes, optional
-        Drawn on; without, a new figure of `figsize` inches.
-    legend : bool or str
-        Name the motions and their shares, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
-    style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+    axes, legend, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`.
     """
     from matplotlib.colors import to_rgb
     from matplotlib.lines import Line2D
@@ -65,14 +47,10 @@ def plot_basins(
 
     count = len(basins.attractors)
     base = np.array([to_rgb(COLORS[k % len(COLORS)]) for k in range(max(count, 1))])
-    base[[k for k, about in enumerate(basins.attractors) if about.kind == "impossible"]] = (
-        0.9  # no start at all
-    )
+    base[[k for k, one in enumerate(basins.attractors) if one.kind == "impossible"]] = 0.9  # no start at all
     light = base + IMAGE * (1.0 - base)
     picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
-    with styled(style):
-        own = axes is None
-        figure, axes = new_axes(axes, figsize=figsize)
+    with drawing(axes, style, figsize) as (figure, axes, own):
         low = own and axes.get_window_extent().height < LOW * figure.dpi
         axes.grid(False)
         x, y = (basins.shown(name, v) for name, v in zip(basins.axes, (basins.x, basins.y)))
@@ -107,7 +85,4 @@ def plot_basins(
                 label = f"manifolds of {few}" + (f"\nand {left} more" if left > 0 else "")
                 entries.append(Line2D([], [], color="black", linewidth=0.8, label=label))
             place_legend(axes, entries, legend, own, usual="beside")
-        settle(figure)
-        if own:
-            thin_ticks(axes)
     return figure

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from .figures import freeze, new_axes, settle, styled, thin_ticks
-from .labels import Box, Label, dense, grouped, place_labels
+from .figures import LOW, Size, Style, freeze, new_axes, settle, styled, thin_ticks
+from .labels import Box, Label, dense, grouped, place_labels, touching
 from .legends import hold_legend, place_legend
 from .style import MARKS, PLAIN, axis_label
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.text import Text
+    from matplotlib.transforms import Bbox
 
     from ..loci.chart import Chart
     from ..loci.locus import Locus
@@ -45,7 +46,6 @@ TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6d
 HATCH_LENGTH = 0.012  # of the axes
 FITS = 0.9  # share of a name that must lie within its region
 AWAY = 5.0  # pixels between a name that was moved and the edges of its region
-LOW = 2.6  # inches: lower axes have the symbol of a parameter alone at their side
 LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
 
 
@@ -56,64 +56,50 @@ def plot_chart(
     labels: bool = True,
     names: bool = True,
     legend: bool | str = True,
-    style: str | Mapping[str, Any] | None = None,
-    **options: Any,
+    style: Style = None,
+    figsize: Size = None,
 ) -> Figure:
     """Draw a chart.
 
     Parameters
     ----------
     chart : Chart
-    axes : matplotlib axes, optional
     labels : bool
         Write the labels of the points of codimension two.
     names : bool
         Write into each region what is stable there.
-    legend : bool or str
-        Say what the lines are: below a new figure, inside given axes; or where, as in
-        :func:`contvines.plots.diagram.plot_diagram`.
-    style : str or mapping, optional
-        As for :func:`contvines.plots.figures.styled`.
-    **options
-        For the new figure (``figsize``).
-
-    Returns
-    -------
-    matplotlib Figure
+    axes, legend, style, figsize
+        As for :func:`contvines.plots.diagram.plot_diagram`; the legend is usually below a new figure, inside given axes.
     """
     own = axes is None
     with styled(style):
-        figure, axes = new_axes(axes, **options)
+        figure, axes = new_axes(axes, figsize)
         p, q = chart.parameters
-        (plo, phi), (qlo, qhi) = chart.within
-        handles: dict[str, Any] = {}
+        handles: dict[str, Artist] = {}
         _tint(axes, chart)
         for locus in chart.loci.values():
             _draw(axes, locus, handles)
-        axes.set_xlim(plo, phi)
-        axes.set_ylim(qlo, qhi)
+        axes.set(xlim=chart.within[0], ylim=chart.within[1])
         for locus in chart.loci.values():
             if locus.kind not in COLORS and locus.seed is not None:
                 _hatch(axes, locus)
         for point in chart.points.values():
             axes.plot(
-                point.value[0],
-                point.value[1],
+                [point.value[0]],
+                [point.value[1]],
                 "o",
                 color="black" if point.real else "0.6",
                 markersize=4,
                 zorder=5,
             )
-        axes.set_xlabel(axis_label(p, unit=chart.units.get(p), notation=chart.notation))
-        axes.set_ylabel(axis_label(q, unit=chart.units.get(q), notation=chart.notation))
+        across, up = (axis_label(n, unit=chart.units.get(n), notation=chart.notation) for n in (p, q))
+        axes.set(xlabel=across, ylabel=up)
         inside = legend == "inside" or (legend is True and not own)
         if not inside:
             place_legend(axes, list(handles.values()), legend, own, usual="below")
-        settle(figure)
         if own and axes.get_window_extent().height < LOW * figure.dpi:
             axes.set_ylabel(axis_label(q, short=True, unit=chart.units.get(q), notation=chart.notation))
-            settle(figure)
-        settle(figure)  # the labels of the axes have their size by now
+        settle(figure)
         if own:
             thin_ticks(axes)
             freeze(figure)
@@ -137,27 +123,22 @@ def _look(locus: Locus) -> dict[str, Any]:
     }
 
 
-def _draw(axes: Axes, locus: Locus, handles: dict[str, Any]) -> None:
+def _draw(axes: Axes, locus: Locus, handles: dict[str, Artist]) -> None:
     values, real = locus.values, locus.real
     solid, dotted = values.copy(), values.copy()
     both = real[:-1] & real[1:]
     solid[~(np.append(both, False) | np.append(False, both))] = np.nan
     dotted[np.append(both, True) & np.append(True, both)] = np.nan
     look, mark = _look(locus), MARKS.get(locus.kind, PLAIN)
-    marked = {
-        "marker": mark.marker,
-        "markevery": (
-            0.07,
-            0.23,
-        ),  # of the axes' diagonal: a few marks on each locus, for those who see no colours
-        "markersize": 4.0,
-        "markerfacecolor": look["color"] if mark.filled else "white",
-        "markeredgewidth": 0.8,
-    }
-    name = mark.name
-    (line,) = axes.plot(solid[:, 0], solid[:, 1], label=name, zorder=3, **look, **marked)
+    marked: dict[str, Any] = {"marker": mark.marker, "markersize": 4.0, "markeredgewidth": 0.8}
+    marked["markerfacecolor"] = look["color"] if mark.filled else "white"
+    marked["markevery"] = (
+        0.07,
+        0.23,
+    )  # of the axes' diagonal: a few on each locus, for those who see no colours
+    (line,) = axes.plot(solid[:, 0], solid[:, 1], label=mark.name, zorder=3, **look, **marked)
     axes.plot(dotted[:, 0], dotted[:, 1], linestyle=":", zorder=3, **{**look, "linewidth": 1.0})
-    handles.setdefault(name, line)
+    handles.setdefault(mark.name, line)
 
 
 def _hatch(axes: Axes, locus: Locus) -> None:
@@ -165,31 +146,24 @@ def _hatch(axes: Axes, locus: Locus) -> None:
     side = -locus.beyond  # which is told with the second parameter to the right
     if side == 0:
         return
-    to_axes = axes.transData + axes.transAxes.inverted()
+    to_axes = axes.transData - axes.transAxes
     places = to_axes.transform(locus.values)
-    lengths = np.append(0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T)))
-    if not lengths[-1] > 0.0:
-        return
-    for s in np.arange(0.5 * HATCH_LENGTH, lengths[-1], 1.4 * HATCH_LENGTH):
-        i = int(np.clip(np.searchsorted(lengths, s) - 1, 0, len(places) - 2))
-        gap = places[i + 1] - places[i]
-        size = float(np.hypot(*gap))
-        if size == 0.0 or not locus.real[i]:
-            continue
-        here = places[i] + gap * (s - lengths[i]) / size
-        across = side * np.array([-gap[1], gap[0]]) / size
-        end = here + HATCH_LENGTH * across
-        axes.plot(
-            [here[0], end[0]],
-            [here[1], end[1]],
-            transform=axes.transAxes,
-            color=_look(locus)["color"],
-            linewidth=0.6,
-            zorder=2,
-        )
+    gaps = np.diff(places, axis=0)
+    sizes = np.hypot(*gaps.T)
+    lengths = np.append(0.0, np.cumsum(sizes))
+    at = np.arange(0.5 * HATCH_LENGTH, lengths[-1], 1.4 * HATCH_LENGTH)
+    i = np.clip(np.searchsorted(lengths, at) - 1, 0, len(gaps) - 1)
+    kept = (sizes[i] > 0.0) & np.asarray(locus.real)[i]
+    at, i = at[kept], i[kept]
+    along = gaps[i] / sizes[i, None]
+    here = places[i] + along * (at - lengths[i])[:, None]
+    there = here + HATCH_LENGTH * side * np.column_stack([-along[:, 1], along[:, 0]])
+    strokes = np.stack([here, there, np.full_like(here, np.nan)], axis=1).reshape(-1, 2)
+    look = {"color": _look(locus)["color"], "linewidth": 0.6, "zorder": 2}
+    axes.plot(*strokes.T, transform=axes.transAxes, **look)
 
 
-def _label(axes: Axes, chart: Chart, taken: list[Any]) -> None:
+def _label(axes: Axes, chart: Chart, taken: list[Box]) -> None:
     """Labels of the points, those at one place together, clear of the loci and of the regions' names."""
     import matplotlib as mpl
 
@@ -253,15 +227,13 @@ def _room_for(axes: Axes, chart: Chart, region: Region, text: Text, taken: list[
     for p, q, pad in places:
         text.set_position((p, q))
         box = text.get_window_extent().padded(pad)
-        free = not any(
-            box.x0 < x1 and x0 < box.x1 and box.y0 < y1 and y0 < box.y1 for x0, y0, x1, y1 in taken
-        )
+        free = not touching(np.array([box.extents]), np.array(taken).reshape(-1, 4)).any()
         if free and _has_room(axes, chart, region, box, FITS if pad == 0.0 else 1.0):
-            return box.x0, box.y0, box.x1, box.y1
+            return box.extents
     return None
 
 
-def _has_room(axes: Axes, chart: Chart, region: Region, box: Any, share: float) -> bool:
+def _has_room(axes: Axes, chart: Chart, region: Region, box: Bbox, share: float) -> bool:
     """Whether a box on the page lies within a region, at least this share of it (its corners may be out)."""
     if not region.cells.size:
         return True

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..continuation.hints import hinting
-from .figures import new_figure, settle, styled, thin_ticks
+from .figures import Size, Style, given_axes, new_figure, settle, styled, thin_ticks
 from .legends import place_legend
 from .style import axis_label
 
@@ -40,8 +40,8 @@ def plot_circles(
     *,
     axes: Axes | Sequence[Axes] | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw the circles beside a Neimark-Sacker point.
 
@@ -50,17 +50,9 @@ def plot_circles(
     circles : Circles
     coordinates : (str, str), optional
         Which coordinates of the section are drawn across and upright; by default those in which the circles look most like circles.
-    axes : Axes or three of them, optional
-        Drawn on: one has the section, three have section, radius and turns. Without, a new figure of `figsize` inches; a
-        small one has the section alone.
-    legend : bool or str
-        Say what the lines of the radius are, or where: a place that matplotlib knows.
-    style : str or mapping, optional
-        As for :func:`contvines.plots.figures.styled`.
-
-    Returns
-    -------
-    matplotlib Figure
+    axes, legend, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`; one has the section, three have section, radius and turns, and a
+        small new figure has the section alone.
 
     Raises
     ------
@@ -86,15 +78,10 @@ def plot_circles(
     return figure
 
 
-def _panels(
-    axes: Axes | Sequence[Axes] | None, figsize: tuple[float, float] | None
-) -> tuple[Figure, list[Axes]]:
+def _panels(axes: Axes | Sequence[Axes] | None, figsize: Size) -> tuple[Figure, list[Axes]]:
     """The axes given, or a new figure's: the section on the left, or above; alone in a small figure."""
     if axes is not None:
-        given = list(np.atleast_1d(np.asarray(axes, dtype=object)))
-        if len(given) not in (1, 3):
-            raise ValueError(f"axes: circles are drawn on one or on three, not on {len(given)}")
-        return given[0].get_figure(root=True), given
+        return given_axes(axes, (1, 3), "circles are drawn on")
     size = figsize or (8.2, 3.9)
     figure = new_figure(figsize=size)
     if size[0] < NARROW and size[1] < LOW:
@@ -124,7 +111,7 @@ def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:
         axes.set_title("dashed: repelling", loc="left", fontsize="medium")
 
 
-def _colors(circles: Circles):
+def _colors(circles: Circles) -> np.ndarray:
     from matplotlib import colormaps
 
     return colormaps["viridis"](np.linspace(0.0, 0.9, max(len(circles), 1)))
@@ -140,7 +127,7 @@ def _sizes(radius: Axes, rotation: Axes, circles: Circles, legend: bool | str) -
         radius.plot([value], [size], "o", color=color, markersize=4.5, zorder=4)  # the key to the section
     radius.plot(values, predicted, color="0.5", linestyle=":", label="normal form")
     radius.set_ylabel("radius")
-    place_legend(radius, radius.get_legend_handles_labels()[0], legend, False)
+    place_legend(radius, None, legend, False)
     rotation.plot(values, np.append(circles.rotation, circles.rotations), color="#7c3aed", **look)
-    rotation.set_ylabel("turns per period")
-    rotation.set_xlabel(axis_label(circles.parameter, notation=circles.notation))
+    across = axis_label(circles.parameter, notation=circles.notation)
+    rotation.set(xlabel=across, ylabel="turns per period")

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .wraps import angles_of, broken
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
     from ..branches.branch import Branch
 
@@ -33,8 +32,9 @@ class Curve:
     def __init__(self, branch: Branch, x: str, y: str, first: int, last: int) -> None:
         self.branch, self.x, self.y = branch, x, y
         self.first, self.last = first, last
-        self.turning = (x in angles_of(branch), y in angles_of(branch))
-        self.lines: list[Any] = []
+        angles = () if branch.problem is None else branch.problem.angles  # radians, modulo 2 pi
+        self.turning = (x in angles, y in angles)
+        self.lines: list[Line2D] = []
         self._stored = _strands(
             branch, x, y, branch.points[first : last + 1], branch.values[first : last + 1]
         )
@@ -53,20 +53,31 @@ class Curve:
         if len(strands[0][0]) < 3 or not self.lines:
             return
         wanted = np.max([_missing(axes, xs, ys) for xs, ys in strands], axis=0)
+        drawn = strands
         if wanted.any():
             u, p, inside = between(self.branch, self.first, self.last, wanted)
             try:
                 new = _strands(self.branch, self.x, self.y, u, p)
             except (KeyError, ValueError, ArithmeticError):
                 return
-            for j, (xs, ys) in enumerate(strands):
-                nx, ny = (np.array(part) for part in new[j])
+            drawn = []
+            for (xs, ys), found in zip(strands, new, strict=True):
+                nx, ny = (np.array(part) for part in found)
                 nx[~inside], ny[~inside] = xs, ys  # stored points stay what they are
                 good = np.isfinite(nx) & np.isfinite(ny) | ~inside
-                self.lines[j].set_data(*broken(nx[good], ny[good], self.turning))
-        else:
-            for line, (xs, ys) in zip(self.lines, strands, strict=True):
-                line.set_data(*broken(xs, ys, self.turning))
+                drawn.append((nx[good], ny[good]))
+        for line, (xs, ys) in zip(self.lines, drawn, strict=True):
+            line.set_data(*broken(xs, ys, self.turning))
+
+
+def broken(xs: np.ndarray, ys: np.ndarray, turning: tuple[bool, bool]) -> tuple[np.ndarray, np.ndarray]:
+    """A curve with a gap (nan) wherever an angle jumps by more than half a turn between neighbouring points."""
+    jumps = np.zeros(max(len(xs) - 1, 0), dtype=bool)
+    for values, angle in zip((xs, ys), turning):
+        if angle:
+            jumps |= np.abs(np.diff(values)) > np.pi
+    where = np.flatnonzero(jumps) + 1
+    return np.insert(xs, where, np.nan), np.insert(ys, where, np.nan)
 
 
 def between(
@@ -74,19 +85,7 @@ def between(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points of a branch and, between neighbours i and i + 1, `counts[i]` more on cubics through points and tangents.
 
-    Parameters
-    ----------
-    branch : Branch
-    first, last : int
-        Inclusive indices.
-    counts : int array (last - first,)
-
-    Returns
-    -------
-    u : float array (m, N)
-    p : float array (m,)
-    inside : bool array (m,)
-        Which of them are no stored points.
+    Shapes: `counts` (last - first,), the indices inclusive; u (m, N), p (m,), and which of them are no stored points (m,).
     """
     z = np.column_stack([branch.points[first : last + 1], branch.values[first : last + 1]])
     slopes = np.asarray(branch.tangents[first : last + 1], dtype=float)

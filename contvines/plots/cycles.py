@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contvines.shared.animations import animated, check_animation, pictures
 
 from ..continuation.hints import hinting
-from .figures import new_axes, styled
+from .figures import Size, Style, new_figure, root, styled
 from .style import STATE_COLORS, STATE_OF
 
 if TYPE_CHECKING:
@@ -19,15 +18,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from ..flows.orbit import CycleOrbit
+
 SAMPLES = 800
 
 
 def plot_cycle(
-    orbit: Any,
+    orbit: CycleOrbit,
     *,
     axes: Axes | None = None,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
     coordinates: tuple[int, int] = (0, 1),
 ) -> Figure:
     """Draw a cycle: the phase portrait, with the time series beside it in a figure of its own.
@@ -35,12 +36,8 @@ def plot_cycle(
     Parameters
     ----------
     orbit : CycleOrbit
-    axes : Axes, optional
-        For the phase portrait alone.
-    figsize : (float, float), optional
-        In inches.
-    style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+    axes, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`; given axes are for the phase portrait alone.
     coordinates : (int, int)
         Of the phase portrait; of a single state, the state over time.
 
@@ -57,17 +54,14 @@ def plot_cycle(
     color = STATE_COLORS[STATE_OF[orbit.stable]]
     with styled(style):
         if axes is not None:
-            figure, axes = new_axes(axes)
             _portrait(axes, times, states, coordinates, color)
-            return figure
-        figure, left = new_axes(None, figsize=figsize or (7.2, 3.2))
-        left.remove()
+            return root(axes)
+        figure = new_figure(figsize=figsize or (7.2, 3.2))
         left, right = figure.subplots(1, 2)
         _portrait(left, times, states, coordinates, color)
         for j in range(min(d, 4)):
             right.plot(times, states[:, j], label=f"$x_{j}$")
-        right.set_xlabel("time")
-        right.set_ylabel("states")
+        right.set(xlabel="time", ylabel="states")
         right.margins(x=0.0)
         right.legend(loc="best", fontsize="small")
     return figure
@@ -75,13 +69,13 @@ def plot_cycle(
 
 @hinting
 def animate_cycle(
-    orbit: Any,
+    orbit: CycleOrbit,
     path: str | Path | None = None,
     *,
     seconds: float = 3.0,
     rate: int = 20,
     figsize: tuple[float, float] = (7.2, 3.2),
-    style: str | Mapping[str, Any] | None = None,
+    style: Style = None,
     coordinates: tuple[int, int] = (0, 1),
 ) -> FuncAnimation:
     """A point that goes round a cycle, on its phase portrait and over time.
@@ -107,11 +101,7 @@ def animate_cycle(
     figure = plot_cycle(orbit, figsize=figsize, style=style, coordinates=coordinates)
     times = np.linspace(0.0, orbit.period, frames, endpoint=False)
     states = orbit(times)
-    places = (
-        (times, states[:, 0])
-        if states.shape[1] == 1
-        else (states[:, coordinates[0]], states[:, coordinates[1]])
-    )
+    places = (times, states[:, 0]) if states.shape[1] == 1 else states[:, list(coordinates)].T
     left, right = figure.axes[:2]
     (mark,) = left.plot([places[0][0]], [places[1][0]], "o", color="0.1", markersize=6)
     now = right.axvline(0.0, color="0.2", linewidth=1.0)
@@ -128,10 +118,8 @@ def _portrait(
 ) -> None:
     if states.shape[1] == 1:
         axes.plot(times, states[:, 0], color=color)
-        axes.set_xlabel("time")
-        axes.set_ylabel("$x_0$")
+        axes.set(xlabel="time", ylabel="$x_0$")
         return
     i, j = coordinates
     axes.plot(states[:, i], states[:, j], color=color)
-    axes.set_xlabel(f"$x_{i}$")
-    axes.set_ylabel(f"$x_{j}$")
+    axes.set(xlabel=f"$x_{i}$", ylabel=f"$x_{j}$")

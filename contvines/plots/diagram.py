@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from contvines.shared.near_names import did_you_mean
@@ -10,7 +10,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.hints import hinting
 from ..graph.measures import default_measure
-from .figures import freeze, lay_out, new_axes, settle, styled, thin_ticks
+from .figures import LOW, Size, Style, freeze, lay_out, new_axes, root, settle, styled, thin_ticks
 from .insets import Region
 from .legends import draw_legend, hold_legend
 from .picture import Picture
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from ..graph.graph import Graph
 
-LOW = 2.6  # inches: lower axes have the symbol of a measure alone at their side
 COLORS = ("branch", "word", "stability")
 
 
@@ -44,8 +43,8 @@ def plot_diagram(
     xlim: tuple[float, float] | None = None,
     ylim: tuple[float, float] | None = None,
     inset: bool | Region | None = None,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw a graph: solid stable, dashed unstable, dotted virtual, special points marked and labelled.
 
@@ -99,33 +98,27 @@ def plot_diagram(
     _check_labels(graph, labels)
     own = axes is None
     with styled(style):
-        figure, axes = new_axes(axes, figsize=figsize)
-        draw_diagram(
-            axes,
-            graph,
-            x,
-            y,
-            own=own,
-            labels=labels,
-            ends=ends,
-            marks=marks,
-            words=words,
-            color=color,
-            legend=legend,
-            name=name,
-            limits=(xlim, ylim),
-            inset=own if inset is None else inset,
-        )
+        figure, axes = new_axes(axes, figsize)
+        look: dict[str, Any] = {
+            "labels": labels,
+            "ends": ends,
+            "marks": marks,
+            "words": words,
+            "color": color,
+            "name": name,
+        }
+        shown = own if inset is None else inset
+        draw_diagram(axes, graph, x, y, own, legend=legend, limits=(xlim, ylim), inset=shown, **look)
     return figure
 
 
 def draw_diagram(
     axes: Axes,
     graph: Graph,
-    x: str | None = None,
-    y: str | None = None,
-    *,
+    x: str | None,
+    y: str | None,
     own: bool,
+    *,
     labels: bool | Sequence[str] = True,
     ends: bool = False,
     marks: bool | Sequence[str] = True,
@@ -136,22 +129,14 @@ def draw_diagram(
     limits: tuple[tuple[float, float] | None, tuple[float, float] | None] = (None, None),
     inset: bool | Region = False,
 ) -> Picture:
-    """Draw a graph on axes, in the style of the moment; `own` says whether their figure is ours to be laid out.
-
-    Parameters
-    ----------
-    limits : the limits across and upright, or None.
-    axes, graph, x, y, own, labels, ends, marks, words, color, legend, name, inset
-        As for :func:`plot_diagram`.
-    """
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    """Draw a graph as :func:`plot_diagram` does, in the style of the moment; `own` says whether the figure is ours to be laid out."""
+    figure = root(axes)
     x, y = x or graph.parameter, y or default_measure(graph)
     picture = Picture(axes, graph, x, y, color, name)
     picture.draw_branches()
     picture.draw_points(ends, _marked(graph, marks))
     picture.draw_unresolved()
-    frame(axes, graph, picture.curves, x, y, *limits)
+    frame(axes, picture.curves, *limits)
     if not axes.get_xlabel():
         axes.set_xlabel(axis_label(x, unit=graph.units.get(x), notation=graph.notation))
     if not axes.get_ylabel():

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from .figures import new_axes, settle, styled, thin_ticks
+from .figures import Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label
 
@@ -28,24 +27,18 @@ def plot_erosion(
     *,
     axes: Axes | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw the smallest kick that leads elsewhere, and the share of starts as a filled curve with its own axis.
 
     Parameters
     ----------
     erosion : Erosion
-    axes : Axes, optional
-        Drawn on; without, a new figure of `figsize` inches.
-    legend : bool or str
-        Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
-    style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+    axes, legend, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`.
     """
-    with styled(style):
-        own = axes is None
-        figure, axes = new_axes(axes, figsize=figsize)
+    with drawing(axes, style, figsize) as (figure, axes, own):
         values = erosion.values
         beside = axes.twinx()
         beside.grid(False)
@@ -65,7 +58,4 @@ def plot_erosion(
         axes.set_ylabel("smallest kick")
         axes.set_title(f"{erosion.label}: {short_word(erosion.word)}" if erosion.word else erosion.label)
         place_legend(axes, [kicks, shares], legend, own, usual="below")
-        settle(figure)
-        if own:
-            thin_ticks(axes, beside)
     return figure

@@ -3,38 +3,82 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contvines.shared.figures import STYLES, new_figure, shrinking, styled, windows
+import numpy as np
+
+from contvines.shared.figures import STYLES, new_figure, styled, windows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 FORMATS = ("png", "pdf", "svg", "jpg", "eps")
+LOW = 2.6  # inches: lower axes have short labels at their side
+
+Style = str | Mapping[str, Any] | None
+"""A style of ours or of matplotlib's, or rcParams: see :func:`contvines.shared.figures.styled`."""
+Size = tuple[float, float] | None
+"""Inches across and upright."""
 
 
-def scale(figure: Figure) -> float:
-    """By how much texts, marks and lines shrink in a figure that is narrow."""
-    return shrinking(figure.get_size_inches()[0])
+def root(axes: Axes) -> Figure:
+    """The figure that axes stand on, also where they are in a part of it."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return figure
 
 
-def new_axes(axes: Axes | None, **options: Any) -> tuple[Figure, Axes]:
+def pixels(axes: Axes) -> float:
+    """Pixels per point."""
+    return root(axes).dpi / 72.0
+
+
+def new_axes(axes: Axes | None, figsize: Size = None) -> tuple[Figure, Axes]:
     """The figure and axes to draw on: the given ones, or new ones."""
     if axes is not None:
-        return axes.get_figure(root=True), axes  # type: ignore[return-value]
+        return root(axes), axes
     from matplotlib import rcParams
     from matplotlib.font_manager import FontProperties
 
-    made = new_figure(**options)
+    made = new_figure(figsize=figsize)
     axes = made.add_subplot()
-    settings: Any = rcParams
-    for axis, key in (("x", "xtick.labelsize"), ("y", "ytick.labelsize")):
+    for axis, key in ((axes.xaxis, rcParams["xtick.labelsize"]), (axes.yaxis, rcParams["ytick.labelsize"])):
         # in points: how many ticks there are must not change when a figure is drawn again elsewhere
-        size = FontProperties(size=settings[key]).get_size_in_points()
-        axes.tick_params(axis=axis, labelsize=size)  # type: ignore[arg-type]
+        axis.set_tick_params(labelsize=FontProperties(size=key).get_size_in_points())
     return made, axes
+
+
+@contextmanager
+def drawing(axes: Axes | None, style: Style, figsize: Size = None) -> Iterator[tuple[Figure, Axes, bool]]:
+    """Figure and axes to draw on in a style, and whether they are new: new ones are given their place at the end."""
+    with styled(style):
+        figure, drawn = new_axes(axes, figsize)
+        yield figure, drawn, axes is None
+        settle(figure)
+        if axes is None:
+            thin_ticks(*figure.axes)
+
+
+def given_axes(axes: Axes | Sequence[Axes], counts: Sequence[int], what: str) -> tuple[Figure, list[Axes]]:
+    """The axes that the user gives, and their figure.
+
+    Raises
+    ------
+    ValueError
+        If they are not one of so many.
+    """
+    given: list[Axes] = list(np.atleast_1d(np.asarray(axes, dtype=object)))
+    if len(given) not in counts:
+        wanted = " or ".join(map(str, counts))
+        raise ValueError(
+            f"axes: {what} {wanted} axes, not {len(given)}; for example plt.subplots(1, {counts[-1]})[1]"
+        )
+    return root(given[0]), given
 
 
 def settle(figure: Figure, passes: int = 1) -> None:
@@ -58,31 +102,25 @@ def thin_ticks(*drawn: Axes) -> None:
     from matplotlib.ticker import MaxNLocator
 
     for axes in drawn:
-        figure = axes.get_figure(root=True)
-        assert figure is not None
         for axis, side in ((axes.xaxis, 0), (axes.yaxis, 1)):
             for count in (6, 5, 4, 3, 2):
                 if not isinstance(axis.get_major_locator(), MaxNLocator) or not _crowded(axis, side):
                     break
                 axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]))
-                settle(figure)
+                settle(root(axes))
 
 
-def _crowded(axis: Any, side: int) -> bool:
+def _crowded(axis: Axis, side: int) -> bool:
     """Whether labels of neighbouring ticks are less than a good half of a letter apart."""
     low, high = sorted(axis.get_view_interval())
     slack = 1e-9 * (high - low)
-    shown = [
-        tick.label1.get_window_extent()
-        for tick in axis.get_major_ticks()
-        if low - slack <= tick.get_loc() <= high + slack
-        and tick.label1.get_text()
-        and tick.label1.get_visible()
-    ]
-    if len(shown) < 2:
+    ticks = [tick for tick in axis.get_major_ticks() if low - slack <= tick.get_loc() <= high + slack]
+    labels = [tick.label1 for tick in ticks if tick.label1.get_text() and tick.label1.get_visible()]
+    if len(labels) < 2:
         return False
-    ends = sorted((box.intervalx if side == 0 else box.intervaly).tolist() for box in shown)
-    room = 0.6 * min(box.height for box in shown) if side == 0 else 0.0
+    boxes = [label.get_window_extent() for label in labels]
+    ends = sorted(tuple(box.intervalx if side == 0 else box.intervaly) for box in boxes)
+    room = 0.6 * min(box.height for box in boxes) if side == 0 else 0.0
     return any(after[0] - before[1] < room for before, after in itertools.pairwise(ends))
 
 

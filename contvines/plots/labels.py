@@ -2,35 +2,34 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .figures import pixels
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.text import Annotation
     from matplotlib.transforms import Bbox
 
 
-Box = tuple[float, float, float, float]
+Box = tuple[float, float, float, float] | np.ndarray
+"""Left, low, right and high ends on the page."""
 
 RADII = (7, 11, 16, 24, 34, 46, 62)  # points on the page between an anchor and its text
 LEADER = 14  # from this radius on a thin line leads from the text to its anchor
-# across and up, and on which side of its anchor a text stands
-DIRECTIONS = [
-    (float(x), float(y), 0.5 * float(np.sign(round(x, 6))), 0.5 * float(np.sign(round(y, 6))))
-    for x, y in ((np.cos(a), np.sin(a)) for a in np.pi * (0.25 + np.arange(16) / 8))
-]
+ANGLES = np.pi * (0.25 + np.arange(16) / 8)
+WAYS = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # from an anchor to its text
 CELL = 2.0  # pixels of the raster in which curves are drawn for the search
 IMPOSSIBLE = 1e6
-WORST = (
-    60.0,
-    24.0,
-)  # cost above which a label is left out: of a point, and of what stands near its place or nowhere
+WORST = (60.0, 24.0)  # cost above which a label is left out: of a point, and of a branch's name
 ALONG = 16.0  # half cells of a leader on a curve that count as much as crossing it
 EDGE = 1.5  # points between a text and the frame
 AS_NEAR = 1.25  # times its distance from its own mark: a text that near to another one could be either's
-PLACES = np.linspace(0.0, 1.0, 24)  # along a leader, where it may pass through a box
+PLACES = np.linspace(0.0, 1.0, 24)[:, None]  # along a leader, where it may pass through a box
 CROWD = 9  # with more than so many further names at one place none of them says anything
 
 
@@ -62,9 +61,9 @@ class Label:
 
 
 def place_labels(
-    axes: Axes, labels: list[Label], obstacles: np.ndarray, *, size: float, taken: list[Box] | None = None
-) -> tuple[list[Any], int]:
-    """Write each label where it covers nothing.
+    axes: Axes, labels: Sequence[Label], obstacles: np.ndarray, *, size: float, taken: Sequence[Box] = ()
+) -> list[Annotation]:
+    """Write each label where it covers nothing: the cheapest of 16 places on each of a few circles about its anchor.
 
     Parameters
     ----------
@@ -78,80 +77,82 @@ def place_labels(
     -------
     artists : list
         The annotations written.
-    left_out : int
-        How many found no clean place.
     """
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    unit = figure.dpi / 72.0
-    frame = axes.bbox
-    edges: Box = float(frame.x0), float(frame.y0), float(frame.x1), float(frame.y1)
+    unit = pixels(axes)
+    low, high = np.asarray(axes.bbox.get_points())
     anchors = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
-    ground = Ground(frame, axes.transData.transform(np.asarray(obstacles, float).reshape(-1, 2)))
-    boxes, leaders, written, left_out = list(taken or ()), [], [], 0
+    ground = Ground(axes.bbox, axes.transData.transform(obstacles))
     widths = text_widths({label.text for label in labels}, size)
-    marks = [(x - 4 * unit, y - 4 * unit, x + 4 * unit, y + 4 * unit) for x, y in anchors.tolist()]
+    marks = np.hstack([anchors - 4 * unit, anchors + 4 * unit])
+    boxes, leaders, written = np.array(taken).reshape(-1, 4), np.empty((0, 4)), []
     for i in sorted(range(len(labels)), key=lambda i: (not labels[i].kept, labels[i].near, labels[i].rank)):
-        label, (ax, ay) = labels[i], anchors[i].tolist()
-        if not (edges[0] - 1 <= ax <= edges[2] + 1 and edges[1] - 1 <= ay <= edges[3] + 1):
+        label, at = labels[i], anchors[i]
+        if not (np.all(low - 1 <= at) and np.all(at <= high + 1)):
             continue
-        width, height = (widths[label.text] + 2) * unit, 1.2 * size * unit
-        others = marks[:i] + marks[i + 1 :]
-        best: tuple[float, float, float, Box, int] | None = None
+        extent = np.array([widths[label.text] + 2, 1.2 * size]) * unit
+        others = np.delete(marks, i, axis=0)
+        best = (np.inf, at, np.empty(4), np.empty(4), 0)
         for radius in RADII[:2] if label.near else RADII:
-            for dx, dy, right, above in DIRECTIONS:
-                cx = ax + (dx * radius + right * width / unit) * unit
-                cy = ay + (dy * radius + above * height / unit) * unit
-                box = (cx - width / 2, cy - height / 2, cx + width / 2, cy + height / 2)
-                far = radius >= LEADER
-                line = (ax, ay, cx, cy) if far else None
-                least = 0.3 * radius + _claimed(box, i, anchors)
-                if best is not None and least >= best[0]:
-                    continue
-                cost = _cost(box, line, edges, ground, boxes, leaders, others, unit) + least
-                if best is None or cost < best[0]:
-                    best = (cost, cx, cy, box, radius)
-            if best is not None and best[0] < RADII[0]:
+            middles = at + radius * unit * WAYS + 0.5 * extent * np.sign(np.round(WAYS, 6))
+            new = np.hstack([middles - 0.5 * extent, middles + 0.5 * extent])
+            lines = np.hstack([np.tile(at, (len(middles), 1)), middles])
+            out = np.maximum(low - new[:, :2], new[:, 2:] - high).max(axis=1) / unit + EDGE
+            blocked = (out > EDGE) | touching(new, boxes).any(axis=1) | _crossing(leaders, new).any(axis=0)
+            cost = 0.3 * radius + _claimed(new, i, anchors) + 10 * np.maximum(out, 0.0)
+            cost += 6 * np.minimum(ground.covered(new), 40) + 25 * touching(new, others).sum(axis=1)
+            if radius >= LEADER:
+                blocked |= _crossing(lines, boxes).any(axis=1) | _meeting(lines, leaders).any(axis=1)
+                cost += 8 * _crossing(lines, others).sum(axis=1) + 12 * ground.crossed(lines)
+            cost = np.where(blocked, IMPOSSIBLE, cost)
+            k = int(np.argmin(cost))
+            if cost[k] < best[0]:
+                best = (float(cost[k]), middles[k], new[k], lines[k], radius)
+            if best[0] < RADII[0]:
                 break
-        assert best is not None
-        cost, cx, cy, box, radius = best
+        cost, middle, box, line, radius = best
         if cost > WORST[label.near] and not label.kept:
-            left_out += not label.near
             continue
-        boxes.append(box)
-        far = radius >= LEADER
-        if far:
-            leaders.append((ax, ay, cx, cy))
-        written.append(_write(axes, label, (ax, ay), (cx, cy), unit, size, far))
-    return written, left_out
+        boxes = np.vstack([boxes, box])
+        leader = None
+        if radius >= LEADER:
+            leaders = np.vstack([leaders, line])
+            leader = {"arrowstyle": "-", "color": "0.55", "lw": 0.6, "shrinkA": 1, "shrinkB": 3}
+        text = axes.annotate(
+            label.text,
+            (label.x, label.y),
+            tuple((middle - at) / unit),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=size,
+            color=label.color,
+            arrowprops=leader,
+            bbox={"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.75},
+            zorder=8,
+        )
+        written.append(text)
+    return written
 
 
-def grouped(axes: Axes, labels: list[Label], near: float = 9.0, named: int = 3) -> list[Label]:
+def grouped(axes: Axes, labels: Sequence[Label], near: float = 9.0, named: int = 3) -> list[Label]:
     """One label for those that lie within `near` points of one another on the page.
 
     Above `named` names, "+n" stands for n more; where very many lie together, their number stands for all.
     """
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    spots = np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2)
-    screen = axes.transData.transform(spots) * 72.0 / figure.dpi
+    spots = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
     groups: list[list[int]] = []
-    for i, point in enumerate(screen):
-        for group in groups:
-            if np.hypot(*(screen[group[0]] - point)) < near and not labels[i].kept:
-                group.append(i)
-                break
-        else:
-            groups.append([i])
+    for i, point in enumerate(spots / pixels(axes)):
+        beside = (g for g in groups if np.hypot(*(spots[g[0]] / pixels(axes) - point)) < near)
+        group = None if labels[i].kept else next(beside, None)
+        groups.append([i]) if group is None else group.append(i)
     found = []
     for group in groups:
-        ranked = sorted(group, key=lambda i: labels[i].rank)
-        first = labels[ranked[0]]
-        names = list(dict.fromkeys(labels[i].text for i in ranked))
-        shown = names if len(names) <= named else [*names[: named - 1]]
+        ranked = sorted((labels[i] for i in group), key=lambda label: label.rank)
+        names = list(dict.fromkeys(label.text for label in ranked))
+        shown = names if len(names) <= named else names[: named - 1]
         more = len(names) - len(shown)
         text = f"{len(names)} points" if more > CROWD else ", ".join(shown) + (f" +{more}" if more else "")
-        found.append(Label(text, first.x, first.y, first.color, first.rank, first.kept, first.near))
+        found.append(replace(ranked[0], text=text))
     return found
 
 
@@ -176,138 +177,64 @@ def text_widths(texts: set[str], size: float) -> dict[str, float]:
 
 
 class Ground:
-    """How much of a box is covered by curves: sums over a raster of the axes."""
+    """How much of the axes curves cover: sums over a raster of cells."""
 
     def __init__(self, frame: Bbox, points: np.ndarray) -> None:
-        self.x0, self.y0 = float(frame.x0), float(frame.y0)
-        shape = (int(frame.height / CELL) + 2, int(frame.width / CELL) + 2)
-        raster = np.zeros(shape)
-        points = points[np.isfinite(points).all(axis=1)]
-        columns = ((points[:, 0] - self.x0) / CELL).astype(int)
-        rows = ((points[:, 1] - self.y0) / CELL).astype(int)
-        inside = (rows >= 0) & (rows < shape[0]) & (columns >= 0) & (columns < shape[1])
-        raster[rows[inside], columns[inside]] = 1.0
-        self.sums = np.zeros((shape[0] + 1, shape[1] + 1))
-        self.sums[1:, 1:] = raster.cumsum(0).cumsum(1)
+        self.origin = np.array([frame.x0, frame.y0])
+        self.shape = int(frame.width / CELL) + 2, int(frame.height / CELL) + 2
+        cells = ((points[np.isfinite(points).all(axis=1)] - self.origin) / CELL).astype(int)
+        self.raster = np.zeros(self.shape)
+        self.raster[tuple(cells[((cells >= 0) & (cells < self.shape)).all(axis=1)].T)] = 1.0
+        self.sums = np.pad(self.raster.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
 
-    def covered(self, box: Box) -> float:
-        """Cells of the raster with a curve in the box."""
-        rows, columns = self.sums.shape
-        c0, c1 = (int(min(max((x - self.x0) / CELL, 0), columns - 1)) for x in (box[0], box[2] + CELL))
-        r0, r1 = (int(min(max((y - self.y0) / CELL, 0), rows - 1)) for y in (box[1], box[3] + CELL))
+    def covered(self, boxes: np.ndarray) -> np.ndarray:
+        """Cells with a curve in each of the boxes (n, 4), shape (n,)."""
+        corners = np.tile(self.origin, 2) - [0.0, 0.0, CELL, CELL]
+        x0, y0, x1, y1 = np.clip((boxes - corners) / CELL, 0, np.tile(self.shape, 2)).astype(int).T
         s = self.sums
-        return float(s[r1, c1] - s[r0, c1] - s[r1, c0] + s[r0, c0])
+        return s[x1, y1] - s[x0, y1] - s[x1, y0] + s[x0, y0]
 
-    def crossed(self, line: Box) -> float:
-        """How many curves a straight line crosses, but for those at its first end; more where it runs along one."""
-        rows, columns = self.sums.shape
-        count = max(int(np.hypot(line[2] - line[0], line[3] - line[1]) / CELL), 1)
+    def crossed(self, lines: np.ndarray) -> np.ndarray:
+        """How many curves straight lines (n, 4) cross, but for those at their first ends; more where they run along one."""
+        count = max(int(np.hypot(*(lines[:, 2:] - lines[:, :2]).T).max() / CELL), 1)
         along = np.linspace(0.0, 1.0, 2 * count)[:, None]
-        x, y = (line[:2] + along * np.subtract(line[2:], line[:2])).T
-        c = np.clip((x - self.x0) / CELL, 0, columns - 2).astype(int)
-        r = np.clip((y - self.y0) / CELL, 0, rows - 2).astype(int)
-        s = self.sums
-        met = s[r + 1, c + 1] - s[r, c + 1] - s[r + 1, c] + s[r, c] > 0.0
-        away = met & (np.cumsum(~met) > 2)  # the anchor lies on a curve of its own
-        return float(np.sum(away[1:] & ~away[:-1])) + float(np.sum(away)) / ALONG
-
-    def free(self, boxes: np.ndarray) -> np.ndarray:
-        """Which boxes, shape (n, 4), have no curve in them."""
-        rows, columns = self.sums.shape
-        c0, c1 = (
-            (np.clip((x - self.x0) / CELL, 0, columns - 1)).astype(int)
-            for x in (boxes[:, 0], boxes[:, 2] + CELL)
-        )
-        r0, r1 = (
-            (np.clip((y - self.y0) / CELL, 0, rows - 1)).astype(int)
-            for y in (boxes[:, 1], boxes[:, 3] + CELL)
-        )
-        s = self.sums
-        return s[r1, c1] - s[r0, c1] - s[r1, c0] + s[r0, c0] == 0.0
+        places = lines[:, None, :2] + along * (lines[:, 2:] - lines[:, :2])[:, None]
+        cells = np.clip((places - self.origin) / CELL, 0, np.array(self.shape) - 1).astype(int)
+        met = self.raster[cells[..., 0], cells[..., 1]] > 0.0
+        away = met & (np.cumsum(~met, axis=1) > 2)  # the anchor lies on a curve of its own
+        return np.sum(away[:, 1:] & ~away[:, :-1], axis=1) + np.sum(away, axis=1) / ALONG
 
 
-def _cost(
-    box: Box,
-    line: Box | None,
-    edges: Box,
-    ground: Ground,
-    boxes: list[Box],
-    leaders: list[Box],
-    marks: list[Box],
-    unit: float,
-) -> float:
-    out = max(edges[0] - box[0], box[2] - edges[2], edges[1] - box[1], box[3] - edges[3]) + EDGE * unit
-    if out > EDGE * unit or any(_overlap(box, other) for other in boxes):
-        return IMPOSSIBLE
-    cost = (
-        10 * max(out, 0.0) / unit
-        + 6 * min(ground.covered(box), 40)
-        + 25 * sum(_overlap(box, mark) for mark in marks)
-    )
-    if any(_crosses(other, box) for other in leaders):
-        return IMPOSSIBLE
-    if line is not None:
-        if any(_crosses(line, other) for other in boxes) or any(_meet(line, other) for other in leaders):
-            return IMPOSSIBLE
-        cost += 8 * sum(_crosses(line, mark) for mark in marks) + 12 * ground.crossed(line)
-    return cost
-
-
-def _write(
-    axes: Axes,
-    label: Label,
-    at: tuple[float, float],
-    to: tuple[float, float],
-    unit: float,
-    size: float,
-    far: bool,
-) -> Any:
-    leader = {"arrowstyle": "-", "color": "0.55", "lw": 0.6, "shrinkA": 1, "shrinkB": 3} if far else None
-    return axes.annotate(
-        label.text,
-        xy=(label.x, label.y),
-        xytext=((to[0] - at[0]) / unit, (to[1] - at[1]) / unit),
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        fontsize=size,
-        color=label.color,
-        arrowprops=leader,
-        bbox={"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.75},
-        zorder=8,
-    )
-
-
-def _claimed(box: Box, own: int, anchors: np.ndarray) -> float:
-    """What it costs that a text stands nearer to something else than to what it names (by its index), or about as near."""
+def _claimed(boxes: np.ndarray, own: int, anchors: np.ndarray) -> np.ndarray:
+    """What it costs that texts stand nearer to something else than to what they name (by its index), or about as near."""
     if len(anchors) < 2:
-        return 0.0
-    x, y = anchors.T
-    across = np.maximum(np.maximum(box[0] - x, x - box[2]), 0.0)
-    up = np.maximum(np.maximum(box[1] - y, y - box[3]), 0.0)
-    gaps = np.hypot(across, up)
-    ours, gaps[own] = float(gaps[own]), np.inf
-    nearest = float(gaps.min())
-    return 30.0 if nearest < ours - 1.0 else 10.0 if nearest < AS_NEAR * ours else 0.0
+        return np.zeros(len(boxes))
+    apart = np.maximum(np.maximum(boxes[:, None, :2] - anchors, anchors - boxes[:, None, 2:]), 0.0)
+    gaps = np.hypot(apart[..., 0], apart[..., 1])
+    ours, nearest = gaps[:, own], np.delete(gaps, own, axis=1).min(axis=1)
+    return np.where(nearest < ours - 1.0, 30.0, np.where(nearest < AS_NEAR * ours, 10.0, 0.0))
 
 
-def _overlap(a: Box, b: Box) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+def touching(some: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Which boxes (n, 4) share something with which others (m, 4), shape (n, m)."""
+    one, two = some[:, None], others[None]
+    return np.all((one[..., :2] < two[..., 2:]) & (two[..., :2] < one[..., 2:]), axis=-1)
 
 
-def _crosses(line: Box, box: Box) -> bool:
-    """Whether a line from (x0, y0) to (x1, y1) passes through a box."""
-    xs, ys = line[0] + PLACES * (line[2] - line[0]), line[1] + PLACES * (line[3] - line[1])
-    return bool(((xs > box[0]) & (xs < box[2]) & (ys > box[1]) & (ys < box[3])).any())
+def _crossing(lines: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    """Which lines (n, 4) from (x0, y0) to (x1, y1) pass through which boxes (m, 4), shape (n, m)."""
+    at = (lines[:, None, :2] + PLACES * (lines[:, 2:] - lines[:, :2])[:, None])[:, :, None]
+    return np.any(np.all((at > boxes[:, :2]) & (at < boxes[:, 2:]), axis=-1), axis=1)
 
 
-def _meet(a: Box, b: Box) -> bool:
-    """Whether two line segments cross."""
+def _meeting(some: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Which line segments (n, 4) cross which others (m, 4), shape (n, m)."""
 
-    def side(p: tuple[float, float], line: Box) -> float:
-        return (line[2] - line[0]) * (p[1] - line[1]) - (line[3] - line[1]) * (p[0] - line[0])
+    def apart(ends: np.ndarray, lines: np.ndarray) -> np.ndarray:
+        """Whether the ends of segments lie on unlike sides of lines."""
+        (dx, dy) = (lines[..., 2:] - lines[..., :2]).T
+        x, y = (ends.reshape(*ends.shape[:-1], 2, 2) - lines[..., None, :2]).T
+        return np.prod(dx * y - dy * x, axis=0).T < 0.0
 
-    return bool(
-        side((a[0], a[1]), b) * side((a[2], a[3]), b) < 0.0
-        and side((b[0], b[1]), a) * side((b[2], b[3]), a) < 0.0
-    )
+    one, two = np.broadcast_arrays(some[:, None], others[None])
+    return apart(one, two) & apart(two, one)

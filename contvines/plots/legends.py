@@ -10,13 +10,14 @@ import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
-from .figures import settle
-from .labels import text_widths
-from .style import LINES, PROVED, STATES, WIDTHS, Mark
+from .figures import pixels, root, settle
+from .labels import Box, text_widths
+from .style import PROVED, STATES, Mark, line_of
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.transforms import Bbox
 
 NARROW = 5.0  # inches: in a narrower figure the legend stands below the axes
 PLACES = ("inside", "beside", "below")
@@ -32,34 +33,24 @@ class Key:
     remarks: list[str] = field(default_factory=list)
     proved: bool = False
 
-    def handles(self) -> list[Any]:
+    def handles(self) -> list[Artist]:
         """Artists for the entries, in order."""
-        import matplotlib as mpl
+        from matplotlib import rcParams
         from matplotlib.lines import Line2D
 
-        width, size = mpl.rcParams["lines.linewidth"], mpl.rcParams["lines.markersize"]
-        found = []
+        width, size = float(rcParams["lines.linewidth"]), float(rcParams["lines.markersize"])
+        found: list[Artist] = []
         for state, name in STATES.items():
             if state in self.states:
-                look = {"linestyle": LINES[state], "linewidth": WIDTHS[state] * width, "label": name}
-                found.append(Line2D([], [], color=self.colors.get(name, "0.2"), **look))
+                found.append(Line2D([], [], label=name, **line_of(state, self.colors.get(name, "0.2"))))
         for name, color in self.colors.items():
             if name not in STATES.values():
                 found.append(Line2D([], [], color=color, linewidth=width, label=name))
         for mark in self.marks.values():
-            face = "0.2" if mark.filled else "white"
-            look = {
-                "marker": mark.marker,
-                "markerfacecolor": face,
-                "markersize": 0.9 * size,
-                "label": mark.name,
-            }
-            found.append(Line2D([], [], linestyle="none", color="0.2", **look))
+            found.append(Line2D([], [], label=mark.name, **mark.look("0.2", 0.9 * size)))
         if self.proved:
-            band = {"linewidth": 4.0 * width, "solid_capstyle": "butt", **PROVED}
-            found.append(Line2D([], [], label="proved", **band))
-        found += [Line2D([], [], linestyle="none", label=text) for text in self.remarks]
-        return found
+            found.append(Line2D([], [], label="proved", linewidth=4 * width, solid_capstyle="butt", **PROVED))
+        return [*found, *(Line2D([], [], linestyle="none", label=text) for text in self.remarks)]
 
 
 def draw_legend(axes: Axes, key: Key, where: bool | str, own: bool, obstacles: np.ndarray) -> None:
@@ -73,10 +64,8 @@ def draw_legend(axes: Axes, key: Key, where: bool | str, own: bool, obstacles: n
         As for :func:`place_legend`.
     """
     before = axes.get_legend()
-    known = {}
-    if before is not None:
-        for handle, text in zip(before.legend_handles, before.get_texts(), strict=False):
-            known[text.get_text()] = handle
+    pairs = [] if before is None else zip(before.get_texts(), before.legend_handles, strict=False)
+    known = {text.get_text(): handle for text, handle in pairs if handle is not None}
     for handle in (*key.handles(), *axes.get_legend_handles_labels()[0]):
         known.setdefault(str(handle.get_label()), handle)
     place_legend(axes, list(known.values()), where, own, obstacles, remarks=key.remarks)
@@ -84,7 +73,7 @@ def draw_legend(axes: Axes, key: Key, where: bool | str, own: bool, obstacles: n
 
 def place_legend(
     axes: Axes,
-    handles: list[Any],
+    handles: Sequence[Artist] | None,
     where: bool | str,
     own: bool,
     obstacles: np.ndarray | None = None,
@@ -98,7 +87,7 @@ def place_legend(
     ----------
     axes : Axes
     handles : list
-        Artists with labels.
+        Artists with labels; None: those of the axes.
     where : bool or str
         False: none. True: the usual place, but below in a narrow figure. "inside", "beside", "below", or a place of matplotlib's.
     own : bool
@@ -118,29 +107,25 @@ def place_legend(
     from matplotlib.layout_engine import ConstrainedLayoutEngine
     from matplotlib.legend import Legend
 
+    handles = axes.get_legend_handles_labels()[0] if handles is None else list(handles)
     if where is False or not handles:
         return
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    options: dict[str, Any] = {"handles": handles, "handlelength": 2.4}
-    if isinstance(where, str) and where not in PLACES:
-        known = [*PLACES, *Legend.codes]
-        if where not in known:
-            raise ValueError(
-                f"legend = {where!r} is unknown{did_you_mean(where, known)}; choose of {', '.join(known)}"
-            )
-        axes.legend(**{**options, "loc": where})
-        return
+    figure, known = root(axes), [*PLACES, *Legend.codes]
+    if isinstance(where, str) and where not in known:
+        raise ValueError(
+            f"legend = {where!r} is unknown{did_you_mean(where, known)}; choose of {', '.join(known)}"
+        )
     narrow = figure.get_size_inches()[0] < NARROW
-    place = where if isinstance(where, str) else ("inside" if not own else "below" if narrow else usual)
+    place = where if isinstance(where, str) else "inside" if not own else "below" if narrow else usual
     if place == "below":
-        _below(figure, axes, handles, own, remarks)
+        _below(axes, handles, own, remarks)
         return
-    axes.legend(loc="best", **options)
+    loc: Any = "best" if place in PLACES else place
+    legend = axes.legend(handles=handles, handlelength=2.4, loc=loc)
+    if place not in PLACES:
+        return
     settle(figure)
-    if place == "beside" or (where is True and own and _covers(axes, obstacles)):
-        legend = axes.get_legend()
-        assert legend is not None
+    if place == "beside" or (where is True and own and _covers(legend.get_window_extent(), axes, obstacles)):
         legend.set_loc("upper left")
         legend.set_bbox_to_anchor((1.01, 1.0), transform=axes.transAxes)
         engine = figure.get_layout_engine()
@@ -149,80 +134,62 @@ def place_legend(
         settle(figure, 2)  # the axes become narrower, and then their ticks fewer
 
 
-def hold_legend(axes: Axes) -> list[tuple[float, float, float, float]]:
+def hold_legend(axes: Axes) -> list[Box]:
     """Keep the legend where it is now, whatever is written later; its box on the page."""
     legend = axes.get_legend()
     if legend is None:
         return []
     box = legend.get_window_extent()
-    (left, low) = axes.transAxes.inverted().transform((box.x0, box.y0))
+    left, low = axes.transAxes.inverted().transform(box.min).tolist()
     legend.set_bbox_to_anchor(None)
-    legend.set_loc((float(left), float(low)))
-    return [(box.x0, box.y0, box.x1, box.y1)]
+    legend.set_loc((left, low))
+    return [box.extents]
 
 
-def _below(figure: Figure, axes: Axes, handles: list[Any], own: bool, remarks: Sequence[str]) -> None:
+def _below(axes: Axes, handles: list[Artist], own: bool, remarks: Sequence[str]) -> None:
     """Under the axes, small, in as many columns as fit the figure; remarks go to the axis's label."""
-    import matplotlib as mpl
+    from matplotlib import rcParams
     from matplotlib.font_manager import FontProperties
 
-    for remark in remarks:
-        axes.set_xlabel(f"{axes.get_xlabel()}\n{remark}")
+    figure, before = root(axes), axes.get_legend()
+    axes.set_xlabel("\n".join([axes.get_xlabel(), *remarks]))
     handles = [entry for entry in handles if entry.get_label() not in remarks]
-    if axes.get_legend() is not None:
-        axes.get_legend().remove()  # type: ignore[union-attr]
+    if before is not None:
+        before.remove()
     if not handles:
         return
-    size = 0.92 * FontProperties(size=mpl.rcParams["legend.fontsize"]).get_size_in_points()
-    texts = {str(entry.get_label()) for entry in handles}
-    drawn = text_widths(texts, size)
-    wide = [
-        drawn[str(entry.get_label())] + 3.4 * size for entry in handles
-    ]  # with the sample and the gaps beside it
-    room = figure.get_size_inches()[0] * 72.0 if own else axes.get_window_extent().width / figure.dpi * 72.0
-    look: dict[str, Any] = {
-        "handles": handles,
-        "ncols": _columns(wide, room),
-        "fontsize": size,
-        "handlelength": 1.8,
-        "handletextpad": 0.5,
-        "columnspacing": 0.9,
-        "labelspacing": 0.25,
-        "borderpad": 0.0,
-        "frameon": False,
-    }
+    size = 0.92 * FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points()
+    texts = [str(entry.get_label()) for entry in handles]
+    drawn = text_widths(set(texts), size)
+    wide = [drawn[text] + 3.4 * size for text in texts]  # with the sample and the gaps beside it
+    room = (figure.bbox if own else axes.bbox).width / pixels(axes)
+    look = {"borderpad": 0.0, "frameon": False, "handlelength": 1.8, "handletextpad": 0.5}
+    look |= {"ncols": _columns(wide, room), "fontsize": size, "columnspacing": 0.9, "labelspacing": 0.25}
     if own:
-        figure.legend(loc="outside lower center", **look)  # type: ignore[arg-type]
+        figure.legend(handles=handles, loc="outside lower center", **look)
     else:
-        legend = axes.legend(loc="upper center", borderaxespad=0.0, **look)
-        for _ in range(
-            3
-        ):  # a layout may make room for the legend: the axes are lower then, and the gap another share
+        legend = axes.legend(handles=handles, loc="upper center", borderaxespad=0.0, **look)
+        for _ in range(3):  # a layout that makes room for the legend makes the axes lower
             settle(figure)
             box = axes.xaxis.get_tightbbox()
             low = axes.bbox.y0 if box is None else min(box.y0, axes.bbox.y0)
-            gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
+            gap = (low - axes.bbox.y0 - 4.0 * pixels(axes)) / axes.bbox.height
             legend.set_bbox_to_anchor((0.5, gap), transform=axes.transAxes)
     settle(figure)
 
 
 def _columns(wide: list[float], room: float) -> int:
     """As many columns, filled one after the other, as fit; not more than leave each row but the last one full."""
-    fits = [
-        count
-        for count in range(1, len(wide) + 1)
-        if sum(max(part) for part in np.array_split(np.array(wide), count)) <= room
-    ]
+    counts = range(1, len(wide) + 1)
+    fits = [n for n in counts if sum(map(max, np.array_split(np.array(wide), n))) <= room]
     rows = -(-len(wide) // max(fits, default=1))
     return -(-len(wide) // rows)
 
 
-def _covers(axes: Axes, obstacles: np.ndarray | None) -> bool:
-    legend = axes.get_legend()
-    if legend is None:
-        return False
-    box = legend.get_window_extent()
+def _covers(box: Bbox, axes: Axes, obstacles: np.ndarray | None) -> bool:
+    """Whether a box on the page covers lines of the axes, or obstacles in data coordinates."""
     drawn = [np.column_stack([*line.get_data()]).astype(float) for line in axes.lines]
     further = np.empty((0, 2)) if obstacles is None else obstacles
-    x, y = axes.transData.transform(np.vstack([further, *drawn, np.empty((0, 2))])).T
-    return bool(np.any((box.x0 <= x) & (x <= box.x1) & (box.y0 <= y) & (y <= box.y1)))
+    page = axes.transData.transform(np.vstack([further, *drawn]))
+    low, high = box.get_points()
+    return bool(np.any(np.all((low <= page) & (page <= high), axis=1)))

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..continuation.hints import hinting
 from ..graph.table import with_unit
-from .figures import new_axes, settle, styled, thin_ticks
+from .figures import Size, Style, drawing, settle
 from .legends import place_legend
 
 if TYPE_CHECKING:
@@ -27,8 +27,8 @@ def plot_transient(
     *,
     axes: Axes | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw a motion, or its energy, with the absorber and without.
 
@@ -39,21 +39,15 @@ def plot_transient(
         logarithmic axis.
     hits : float array, optional
         Instants of impacts, ticks at the lower edge.
-    axes : Axes, optional
-        Drawn on; without, a new figure of `figsize` inches.
-    legend : bool or str
-        Whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
-    style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+    axes, legend, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`.
     """
     from matplotlib import rcParams
 
     (clock, second, time), *curves = series
     name, unit, _ = curves[0]
     compared = any(what.startswith("bare") for what, _, _ in curves)
-    with styled(style):
-        own = axes is None
-        figure, axes = new_axes(axes, figsize=figsize)
+    with drawing(axes, style, figsize) as (figure, axes, own):
         thin = 0.65 * float(rcParams["lines.linewidth"])  # many periods stand side by side
         for what, _, values in curves:
             if what.startswith("relative"):
@@ -83,8 +77,8 @@ def plot_densities(
     densities: Mapping[str, tuple[np.ndarray, str]],
     *,
     axes: Axes | None = None,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw spectral densities of responses over the frequency, logarithmically.
 
@@ -102,16 +96,11 @@ def plot_densities(
         "bare": (BARE, (0, (4, 1.5)), "without absorber"),
         "tuned": (DATA, (0, (1, 1)), "tuned absorber"),
     }
-    with styled(style):
-        own = axes is None
-        figure, axes = new_axes(axes, figsize=figsize)
+    with drawing(axes, style, figsize) as (figure, axes, own):
         colors = iter([OURS, "#2e7d32", "#8e5a00", "#6a1b9a"] * len(densities))
         for name, (values, _) in densities.items():
-            color, line, label = looks.get(name) or (
-                next(colors),
-                "-",
-                "with absorber" if name == "oscillator" else name,
-            )
+            label = "with absorber" if name == "oscillator" else name
+            color, line, label = looks.get(name) or (next(colors), "-", label)
             axes.plot(frequencies, values, color=color, linestyle=line, label=label)
         units = {shown for _, shown in densities.values()}
         axes.set(
@@ -134,8 +123,8 @@ def plot_calibration(
     ylabel: str,
     axes: Axes | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw a measured response and the computed one, or, of impact times, what is left over.
 
@@ -149,11 +138,9 @@ def plot_calibration(
         The measured response.
     xlabel, ylabel : str
     axes, legend, figsize, style
-        As for :func:`plot_transient`.
+        As for :func:`contvines.plots.diagram.plot_diagram`.
     """
-    with styled(style):
-        own = axes is None
-        figure, axes = new_axes(axes, figsize=figsize)
+    with drawing(axes, style, figsize) as (figure, axes, own):
         if heights is None:
             axes.axhline(0.0, color="0.6", linewidth=0.8)
             axes.plot(places, -residuals, linestyle="none", marker="o", color=OURS)
@@ -167,15 +154,11 @@ def plot_calibration(
 
 
 def _finish(figure: Figure, axes: Axes, legend: bool | str, own: bool) -> None:
-    place_legend(axes, axes.get_legend_handles_labels()[0], legend, own, usual="below")
+    place_legend(axes, None, legend, own, usual="below")
     if own:
         settle(figure)
         label = axes.yaxis.label
         if label.get_window_extent().height > axes.bbox.height:  # two lines where one is longer than the axis
             words = label.get_text().split()
-            half = min(
-                range(len(words)), key=lambda k: abs(len(" ".join(words[:k])) - len(" ".join(words[k:])))
-            )
-            axes.set_ylabel(" ".join(words[:half]) + "\n" + " ".join(words[half:]))
-            settle(figure)
-        thin_ticks(axes)
+            halves = [(" ".join(words[:k]), " ".join(words[k:])) for k in range(len(words))]
+            axes.set_ylabel("\n".join(min(halves, key=lambda pair: abs(len(pair[0]) - len(pair[1])))))

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..continuation.hints import hinting
 from ..problems.abilities import notation_of
-from .figures import new_figure, settle, styled, thin_ticks
+from .figures import Size, Style, given_axes, new_figure, root, settle, styled, thin_ticks
 from .legends import place_legend
 from .style import axis_label
 
@@ -32,8 +32,8 @@ def plot_multipliers(
     *,
     axes: Axes | Sequence[Axes] | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw the moduli of a branch's multipliers against the parameter, and the multipliers themselves.
 
@@ -43,12 +43,8 @@ def plot_multipliers(
     Parameters
     ----------
     branch : Branch
-    axes : Axes or two of them, optional
-        Drawn on: one has the moduli, two have both. Without, a new figure of `figsize` inches; a small one has the moduli alone.
-    legend : bool or str
-        Whether the curves are named, or where: a place that matplotlib knows.
-    style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+    axes, legend, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`; of two axes the second has the plane, and a small new figure has the moduli alone.
 
     Raises
     ------
@@ -58,29 +54,23 @@ def plot_multipliers(
     spectrum = np.asarray(branch.multipliers)
     if spectrum.ndim != 2 or spectrum.shape[1] == 0:
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
-    given = None if axes is None else list(np.atleast_1d(np.asarray(axes, dtype=object)))
-    if given is not None and len(given) > 2:
-        raise ValueError("axes: the multipliers need one or two axes, for example plt.subplots(1, 2)[1]")
     flow = branch.problem is not None and branch.problem.spectrum == "flow"
     with styled(style):
-        right: Any = None
-        if given is None:
-            size = figsize or (8.6, 4.0)
-            figure = new_figure(figsize=size)
-            narrow = size[0] < NARROW
-            if narrow and size[1] < LOW:
-                left = figure.add_subplot()  # no room for the plane as well
-            elif narrow:
-                left, right = figure.subplots(2, 1, height_ratios=(1, 1.25))
-            else:
-                left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
+        if axes is not None:
+            figure, panels = given_axes(axes, (1, 2), "the multipliers are drawn on")
         else:
-            left, right = given[0], given[1] if len(given) == 2 else None
-            figure: Any = left.get_figure(root=True)
-        _sizes(left, branch, spectrum, flow, legend)
-        if right is not None:
-            _plane(right, branch, spectrum, flow)
-        if given is None:
+            size = figsize or (8.6, 4.0)
+            figure, narrow = new_figure(figsize=size), size[0] < NARROW
+            if narrow and size[1] < LOW:
+                panels = [figure.add_subplot()]  # no room for the plane as well
+            elif narrow:
+                panels = figure.subplots(2, 1, height_ratios=(1, 1.25))
+            else:
+                panels = figure.subplots(1, 2, width_ratios=(1.25, 1))
+        _sizes(panels[0], branch, spectrum, flow, legend)
+        if len(panels) == 2:
+            _plane(panels[1], branch, spectrum, flow)
+        if axes is None:
             settle(figure)
             thin_ticks(*figure.axes)
     return figure
@@ -97,40 +87,23 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend:
     ranked = np.take_along_axis(size, np.argsort(-size, axis=1), axis=1)
     drawn = min(spectrum.shape[1], MOST)
     for j in range(drawn):
-        label = (
-            ("largest" if j == 0 else "smallest" if j == spectrum.shape[1] - 1 else f"{j + 1}.")
-            if drawn > 1
-            else None
-        )
-        axes.plot(
-            branch.values,
-            ranked[:, j],
-            color=COLORS[j % len(COLORS)],
-            linestyle=DASHES[j % len(DASHES)],
-            label=label,
-        )
+        label = "largest" if j == 0 else "smallest" if j == spectrum.shape[1] - 1 else f"{j + 1}."
+        look = {"color": COLORS[j % len(COLORS)], "linestyle": DASHES[j % len(DASHES)]}
+        axes.plot(branch.values, ranked[:, j], label=label, **look)
     axes.axhline(0.0 if flow else 1.0, color="black", linewidth=0.9)
     if not flow and np.nanmax(ranked) > 20:
         axes.set_yscale("log")
         low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
         axes.set_ylim(max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5)  # a graze sends a multiplier to infinity
-    axes.set_xlabel(parameter_label(branch))
-    axes.set_ylabel(r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
+    axes.set(xlabel=parameter_label(branch), ylabel=r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
     what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
-    figure = axes.get_figure(root=True)
-    if legend is True and figure is not None and figure.get_size_inches()[0] < NARROW and drawn > 1:
-        look: dict[str, Any] = {
-            "loc": "lower left",
-            "bbox_to_anchor": (0.0, 1.0),
-            "ncols": 4,
-            "frameon": False,
-            "borderpad": 0.0,
-        }
-        axes.legend(**look, handlelength=1.4, columnspacing=0.9, title=what, alignment="left")
+    if legend is True and root(axes).get_size_inches()[0] < NARROW and drawn > 1:
+        above = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "title": what, "alignment": "left"}
+        axes.legend(ncols=4, frameon=False, borderpad=0.0, handlelength=1.4, columnspacing=0.9, **above)
         return
     axes.set_title(what)
     if drawn > 1:
-        place_legend(axes, axes.get_legend_handles_labels()[0], legend, False)
+        place_legend(axes, None, legend, False)
 
 
 def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None:
@@ -143,19 +116,14 @@ def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
     where = np.repeat(branch.values, spectrum.shape[1])
     reach = 1.15 if flow else min(max(1.6, np.nanpercentile(np.abs(flat), 75) * 1.2), 4.0)
     shown = np.isfinite(flat) if flow else np.abs(flat) <= reach * 1.05
-    dots = axes.scatter(
-        np.real(flat)[shown], np.imag(flat)[shown], c=where[shown], s=9, cmap="viridis_r", zorder=3
-    )
+    x, y = np.real(flat)[shown], np.imag(flat)[shown]
+    dots = axes.scatter(x, y, c=where[shown], s=9, cmap="viridis_r", zorder=3)
     if not flow:
-        axes.set_xlim(-reach, reach)
-        axes.set_ylim(-reach, reach)
-        axes.set_aspect("equal")
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+        axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    figure = root(axes)
     bar = figure.colorbar(dots, ax=axes, shrink=0.85)
     bar.set_label(parameter_label(branch))
-    axes.set_xlabel(r"Re $\lambda$")
-    axes.set_ylabel(r"Im $\lambda$")
+    axes.set(xlabel=r"Re $\lambda$", ylabel=r"Im $\lambda$")
     hidden = int((~shown).sum())
     narrow = figure.get_size_inches()[0] < NARROW
     apart = "\n" if narrow else " "

@@ -1,6 +1,7 @@
 """One solution: the picture that its problem knows how to draw, else its numbers."""
 
-from collections.abc import Mapping
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean
 
 from ..problems.abilities import Drawable
-from .figures import new_axes, styled
+from .figures import Size, Style, new_axes, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,20 +19,18 @@ if TYPE_CHECKING:
 def plot_portrait(
     orbit: Any,
     *,
-    axes: "Axes | None" = None,
-    figsize: tuple[float, float] | None = None,
-    style: "str | Mapping[str, Any] | None" = None,
+    axes: Axes | None = None,
+    figsize: Size = None,
+    style: Style = None,
     **options: Any,
-) -> "Figure":
+) -> Figure:
     """Draw an orbit: its own `plot()` where it has one, else the points of a cycle or the entries of a vector.
 
     Parameters
     ----------
     orbit : what `SpecialPoint.orbit` or `Branch.orbit(i)` returned.
-    axes : Axes, optional
-        Drawn on (an orbit draws its phase portrait alone there); without, a new figure of `figsize` inches.
-    style : str or mapping, optional
-        A style or rcParams of matplotlib's that come before the package's.
+    axes, figsize, style
+        As for :func:`contvines.plots.diagram.plot_diagram`; on given axes an orbit draws its phase portrait alone.
     **options
         For the orbit's own `plot()`.
     """
@@ -46,13 +45,11 @@ def plot_portrait(
         )
     points = np.atleast_2d(np.asarray(getattr(orbit, "points", getattr(orbit, "u", orbit)), float))
     with styled(style):
-        figure, axes = new_axes(axes, figsize=figsize or (4.6, 4.0))
+        figure, axes = new_axes(axes, figsize or (4.6, 4.0))
         if points.shape[0] > 1 and points.shape[1] == 2:
             axes.plot(*points.T, "o", color="#0b3c6f")
-            axes.set_xlabel("$x_1$")
-            axes.set_ylabel("$x_2$")
+            axes.set(xlabel="$x_1$", ylabel="$x_2$")
         else:
             axes.plot(np.arange(points.size), points.ravel(), "o-", color="#0b3c6f")
-            axes.set_xlabel("entry")
-            axes.set_ylabel("value")
+            axes.set(xlabel="entry", ylabel="value")
     return figure

@@ -32,10 +32,30 @@ class Mark:
     marker: str
     filled: bool = False
 
+    def look(self, color: str, size: float) -> dict[str, Any]:
+        """What `plot` is told to draw it."""
+        return {
+            "linestyle": "none",
+            "marker": self.marker,
+            "color": color,
+            "markersize": size,
+            "markerfacecolor": color if self.filled else "white",
+            "markeredgecolor": "black" if self.filled else color,
+            "markeredgewidth": (0.5 if self.filled else 1.3) * size / 6.0,
+        }
+
 
 MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in BY_NAME.values()}
 PLAIN = Mark("special point", "o")
 UNRESOLVED = Mark("unresolved", "s")
+
+
+def line_of(state: str, color: str) -> dict[str, Any]:
+    """What `plot` is told to draw a branch in a state."""
+    from matplotlib import rcParams
+
+    width = WIDTHS[state] * float(rcParams["lines.linewidth"])
+    return {"color": color, "linestyle": LINES[state], "linewidth": width}
 
 
 def mark_of(kind: str, graph: "Graph") -> Mark:

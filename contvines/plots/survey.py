@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..continuation.hints import hinting
-from .figures import new_axes, new_figure, settle, styled, thin_ticks
+from .figures import Size, Style, given_axes, new_axes, new_figure, pixels, settle, styled, thin_ticks
 from .legends import NARROW, place_legend
 from .style import axis_label
 
@@ -32,8 +32,8 @@ def plot_survey(
     *,
     axes: Axes | Sequence[Axes] | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: Any = None,
+    figsize: Size = None,
+    style: Style = None,
 ) -> Figure:
     """Draw an outcome of a survey.
 
@@ -45,10 +45,8 @@ def plot_survey(
     survey : Survey
     outcome : str, optional
         By default the first.
-    axes : Axes, optional
-        Drawn on; for samples alone over several parameters as many axes as there are parameters.
-    legend, figsize, style
-        As for `contvines.plots.diagram.plot_diagram`.
+    axes, legend, figsize, style
+        As for `contvines.plots.diagram.plot_diagram`; samples alone need as many axes as there are uncertain parameters.
 
     Raises
     ------
@@ -75,8 +73,7 @@ def plot_survey(
             _curve(panel, survey, name, along[0])
         else:
             heights = _map(figure, panel, survey, name, along)
-        handles = panel.get_legend_handles_labels()[0]
-        place_legend(panel, handles, legend, own)
+        place_legend(panel, None, legend, own)
         counts = {"failed": survey.failed, "known in part": survey.partly}
         said = [f"{count} of {len(survey.plan)} systems {what}" for what, count in counts.items() if count]
         if said:
@@ -100,17 +97,12 @@ def _apart(figure: Figure, texts: list[Text]) -> None:
             kept.append(box)
 
 
-def _panels(
-    axes: Axes | Sequence[Axes] | None, count: int, figsize: tuple[float, float] | None
-) -> tuple[Figure, list[Axes]]:
+def _panels(axes: Axes | Sequence[Axes] | None, count: int, figsize: Size) -> tuple[Figure, list[Axes]]:
     """The axes given, or those of a new figure, side by side."""
     if axes is not None:
-        given = list(np.atleast_1d(np.asarray(axes, dtype=object)))
-        if len(given) != count:
-            raise ValueError(f"axes: {count} of them are needed, not {len(given)}")
-        return given[0].get_figure(root=True), given
+        return given_axes(axes, (count,), "this survey is drawn on")
     if count == 1:
-        figure, one = new_axes(None, figsize=figsize)
+        figure, one = new_axes(None, figsize)
         return figure, [one]
     figure = new_figure(figsize=figsize or (3.2 * count + 1.0, 3.6))
     return figure, list(figure.subplots(1, count, sharey=True))
@@ -123,7 +115,7 @@ def _fit(figure: Figure) -> None:
         if axes.get_ylabel():
             axes.set_ylabel(_upright(axes, axes.get_ylabel().replace("\n", " ")))
         if axes.get_xlabel():
-            axes.set_xlabel(_across(axes, axes.get_xlabel()))
+            axes.set_xlabel(_broken(axes, axes.get_xlabel(), axes.bbox.width))
     settle(figure)
     thin_ticks(*figure.axes)
 
@@ -144,24 +136,13 @@ def label_of(survey: Survey, name: str) -> str:
 
 def _upright(axes: Axes, label: str) -> str:
     """A label that goes upward, on as many lines as the height of the axes asks for."""
-    from matplotlib import rcParams
-    from matplotlib.font_manager import FontProperties
-
-    settings: Any = rcParams
-    size = FontProperties(size=settings["axes.labelsize"]).get_size_in_points()
-    height = axes.get_window_extent().height / axes.get_figure(root=True).dpi * 72.0  # type: ignore[union-attr]
-    return _broken(label, int(height / (0.56 * size)))
+    return _broken(axes, label, axes.bbox.height)
 
 
-def _across(axes: Axes, label: str) -> str:
-    """A label that goes across, on as many lines as the width of the axes asks for."""
-    wide = axes.get_window_extent().width / axes.get_figure(root=True).dpi * 72.0  # type: ignore[union-attr]
-    return _broken(label, int(wide / (0.56 * float(axes.xaxis.label.get_fontsize()))))
-
-
-def _broken(label: str, room: int) -> str:
-    """Lines of at most so many letters; a unit stays with the word before it."""
-    lines = textwrap.wrap(label.replace(" [", "\u00a0["), max(12, room), break_on_hyphens=False)
+def _broken(axes: Axes, label: str, room: float) -> str:
+    """A label on lines that have room in so many pixels; a unit stays with the word before it."""
+    letters = int(room / pixels(axes) / (0.56 * float(axes.xaxis.label.get_fontsize())))
+    lines = textwrap.wrap(label.replace(" [", "\u00a0["), max(12, letters), break_on_hyphens=False)
     return "\n".join(lines).replace("\u00a0", " ")
 
 
@@ -178,9 +159,8 @@ def _curve(axes: Axes, survey: Survey, name: str, over: str) -> None:
         part = survey.notes != ""
         axes.plot(x[~part], values[~part], "o", color=BLUE, markersize=3.5)
         if np.any(part & np.isfinite(values)):
-            axes.plot(
-                x[part], values[part], "o", mfc="white", mec=BLUE, markersize=3.5, label="known in part"
-            )
+            look: dict[str, Any] = {"mfc": "white", "mec": BLUE, "markersize": 3.5}
+            axes.plot(x[part], values[part], "o", label="known in part", **look)
     axes.set_xlabel(label_of(survey, over))
     axes.set_ylabel(_upright(axes, label_of(survey, name)))
 
@@ -202,9 +182,8 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     x, y = (survey.plan.axes[n] for n in along)
     values = survey.columns[name]
     if survey.plan.samples:
-        values = np.where(
-            np.isnan(values).all(axis=-1), np.nan, np.nanmax(np.nan_to_num(values, nan=-np.inf), axis=-1)
-        )
+        largest = np.nan_to_num(values, nan=-np.inf).max(axis=-1)
+        values = np.where(np.isnan(values).all(axis=-1), np.nan, largest)
     shown = np.ma.masked_invalid(values.T)
     colours = axes.pcolormesh(x, y, shown, cmap="viridis", shading="nearest", rasterized=True)
     bar = figure.colorbar(colours, ax=axes)
@@ -219,14 +198,11 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
         heights = list(axes.clabel(lines, fmt="%.4g", fontsize="x-small", inline=False))
         for text in heights:
             text.set_path_effects([withStroke(linewidth=3.0, foreground="0.25")])
-    marks = {
-        "failed": (survey.lost, {"marker": "x", "color": RED}),
-        "known in part": (
-            (survey.notes != "") & ~survey.lost,
-            {"marker": "o", "mfc": "none", "mec": "white"},
-        ),
-    }
-    for label, (which, look) in marks.items():
+    part = (survey.notes != "") & ~survey.lost
+    marks: list[tuple[str, np.ndarray, dict[str, Any]]]
+    marks = [("failed", survey.lost, {"marker": "x", "color": RED})]
+    marks += [("known in part", part, {"marker": "o", "mfc": "none", "mec": "white"})]
+    for label, which, look in marks:
         here = np.argwhere(which.reshape(*survey.plan.shape[:2], -1).any(axis=-1))
         if len(here):
             axes.plot(x[here[:, 0]], y[here[:, 1]], label=label, linestyle="none", **look)
@@ -236,9 +212,7 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     return heights
 
 
-def _samples(
-    survey: Survey, name: str, axes: Axes | Sequence[Axes] | None, figsize: tuple[float, float] | None
-) -> Figure:
+def _samples(survey: Survey, name: str, axes: Axes | Sequence[Axes] | None, figsize: Size) -> Figure:
     drawn = survey.plan.samples
     figure, panels = _panels(axes, len(drawn), figsize)
     for panel, (parameter, values) in zip(panels, drawn.items(), strict=True):

@@ -1,13 +1,15 @@
 """A brute-force sweep as dots, over the continued branches if there are any."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..continuation.hints import hinting
-from .diagram import LOW, draw_diagram
-from .figures import new_axes, settle, styled, thin_ticks
+from .diagram import draw_diagram
+from .figures import LOW, Size, Style, new_axes, settle, styled, thin_ticks
 from .legends import NARROW, Key, draw_legend
 from .style import axis_label
 
@@ -26,19 +28,19 @@ WANDERING = "#d95f02"
 def plot_sweep(
     points: Dots,
     parameter: str,
-    graph: "Graph | None" = None,
+    graph: Graph | None = None,
     measure: str = "B",
     *,
     others: Dots = (),
     wandering: Dots = (),
     bands: Sequence[Band] = (),
-    axes: "Axes | None" = None,
+    axes: Axes | None = None,
     legend: bool | str = True,
-    figsize: tuple[float, float] | None = None,
-    style: str | Mapping[str, Any] | None = None,
+    figsize: Size = None,
+    style: Style = None,
     units: Mapping[str, str] | None = None,
     notation: Mapping[str, str] | None = None,
-) -> "Figure":
+) -> Figure:
     """Draw the attractors of a sweep.
 
     Parameters
@@ -51,9 +53,7 @@ def plot_sweep(
     others : the same at other impacts, drawn lighter.
     wandering : the same of motions that do not recur (modulated, chaotic).
     bands : (parameter value, lowest, mean, highest) of the largest responses per forcing period of modulated motions.
-    axes : drawn on; without, a new figure of `figsize` inches.
-    legend : whether, or where, as in :func:`contvines.plots.diagram.plot_diagram`.
-    style : a style or rcParams of matplotlib's that come before the package's.
+    axes, legend, figsize, style : as for :func:`contvines.plots.diagram.plot_diagram`.
     units : of the parameter and the measure by name, where they have some.
     notation : labels of axes by name of parameter or measure; the graph's by default.
     """
@@ -64,7 +64,7 @@ def plot_sweep(
     size = 2.4 if measure == "B" else 3.0
     own = axes is None
     with styled(style):
-        figure, axes = new_axes(axes, figsize=figsize)
+        figure, axes = new_axes(axes, figsize)
         above = 3.5 if measure != "B" or graph is not None else 2.0
         dark = "0.45" if measure == "B" and graph is None else "black"
         narrow = own and figure.get_size_inches()[0] < NARROW  # the axis says what it is of
@@ -86,7 +86,7 @@ def plot_sweep(
             else axis_label(measure, low, said.get(measure), notation)
         )
         if graph is not None:
-            draw_diagram(axes, graph, parameter, measure, own=own, legend=legend)
+            draw_diagram(axes, graph, parameter, measure, own, legend=legend)
             return figure
         draw_legend(axes, Key(), legend, own, np.empty((0, 2)))
         if own:
@@ -95,17 +95,16 @@ def plot_sweep(
     return figure
 
 
-def draw_bands(axes: "Axes", bands: Sequence[Band], color: str = WANDERING) -> None:
+def draw_bands(axes: Axes, bands: Sequence[Band], color: str = WANDERING) -> None:
     """Bars from the lowest to the highest response per forcing period of modulated motions, with their mean."""
     if len(bands):
         values, low, mean, high = zip(*bands)
-        axes.vlines(
-            values, low, high, color=color, alpha=0.35, lw=2.5, zorder=1.5, label="modulated, by period"
-        )
+        look = {"color": color, "alpha": 0.35, "lw": 2.5, "zorder": 1.5}
+        axes.vlines(values, low, high, label="modulated, by period", **look)
         axes.plot(values, mean, "_", color=color, markersize=4, zorder=1.6)
 
 
-def _dots(axes: "Axes", dots: Dots, label: str, **style: Any) -> None:
+def _dots(axes: Axes, dots: Dots, label: str, **style: Any) -> None:
     """One kind of dots; none, and no entry in the legend, where there are none."""
     if len(dots):
         values = np.array(dots, float).reshape(-1, 2)

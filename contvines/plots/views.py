@@ -9,23 +9,14 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..graph.graph import Graph
     from .curves import Curve
 
-RUNAWAY = (
-    6.0  # a range that many times wider than where special points and most points lie is not shown whole
-)
+RUNAWAY = 6.0  # a range so many times wider than where special points and most points lie is not shown whole
 MOST = (4.0, 96.0)  # per cent: where most points lie
 
 
 def frame(
-    axes: Axes,
-    graph: Graph,
-    curves: list[Curve],
-    x: str,
-    y: str,
-    xlim: tuple[float, float] | None,
-    ylim: tuple[float, float] | None,
+    axes: Axes, curves: list[Curve], xlim: tuple[float, float] | None, ylim: tuple[float, float] | None
 ) -> None:
     """Set the limits: the asked ones, else all that is drawn but the far ends of branches that run away.
 
@@ -42,13 +33,9 @@ def frame(
         fit_height(axes)
         return
     drawn = [v for curve in curves for _, ys in curve.strands() for v in ys[np.isfinite(ys)]]
-    marks = [
-        float(v)
-        for line in axes.lines
-        if len(np.atleast_1d(line.get_ydata())) == 1
-        for v in np.atleast_1d(np.asarray(line.get_ydata(), dtype=float))
-    ]
-    limits = _without_runaways(np.array(drawn), np.array([v for v in marks if np.isfinite(v)]))
+    heights = [np.atleast_1d(np.asarray(line.get_ydata(), dtype=float)) for line in axes.lines]
+    marks = [float(one[0]) for one in heights if len(one) == 1 and np.isfinite(one[0])]
+    limits = _without_runaways(np.array(drawn), np.array(marks))
     if limits is not None and axes.get_yscale() == "linear":
         axes.set_ylim(*limits)
 
@@ -92,6 +79,5 @@ def _without_runaways(values: np.ndarray, marks: np.ndarray) -> tuple[float, flo
     room = high - low
     if not room > 0.0 or float(np.ptp(values)) <= RUNAWAY * room:
         return None
-    return max(low - 0.5 * room, float(values.min()) - 0.04 * room), min(
-        high + 0.5 * room, float(values.max()) + 0.04 * room
-    )
+    least, most = float(values.min()), float(values.max())
+    return max(low - 0.5 * room, least - 0.04 * room), min(high + 0.5 * room, most + 0.04 * room)

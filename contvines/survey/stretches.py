@@ -67,7 +67,7 @@ class Top(NamedTuple):
 
     response: float
     value: float
-    index: int
+    place: int
     stretch: Stretch
 
 
@@ -93,7 +93,7 @@ def at_points(stretch: Stretch) -> Top:
 
 def _fall(top: Top) -> float:
     """How much the response falls from a point to the lower of its neighbours."""
-    at = top.index - top.stretch.first
+    at = top.place - top.stretch.first
     near = top.stretch.response[max(at - 1, 0) : at + 2]
     return top.response - float(np.nanmin(near)) if np.all(np.isfinite(near)) else np.inf
 
@@ -102,7 +102,7 @@ def _refined(top: Top) -> Top:
     """With what lies between the points."""
     from scipy.optimize import minimize_scalar
 
-    stretch, at = top.stretch, top.index - top.stretch.first
+    stretch, at = top.stretch, top.place - top.stretch.first
     a, b = max(at - 1, 0), min(at + 1, len(stretch.values) - 1)
     low, high = sorted((float(stretch.values[a]), float(stretch.values[b])))
     solve = _solver(stretch, a, b) if low < high else None
@@ -126,7 +126,7 @@ def inside(top: Top, part: float) -> tuple[np.ndarray, float, float]:
     The largest response often stands at the very end of a stretch, where the motion touches a wall or loses its stability: the least disturbance
     leads away from there, and a simulation that begins there proves nothing.
     """
-    stretch, at = top.stretch, top.index - top.stretch.first
+    stretch, at = top.stretch, top.place - top.stretch.first
     values, response, level = stretch.values, stretch.response, (1.0 - part) * top.response
     below = np.flatnonzero(~(response >= level))
     for outer in (*below[below < at][-1:].tolist(), *below[below > at][:1].tolist()):

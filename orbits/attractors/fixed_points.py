@@ -54,6 +54,7 @@ def fixed_point(
         if not length < np.inf:
             return None
         change *= min(1.0, LONGEST / max(length, LONGEST))
+        there = x
         for _ in range(SHORTER):
             there = x + change
             if hard.any():

@@ -196,7 +196,8 @@ def attracted(
         orbit = returning(run, longest, SETTLED)
         if orbit is not None:
             return PageAttractor(machine, params, "periodic", orbit, run, simulator.state)
-    for attempt in range(patience + 1):
+    attempt = 0
+    while True:
         skip(stepper, transient * 2**attempt - (0 if attempt else early))
         run = look(stepper, max_period)
         orbit = returning(run, max_period, RETURNED if attempt else SETTLED)
@@ -205,10 +206,10 @@ def attracted(
         if run.held or not (run.events or machine.forced):
             kind = "rest" if run.held or still(run) else "aperiodic"
             return PageAttractor(machine, params, kind, None, run, simulator.state)
-        if (run.chatters and attempt) or stepper.count > ENOUGH:
-            break
-    kind = "chatter" if run.chatters else "aperiodic"
-    return PageAttractor(machine, params, kind, None, run, simulator.state)
+        if attempt == patience or (run.chatters and attempt) or stepper.count > ENOUGH:
+            kind = "chatter" if run.chatters else "aperiodic"
+            return PageAttractor(machine, params, kind, None, run, simulator.state)
+        attempt += 1
 
 
 def still(run: PageTrajectory) -> bool:
@@ -413,8 +414,9 @@ def described(found: PageAttractor) -> tuple[PageAttractor, dict[str, float]]:
 
 def dots(found: PageAttractor, measures: Mapping[str, float]) -> list[float]:
     """What a picture shows: the page's response, or the approach speed of every impact; of a machine without walls the first state's extremes."""
-    if found.model.response in measures and found.model.response != "approach_speed":
-        return [measures[found.model.response]]
+    response = found.model.response
+    if response is not None and response in measures and response != "approach_speed":
+        return [measures[response]]
     if any(isinstance(contact, Wall) for contact in found.model.contacts):
         return found.approaches
     first = found.model.states[0]

@@ -134,7 +134,7 @@ class Place(NamedTuple):
     problem: CycleProblem
     u: np.ndarray
     p: float
-    index: int
+    margin: int
     orbit: Orbit
     edits: list[Edit]
     known: dict[int, Begun]

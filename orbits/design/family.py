@@ -203,7 +203,7 @@ class Family:
         if word is None:
             return None
         reached, step = 0.0, 1.0
-        while reached < 1.0:
+        while True:
             goal = min(reached + step, 1.0)
             there = params if goal == 1.0 else here + goal * (params - here)
             orbit = polish(Orbit(model, word, periods, nodes, there))
@@ -212,5 +212,6 @@ class Family:
                 if step < NARROW:
                     return None
                 continue
+            if goal == 1.0:
+                return orbit
             nodes, reached = orbit.nodes, goal
-        return orbit

@@ -16,6 +16,7 @@ import numpy as np
 
 from orbits.integrators import expressions
 from orbits.integrators.expressions import Layout, in_order, rebuilt, variables_of
+from orbits.integrators.protocol import Crossing
 from orbits.symbols import Symbol
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ class Watch:
 
     def __init__(self, layout: Layout, rates: Sequence[Symbol], functions: Sequence[Symbol]) -> None:
         heyoka = _heyoka()
-        self._found: list[tuple[float, int, np.ndarray]] = []
+        self._found: list[Crossing] = []
         variables = _variables(layout)
         system = list(zip(variables, lowered(layout, rates)))
         found = self._found
@@ -178,9 +179,7 @@ class Watch:
         self._numbers = len(self._integrator.pars)
         self._done = heyoka.taylor_outcome.time_limit
 
-    def __call__(
-        self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray
-    ) -> list[tuple[float, int, np.ndarray]]:
+    def __call__(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> list[Crossing]:
         """(clock, which function, state) of every rise through zero between `begin` and `end`."""
         ta = self._integrator
         self._found.clear()

@@ -14,13 +14,13 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq, minimize_scalar
 
 from orbits.integrators.expressions import Layout, Values, constant, derivatives, variable, written
+from orbits.integrators.protocol import Crossing
 from orbits.symbols import Symbol
 
 RELATIVE, ABSOLUTE = 1e-13, 1e-14  # error of a step
 BETWEEN = np.linspace(0.0, 1.0, 13)[1:]  # parts of a step at which functions are sampled
 MOST_STEPS = 100_000
 LANES = 1  # flights are integrated one by one
-Crossing = tuple[float, int, np.ndarray]
 
 
 class _Path:

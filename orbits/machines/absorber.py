@@ -49,8 +49,8 @@ class Absorber(Model):
     frequency: float = 1.0
     contact_time: float | None = field(default=None, repr=False)
 
-    name: ClassVar[str] = "absorber"
-    default_parameter: ClassVar[str] = "amplitude"
+    name = "absorber"
+    default_parameter = "amplitude"
     driven_by: ClassVar[str] = "amplitude"
     closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt", "susu")
     table: ClassVar[tuple[Parameter, ...]] = (

@@ -30,16 +30,16 @@ from orbits.machines.rest import Rest, rest_of
 class Model(Mechanics):
     """Base of the machines; see the contract at the top of `orbits.machines.base`."""
 
-    name: ClassVar[str]
-    flow: ClassVar[str] = "native"
+    name: str
+    flow: str = "native"
     """What happens between two events: a name in `orbits.flows.catalogue`."""
-    forced: ClassVar[bool] = True
+    forced: bool = True
     table: ClassVar[tuple[Parameter, ...]]
     default_measure: ClassVar[str] = "B"
     own_measures: ClassVar[tuple[str, ...]] = ()
     swept_measure: ClassVar[str] = "B"
     """What the picture of a sweep shows: ``B`` at every impact, or a measure of the whole motion."""
-    patience: ClassVar[int] = 0
+    patience: int = 0
     """How often a start that is looked for by simulation may be simulated four times longer."""
     closed_words: ClassVar[tuple[str, ...]] = ()
     """Words of one forcing period of whose orbits `start_nodes` has closed forms."""
@@ -48,11 +48,11 @@ class Model(Mechanics):
     """What may be given: the table, and names that stand for several of its numbers."""
 
     # derived from the table
-    default_parameter: ClassVar[str]
-    node_names: ClassVar[tuple[str, ...]]
-    node: ClassVar[int]
+    default_parameter: str
+    node_names: tuple[str, ...]
+    node: int
     rest: ClassVar[Rest]
-    parameter_names: ClassVar[tuple[str, ...]]
+    parameter_names: tuple[str, ...]
     limits: ClassVar[Mapping[str, Limits]]
 
     def __init_subclass__(cls) -> None:

@@ -81,8 +81,8 @@ class Cavity(Sided):
     frequency: float = 1.0
     contact_time: float | None = field(default=None, repr=False)
 
-    name: ClassVar[str] = "cavity"
-    default_parameter: ClassVar[str] = "amplitude"
+    name = "cavity"
+    default_parameter = "amplitude"
     driven_by: ClassVar[str] = "amplitude"
     table: ClassVar[tuple[Parameter, ...]] = (
         Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55),

@@ -85,13 +85,13 @@ class Coupled(Model):
     slope: float = 0.0
     contact_time: float | None = field(default=None, repr=False)
 
-    name: ClassVar[str] = "coupled"
+    name = "coupled"
     moving_cavity: ClassVar[bool] = True
     default_measure: ClassVar[str] = "max_abs_q1"
-    default_parameter: ClassVar[str] = "frequency"
+    default_parameter = "frequency"
     driven_by: ClassVar[str] = "forcing"
     swept_measure: ClassVar[str] = "max_abs_q1"  # what a frequency response shows
-    patience: ClassVar[int] = 2  # a light absorber's oscillator settles over thousands of periods
+    patience = 2  # a light absorber's oscillator settles over thousands of periods
     closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt")
     younger: ClassVar[tuple[str, ...]] = ("slope",)
     table: ClassVar[tuple[Parameter, ...]] = (

@@ -34,7 +34,7 @@ class Mechanics(Varying):
     """The parameter that drives the machine: an orbit must have it, a machine need not."""
 
     if TYPE_CHECKING:
-        parameter_names: ClassVar[tuple[str, ...]]
+        parameter_names: tuple[str, ...]
 
         @classmethod
         def parameter(cls, name: str) -> Parameter: ...
@@ -45,10 +45,9 @@ class Mechanics(Varying):
         j = cls.parameter_names.index(name)
         return params[j] if params.ndim == 1 else params[..., j]
 
-    @classmethod
-    def phase_speed(cls, params: np.ndarray) -> Any:
+    def phase_speed(self, params: np.ndarray) -> Any:
         """How fast the phase grows, in radians per unit of the machine's own time; shapes follow `params` (..., P)."""
-        return cls.column(params, cls.phase_rate)
+        return self.column(params, self.phase_rate)
 
     def shakes(self, name: str) -> bool:
         """Whether a parameter says how strongly the machine is shaken."""
@@ -136,18 +135,16 @@ class Mechanics(Varying):
         )  # a far wall may be out of reach
         return length if 0.0 < length < math.inf else 1.0, rate if 0.0 < rate < math.inf else 1.0
 
-    @classmethod
-    def middle(cls, params: np.ndarray) -> Reals:
+    def middle(self, params: np.ndarray) -> Reals:
         """w in the middle between the walls, about which mirror images are taken; shapes follow `params` (..., P)."""
-        left, right = cls.walls(params)
+        left, right = self.walls(params)
         return 0.5 * (left + right)
 
-    @classmethod
-    def image(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+    def image(self, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
         """Nodes (..., L, n) of events `codes` mirrored about the middle between the walls, at the same phases."""
         image = -nodes
         image[..., 0] = nodes[..., 0]
-        middle = np.asarray(cls.middle(params))
+        middle = np.asarray(self.middle(params))
         if middle.any():
             image[..., 1] += np.where(codes < 2, 0.0, 2.0 * middle[..., np.newaxis])
         return image

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,10 +12,10 @@ from orbits.starts.find import polish
 from orbits.words import Word
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from orbits.orbit import Orbit
 
 
-def closed_orbits(model: Model, params: np.ndarray, made: Callable[..., Any]) -> Iterator[Any]:
+def closed_orbits(model: Model, params: np.ndarray, made: type[Orbit]) -> Iterator[Orbit]:
     """The real ones among rest and the orbits of `Model.closed_words`, stable or not.
 
     Parameters

@@ -226,7 +226,7 @@ def on_border(
         equations.kernels.examine(equations, found, p, equations.scratch, row)
         return found, float(row[2 * equations.n_multipliers + margin])
 
-    before, q = at(p)[1], p + 1e-6 * max(abs(p), 1e-3)
+    before, here, q = at(p)[1], np.nan, p + 1e-6 * max(abs(p), 1e-3)
     for _ in range(SECANTS):
         u, here = at(q)
         if not np.isfinite(here) or here == before:

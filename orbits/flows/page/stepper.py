@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,9 +15,11 @@ from orbits.machines.page.machine import Machine
 from orbits.machines.page.singular import singular_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
+    from orbits.integrators.expressions import Values
+    from orbits.integrators.protocol import Run, Watch
     from orbits.machines.page.patterns import Guard
+
+    Tools = tuple[Run, Values, list[Guard], np.ndarray, Watch]
 
 TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
@@ -53,9 +55,9 @@ class Stepper:
         self.count = 0  # events so far
         self._last = (
             -1
-        )  # the friction that has turned, stuck or slipped, where another may do so at the same instant
-        self._cache: dict[tuple[int, ...], tuple[Any, Any, Any, np.ndarray, Any]] = {}
-        self._pushes: dict[tuple[int, tuple[int, ...]], Any] = {}
+        )  # the friction that has turned, stuck or slipped, where another may at the same instant
+        self._cache: dict[tuple[int, ...], Tools] = {}
+        self._pushes: dict[tuple[int, tuple[int, ...]], Values] = {}
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
         self._touched = {  # frictions and switches whose sign an impact may change, and where the impact's map tells it
             w: [(j, places[j]) for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
@@ -134,7 +136,7 @@ class Stepper:
                 self._impact(j)
 
     # ------------------------------------------------------------------ laws
-    def _tools(self, modes: tuple[int, ...]) -> tuple[Any, Any, Any, np.ndarray, Any]:
+    def _tools(self, modes: tuple[int, ...]) -> Tools:
         """(run, guards, list of guards, numbers, watch) of a mode."""
         found = self._cache.get(modes)
         if found is None:
@@ -148,7 +150,7 @@ class Stepper:
             )
         return found
 
-    def _guards(self, modes: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, Any]:
+    def _guards(self, modes: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, list[Guard]]:
         """Values and rates of the guards in a mode, at the state, and the guards."""
         _, values, guards, numbers, _ = self._tools(modes)
         row = values.one(self.state, self.clock, numbers)
@@ -285,7 +287,7 @@ class Stepper:
                 return f"the motion of {name} cannot go on: {found}; start elsewhere, or write the formula so that it is a number there"
         return f"the motion of {name} left the range of numbers: give parameters and a start of moderate size"
 
-    def _leave(self, watch: Callable[..., Any], numbers: np.ndarray, end: float) -> None:
+    def _leave(self, watch: Watch, numbers: np.ndarray, end: float) -> None:
         """Leave a surface on which a quantity starts without a rate, unless something else happens first."""
         if not end > self.clock:
             return
@@ -298,7 +300,7 @@ class Stepper:
                 self.state, self.clock = before, begin
                 return
 
-    def _rise(self, watch: Callable[..., Any], numbers: np.ndarray, end: float) -> None:
+    def _rise(self, watch: Watch, numbers: np.ndarray, end: float) -> None:
         """Go to the top of a short hop: its end is then looked for from there, for beside a zero at the very beginning another one may be lost."""
         before, begin = self.state.copy(), self.clock
         for _ in range(HALVINGS):

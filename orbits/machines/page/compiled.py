@@ -10,6 +10,7 @@ import numpy as np
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
 from orbits.integrators.engine import engine
 from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
+from orbits.integrators.protocol import Flight, Flights, Run, Watch
 from orbits.machines.page.energies import friction_power, impact_mass
 from orbits.machines.page.patterns import Equations, PatternKey
 from orbits.symbols import Symbol
@@ -36,21 +37,21 @@ class Compiled:
             self._made[key] = make()
         return self._made[key]
 
-    def flight(self, key: PatternKey, active: tuple[int, ...]):
+    def flight(self, key: PatternKey, active: tuple[int, ...]) -> Flight:
         """The flow with its sensitivities."""
         return self._once(
             ("flight", key, active),
             lambda: self.engine.Flight(self.layout, self.equations.pattern(key).clock_rates, active),
         )
 
-    def flights(self, key: PatternKey, active: tuple[int, ...]):
+    def flights(self, key: PatternKey, active: tuple[int, ...]) -> Flights:
         """The same, several at once."""
         return self._once(
             ("flights", key, active),
             lambda: self.engine.Flights(self.layout, self.equations.pattern(key).clock_rates, active),
         )
 
-    def run(self, key: PatternKey):
+    def run(self, key: PatternKey) -> Run:
         """The flow up to the first guard that falls to zero."""
         pattern = self.equations.pattern(key)
         return self._once(
@@ -58,7 +59,7 @@ class Compiled:
             lambda: self.engine.Run(self.layout, pattern.clock_rates, [g.value for g in pattern.guards]),
         )
 
-    def watch(self, key: PatternKey):
+    def watch(self, key: PatternKey) -> Watch:
         """The flow with every local minimum of every guard."""
         pattern = self.equations.pattern(key)
         return self._once(
@@ -68,7 +69,7 @@ class Compiled:
             ),
         )
 
-    def extremes(self, key: PatternKey):
+    def extremes(self, key: PatternKey) -> Watch:
         """The flow with every extreme of every state: rises of the rates are minima, rises of minus the rates maxima."""
         rates = self.equations.pattern(key).clock_rates
         return self._once(
@@ -123,7 +124,7 @@ class Compiled:
 
         return self._once(("extreme", key, active), make)
 
-    def _zero(self, letter: Letter, sign: int, key: PatternKey):
+    def _zero(self, letter: Letter, sign: int, key: PatternKey) -> Symbol:
         e, j = self.equations, letter.contact
         if letter.kind == HIT:
             return e.gap[j]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -71,7 +71,7 @@ class Machine(Varying):
 
     flow = "page"
 
-    patience: ClassVar[int] = 2
+    patience = 2
 
     @hinting
     def __init__(
@@ -99,6 +99,9 @@ class Machine(Varying):
         self.parameter_names = tuple(self.parameters)
         self.starts = names.check_starts(starts, self.states)
         self.phase_rate, self.contacts = phase_rate, tuple(contacts)
+        self.forced = phase_rate is not None
+        self.default_parameter = phase_rate or self.parameter_names[0]
+        self.node_names = ("phase" if self.forced else "duration", *self.states)
         self.page: Page = page_of(motion)
         self.equations = Equations(
             self.states, self.parameter_names, phase_rate, motion, self.contacts, self._units.factors, energy
@@ -134,11 +137,6 @@ class Machine(Varying):
 
     # ------------------------------------------------------------------ facts
     @property
-    def forced(self) -> bool:
-        """Whether a forcing sets the clock."""
-        return self.phase_rate is not None
-
-    @property
     def size(self) -> int:
         """Number of states."""
         return len(self.states)
@@ -165,11 +163,6 @@ class Machine(Varying):
     def load_names(self) -> tuple[str, ...]:
         """Measures of its contacts' forces and energies."""
         return load_names(self.equations, self.parameters)
-
-    @property
-    def default_parameter(self) -> str:
-        """The parameter that varies when none is named: the forcing's frequency, else the first."""
-        return self.phase_rate or self.parameter_names[0]
 
     @cached_property
     def _frictions(self) -> list[int]:
@@ -279,11 +272,6 @@ class Machine(Varying):
             else:
                 modes.append(STUCK if value == 0.0 else (1 if value > 0.0 else -1))
         return tuple(modes)
-
-    @property
-    def node_names(self) -> tuple[str, ...]:
-        """Unknowns of an event: the phase, or the duration of the flight that follows, and the states after it."""
-        return ("phase" if self.forced else "duration", *self.states)
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
         """Nothing is known in closed form."""

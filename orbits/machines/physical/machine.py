@@ -201,9 +201,13 @@ class Physical(Model):
         """The machine's quantities by name, counted in `units`."""
         return dict(zip(self.amount_names, (float(value) for value in self.counts)))
 
-    @cached_property
+    @property
     def units(self) -> dict[str, str]:
         """Units of quantities and measures by name; plain numbers have none."""
+        return self._all_units
+
+    @cached_property
+    def _all_units(self) -> dict[str, str]:
         from contvines.shared.modulation import BAND
         from orbits.machines.measures import KINDS, names
 

@@ -1,5 +1,7 @@
 """A special point whose place rounding leaves open is not told."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,7 @@ def test_an_error_longer_than_the_interval(error, told, monkeypatch):
 
     def vaguely(self, *args, **options):
         found = search(self, *args, **options)
-        return [e._replace(error=error) if e.kind == "branch-point" else e for e in found]
+        return [replace(e, error=error) if e.kind == "branch-point" else e for e in found]
 
     monkeypatch.setattr(SegmentSearch, "search", vaguely)
     monkeypatch.setattr("contvines.bifurcation.branch_jumps.inexact", lambda segment, event: False)
