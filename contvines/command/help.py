@@ -99,7 +99,7 @@ def _cite() -> str:
     author = about["Author"] or about["Author-email"] or "The contvines developers"
     return f"""@software{{contvines,
   title = {{contvines: continuation and bifurcation analysis of motions with impacts and friction}},
-  author = {{{{{author}}}}}, version = {{{about["Version"]}}}
+  author = {{{{{author}}}}}, year = {{2026}}, version = {{{about["Version"]}}}
 }}
 The model of the absorbers: Youssef, Karoui, Leine, doi:10.48550/arXiv.2505.04420."""
 

@@ -31,7 +31,7 @@ def read_study(path: str | Path) -> Study:
             f'"{path.name}:NAME"; contvines new flow writes one.'
         )
     try:
-        return study_of(path.read_text(encoding="utf-8"), path)
+        return study_of(path.read_text(encoding="utf-8-sig"), path)
     except FileNotFoundError:
         near = did_you_mean(path.name, (other.name for other in path.parent.glob("*.toml")))
         why = f"there is no such file{near}; give the path of a TOML study."
@@ -41,9 +41,11 @@ def read_study(path: str | Path) -> Study:
         why = f"cannot be read ({error.strerror})."
     except UnicodeDecodeError:
         hint = (
-            " It is a database: commands that take a study want the .toml file." if is_database(path) else ""
+            " It is a database: commands that take a study want the .toml file."
+            if is_database(path)
+            else " Save it as UTF-8."
         )
-        why = f"this is not a TOML file (it is not text).{hint}"
+        why = f"this is not a TOML file (it is no text in UTF-8).{hint}"
     raise StudyError(f"{path}: {why}")
 
 

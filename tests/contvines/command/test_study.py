@@ -254,3 +254,14 @@ def test_words_of_many_thousand_events_are_read_in_linear_time():
 
 def test_a_sentence_is_cut_where_a_word_in_it_is_huge():
     assert len(sentence(ValueError("no orbit " + "LR" * 20_000 + " here"))) < 300
+
+
+def test_files_of_windows_editors_are_read(tmp_path):
+    text = (Path(__file__).parents[3] / "examples" / "friction.toml").read_text(encoding="utf-8")
+    plain, marked, wide = (tmp_path / name for name in ("plain.toml", "marked.toml", "wide.toml"))
+    plain.write_bytes(text.encode())
+    marked.write_bytes(text.replace("\n", "\r\n").encode("utf-8-sig"))
+    wide.write_bytes(text.encode("utf-16"))
+    assert read_study(marked).parameters == read_study(plain).parameters
+    with pytest.raises(StudyError, match="Save it as UTF-8"):
+        read_study(wide)
