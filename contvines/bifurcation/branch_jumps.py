@@ -53,7 +53,7 @@ def inexact(segment: Segment, event: Located) -> bool:
         # no better than the rounding of its matrix allows
         point = event.point
         vague = event.error > singular_within(segment.engine, point.u, point.p, point.tangent)
-    if event.kind == "astray" or vague:
+    if event.astray or vague:
         return True
     residual = event.point.residual  # sizes are one at least
     return residual > solved and residual > solved * segment.engine.size(event.point.u)

@@ -25,7 +25,7 @@ from .segment import Segment
 
 #: sort of multipliers -> kinds at which one of them passes the circle
 PASSED_AT = (
-    ("fold", "branch-point", "astray"),
+    ("fold", "branch-point"),
     ("period-doubling", "symmetry-breaking"),
     ("neimark-sacker", "hopf"),
 )
@@ -53,10 +53,9 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     if not engine.scaled and engine.detection == "map" and side is not None and plus % 2 != side:
         # det(F_u) keeps its sign where one comes back from infinity, as where an event of a virtual orbit grazes
         return not (minus == -plus and pairs == 0 and segment.length <= 2.0 * engine.settings.resolution)
-    missing = any(
-        abs(change) > sum(e.kind in kinds for e in found)
-        for change, kinds in zip((plus, minus, pairs), PASSED_AT)
-    )
+    known = [sum(e.kind in kinds for e in found) for kinds in PASSED_AT]
+    known[0] += sum(e.astray for e in found)
+    missing = any(abs(change) > number for change, number in zip((plus, minus, pairs), known))
     return missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)
 
 

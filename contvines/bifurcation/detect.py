@@ -119,7 +119,7 @@ class Detector(SegmentSearch):
                 return [*events, replace(leaping, position=float(i))]
             if leaping is not None:
                 found = sorted([*found, leaping], key=lambda e: e.position)
-            found = [e for e in found if e.kind != "astray" and not self._of_rounding(e)]
+            found = [e for e in found if not (e.astray or self._of_rounding(e))]
             found = [replace(e, error=e.rounding) if e.rounding > e.error else e for e in found]
             found = self._within(segment, found)
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
@@ -161,7 +161,7 @@ class Detector(SegmentSearch):
             e
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
-            if e.kind != "astray"
+            if not e.astray
             and not self._placeless(e)
             and not (e.role is Role.SPECIAL and inexact(segment, e))
             and not (

@@ -47,6 +47,8 @@ class Located:
         Of the user function.
     rounding : float
         Of a border, how far rounding of its margins may move the parameter value: no sign of a leap, but part of the error.
+    astray : bool
+        It is no special point: the segment has led from one branch to another.
     """
 
     position: float
@@ -58,11 +60,15 @@ class Located:
     role: Role = Role.SPECIAL
     name: str = ""
     rounding: float = 0.0
+    astray: bool = False
 
     @classmethod
-    def at(cls, root: Root, kind: str, index: int = 0, role: Role = Role.SPECIAL, name: str = "") -> Located:
+    def at(
+        cls, root: Root, kind: str, index: int = 0, role: Role = Role.SPECIAL, astray: bool = False
+    ) -> Located:
         """What a located zero is; nobody has put it on its branch yet."""
-        return cls(root.position, kind, index, root.point, NOWHERE, root.error, role, name)
+        kind = "" if astray else kind
+        return cls(root.position, kind, index, root.point, NOWHERE, root.error, role, astray=astray)
 
     @property
     def ends_branch(self) -> bool:

@@ -183,8 +183,8 @@ class SegmentSearch:
                 at = test.symmetry.kind_at
                 kind = test.kind if at is None else at(root.point.u)
                 known = self.engine.many or segment.length <= self.engine.settings.resolution
-                kind = kind if known or singular(self.engine, root.point) else "astray"
-                events.append(Located.at(root, kind, index, Role.MEETING))
+                astray = not (known or singular(self.engine, root.point))
+                events.append(Located.at(root, kind, index, Role.MEETING, astray))
         return events
 
     # ------------------------------------------------------------------ what the ends of a segment do not tell

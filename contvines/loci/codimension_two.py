@@ -209,6 +209,18 @@ def solved(
     )
 
 
+#: kind -> critical pairs of multipliers
+PAIRS = {
+    "zero-hopf": 1,
+    "fold-neimark-sacker": 1,
+    "flip-neimark-sacker": 1,
+    "symmetry-breaking-neimark-sacker": 1,
+    "border-neimark-sacker": 1,
+    "double-hopf": 2,
+    "double-neimark-sacker": 2,
+}
+
+
 def _holds(kind: str, plane: Plane) -> bool:
     """Whether the multipliers at a solution are those that the name of the point says."""
     spectrum = plane.spectrum
@@ -216,8 +228,8 @@ def _holds(kind: str, plane: Plane) -> bool:
         return True
     edge = np.abs(spectrum.real) if plane.flow else np.abs(np.abs(spectrum) - 1.0)
     pairs = int(np.sum((edge < CRITICAL) & (spectrum.imag > APART)))
-    if kind.endswith("-neimark-sacker") or kind in ("zero-hopf", "double-hopf"):
-        return pairs >= (2 if kind.startswith("double") else 1)
+    if kind in PAIRS:
+        return pairs >= PAIRS[kind]
     doubles = {
         "bogdanov-takens": (0.0,),
         "resonance-1-1": (1.0, -1.0) if plane.problem.flip_kind == "symmetry-breaking" else (1.0,),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..bifurcation.kinds import CODIMENSION_TWO
 from .born import Candidate, born
 from .homoclinic import homoclinic_of
 from .layout import BRANCH
@@ -47,7 +48,7 @@ def leaving(point: PlanePoint, locus: Locus, bounds: tuple[float, float], over: 
                 )
                 for side in (-1.0, 1.0)
             ]
-    if point.kind == "double-border" or point.kind.startswith("border-"):
+    if (kind := CODIMENSION_TWO.get(point.kind)) is not None and kind.border:
         found += [
             Candidate(problem, problem.margin_kind(j), point.u, p, q, j, point.label) for j in point.margins
         ]

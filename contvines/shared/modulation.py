@@ -17,5 +17,9 @@ def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
     absorbers), either with ``, chaotic``; empty for a motion without a band, such as one that recurs."""
     if not math.isfinite(measures.get(BAND[1], math.nan)):
         return ""
-    strong = FEW <= measures.get(SILENT, 0.0) < 1.0
-    return f"{'strong' if strong else 'weak'} modulation{', chaotic' if chaotic else ''}"
+    return f"{'strong' if is_strong(measures) else 'weak'} modulation{', chaotic' if chaotic else ''}"
+
+
+def is_strong(measures: Mapping[str, float]) -> bool:
+    """Whether impacts stop and begin again."""
+    return FEW <= measures.get(SILENT, 0.0) < 1.0

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, modulation_of
+from contvines.shared.modulation import BAND, is_strong, modulation_of
 
 from ..graph.measures import default_measure
 from ..number_text import figures_in
@@ -162,7 +162,7 @@ def modulated(found: Findings) -> dict[str, float]:
         return {"modulated": 0.0, **dict.fromkeys((*BAND, "modulated_strong"), np.nan)}
     known = sum(b - a for a, b in gaps(found.graph)) - sum(b - a for a, b in _unknown_parts(found))
     top = max(met, key=lambda measures: measures[BAND[1]])
-    strong = [modulation_of(measures).startswith("strong") for measures in met]
+    strong = [is_strong(measures) for measures in met]
     return {
         "modulated": known / (high - low),
         **{name: top[name] for name in BAND},

@@ -39,7 +39,7 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
             turning = _near(segment, root.position, folds)
             # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
-                points.append(Located.at(root, _kind(segment, root)))
+                points.append(Located.at(root, "branch-point", astray=_astray(segment, root)))
     return points
 
 
@@ -64,7 +64,7 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
         if not passes_for_certain(segment, root.position):
             continue
         if alone(engine, root.point):
-            points.append(Located.at(root, "astray"))
+            points.append(Located.at(root, "", astray=True))
         elif not rounded or passes(segment, root.position):
             points.append(Located.at(root, "branch-point", test.index))
     return points
@@ -141,11 +141,10 @@ def _nearest(engine: Engine, row: np.ndarray) -> float:
     return float(np.nanmin(np.abs(sizes_by_sort(engine, row)[0]), initial=np.inf))
 
 
-def _kind(segment: Segment, root: Root) -> str:
-    """A branch point, or "astray" where it is none: the segment has led from one branch to another."""
+def _astray(segment: Segment, root: Root) -> bool:
+    """Whether the segment has led from one branch to another, so that there is no branch point."""
     engine = segment.engine
-    known = engine.many or segment.length <= engine.settings.resolution or singular(engine, root.point)
-    return "branch-point" if known else "astray"
+    return not (engine.many or segment.length <= engine.settings.resolution or singular(engine, root.point))
 
 
 def _near(segment: Segment, position: float, others: list[float]) -> bool:

@@ -30,6 +30,15 @@ _ROWS = (
     ("double-border", "BB", "two borders"),
     ("degenerate-border", "DB", "degenerate border"),
 )
+#: one more margin vanishes there
+_BORDERS = (
+    "border-fold",
+    "border-flip",
+    "border-symmetry-breaking",
+    "border-neimark-sacker",
+    "double-border",
+)
 CODIMENSION_TWO: dict[str, Kind] = {
-    name: Kind(name, label, text=text, marker="o", filled=False) for name, label, text in _ROWS
+    name: Kind(name, label, text=text, marker="o", filled=False, border=name in _BORDERS)
+    for name, label, text in _ROWS
 }
