@@ -147,7 +147,7 @@ def test_transients_of_pages(run, tmp_path):
         (["--start-up", "--from", "4", "--over", "3 s"], "has no unit"),
         (["--start-up", "--from", "4 Hz", "--over", "-3 s"], "give a time above 0"),
         (["--start-up", "--from", "-4 Hz", "--over", "3 s"], "give a frequency of 0 or above"),
-        (["--record", "x.csv"], "part of its equations"),
+        (["--record", "x.csv"], "part of the equations"),
     ],
 )
 def test_bad_transients_of_pages(run, tmp_path, options, says):
