@@ -1,4 +1,4 @@
-"""The page for users of other packages: their printed values, ours, and a solve of each in 40 digits by mpmath.
+"""The pages for users of other packages: their printed values, ours, and a solve of each in 40 digits by mpmath.
 
 The witness has the equations of the demos once more, in mpmath, and solves bordered systems by Newton's method with derivatives of its
 own: F = 0 with J q = 0 at folds and branch points, F = 0 with J (a + i b) = i omega (a + i b) at Hopf points.
@@ -14,7 +14,10 @@ import pytest
 
 pytestmark = pytest.mark.slow
 
-PAGE = (Path(__file__).parents[1] / "docs/coming_from.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[1] / "docs"
+PAGES = "".join(
+    (DOCS / f"{name}.md").read_text(encoding="utf-8") for name in ("coming_from", "coming_from_others")
+)
 
 
 def reactor(u, p):
@@ -90,8 +93,8 @@ def hopf(f, u, p):
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    """The names of the page after all its cells have run, in a folder of their own."""
-    cells = re.findall(r"```\{code-cell\} ipython3\n(.*?)```", PAGE, re.DOTALL)
+    """The names of the pages after all its cells have run, in a folder of their own."""
+    cells = re.findall(r"```\{code-cell\} ipython3\n(.*?)```", PAGES, re.DOTALL)
     names: dict = {}
     with chdir(tmp_path_factory.mktemp("page")):
         exec(compile("\n".join(cells), "coming_from.md", "exec"), names)

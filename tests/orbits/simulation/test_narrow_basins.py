@@ -8,7 +8,7 @@ from orbits import Absorber, Coupled
 from orbits.machines.catalogue import stepper as stepped
 from orbits.orbit import Orbit
 from orbits.simulation import replay
-from orbits.simulation.replay import _returns
+from orbits.simulation.replay import _Cycle, _returns
 from orbits.simulation.return_map import go_round
 from orbits.words import Word
 from tools.fuzz.many_digits import exact
@@ -96,4 +96,5 @@ def test_beside_a_fold_starts_return_from_within_the_basin_to_where_rounding_let
     # on the other one nothing settles, which rounding drives away, even if it were called stable
     growth = float(np.abs(orbit.multipliers).max())
     codes, modes = other.word.codes, other.word.mode_codes
-    assert not _returns(stepped("coupled"), other.params, codes, modes, other.nodes, 8, growth)
+    cycle = _Cycle(stepped("coupled"), other.params, codes, modes, other.nodes, 8)
+    assert not _returns(cycle, growth)
