@@ -121,7 +121,7 @@ class Robustness:
             changes, at = self.shown(self.kick), self.shown(self.place)
             kick = ", ".join(f"{name} {told(f'{x:+.4g}', name)}" for name, x in zip(self.names, changes))
             place = ", ".join(f"{name} = {told(f'{x:.4g}', name)}" for name, x in zip(self.names, at))
-            text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {self.reaches if self.reaches == MIRRORED else short_word(self.reaches)}"
+            text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {short_word(self.reaches)}"
         else:
             text += "  no kick within the box of starts leads elsewhere"
         for name, (first, last) in self.parameters.items():

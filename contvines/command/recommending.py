@@ -164,7 +164,6 @@ class _Work:
         from contvines.command.compose import check_shaken, machine
         from contvines.command.survey_study import machines_of, plan_and_machine, units_of
         from contvines.survey.plan import Plan
-        from orbits.design import Family
 
         if study.sort is Sort.FLOW:
             raise ValueError(
@@ -204,9 +203,7 @@ class _Work:
                 )
             model = model.told_by(self.name)
         self.plan, self.model = plan, model
-        family = machines_of(study, model)
-        assert isinstance(family, Family)
-        self.family, self.units = family, units_of(study, model)
+        self.family, self.units = machines_of(study, model), units_of(study, model)
         self.drawn = plan.samples
         self.samples = plan.shape[-1] if plan.samples else 1
         self.params = model.vector(study.loose)

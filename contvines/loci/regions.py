@@ -81,8 +81,7 @@ def words_of(attractors: list[dict[str, Any]]) -> list[str]:
 def name_of(found: dict[str, Any]) -> str:
     """The word of an attractor, with its periods where they are more than one; its modulation or its kind where it has no word."""
     if modulation := found.get("modulation"):
-        kind, _, chaotic = str(modulation).partition(", ")
-        return f"{chaotic} {kind}".strip()
+        return str(modulation)
     word, periods = found.get("word"), int(found.get("periods") or 0)
     if found.get("kind") == "stuck":
         return "stuck"

@@ -14,10 +14,10 @@ FEW = 0.01  # of the periods without an impact: fewer do not make a modulation s
 
 def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
     """``weak modulation``, ``strong modulation`` where impacts stop and begin again (the strongly modulated response of vibro-impact
-    absorbers), either with ``, chaotic``; empty for a motion without a band, such as one that recurs."""
+    absorbers), either with ``chaotic`` before it; empty for a motion without a band, such as one that recurs."""
     if not math.isfinite(measures.get(BAND[1], math.nan)):
         return ""
-    return f"{'strong' if is_strong(measures) else 'weak'} modulation{', chaotic' if chaotic else ''}"
+    return f"{'chaotic ' if chaotic else ''}{'strong' if is_strong(measures) else 'weak'} modulation"
 
 
 def is_strong(measures: Mapping[str, float]) -> bool:

@@ -40,7 +40,7 @@ class SweepRow:
     detail : Attractor or PageAttractor
         The attractor itself, with its nodes and the state reached.
     modulation : str
-        ``weak modulation``, ``strong modulation`` (impacts stop and begin again), either with ``, chaotic``; empty where it recurs.
+        ``weak modulation``, ``strong modulation`` (impacts stop and begin again), either with ``chaotic`` before it; empty where it recurs.
     """
 
     value: float

@@ -56,7 +56,7 @@ def test_sweeps_and_charts_tell_of_modulation_as_a_dense_sampling_has_it():
     tops = cavity.reshape(512, 200).max(axis=1)
     band = [row.measures[f"modulated_{name}"] for name in ("low", "mean", "high")]
     assert band == pytest.approx([tops.min(), tops.mean(), tops.max()], rel=5e-3)
-    assert row.modulation == "weak modulation, chaotic"  # impacts in every period: neighbours part
+    assert row.modulation == "chaotic weak modulation"  # impacts in every period: neighbours part
     steady = sweep(MACHINE, "frequency", [0.9], forcing=10.0)[0]
     assert steady.modulation == "" and np.isnan(steady.measures["modulated_mean"])
     problem = find_attractor(MACHINE, forcing=10.0, frequency=0.9).found.problem("frequency")
