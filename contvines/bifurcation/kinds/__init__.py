@@ -67,8 +67,10 @@ def checked(kinds: Iterable[Kind] | None) -> tuple[Kind, ...]:
     Raises
     ------
     ValueError
-        If one is no :class:`~contvines.Kind`, has no test function, or two share a name or a label.
+        If they are no list, one is no :class:`~contvines.Kind`, has no test function, or two share a name or a label.
     """
+    if not (kinds is None or isinstance(kinds, Iterable)):
+        raise ValueError(f"kinds = {kinds!r}: a list is asked for; kinds=[*contvines.KINDS, yours] would do")
     chosen = KINDS if kinds is None else tuple(kinds)
     names: dict[str, Kind] = {}
     for kind in chosen:

@@ -49,5 +49,7 @@ def test_of_a_built_in_machine_and_a_test_that_fails():
     (own,) = (p for p in found.points.values() if p.kind == "half")
     assert own.value[1] == pytest.approx(0.75, abs=1e-12)
     assert own.value[0] == pytest.approx(found.at(0.75)[0], rel=1e-10)
+    with pytest.raises(ValueError, match="a list is asked for"):
+        cv.locus(point, over="restitution", within=(0.7, 0.8), kinds=half)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="kind broken: its test fails at amplitude"):
         _ = cv.locus(point, over="restitution", within=(0.7, 0.8), kinds=[*cv.KINDS, broken]).points
