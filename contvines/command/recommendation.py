@@ -25,6 +25,8 @@ MET = {
     "stuck": "stuck: moves with the oscillator",
 }
 """What simulated motions are."""
+PLAIN = {"impacts": MET["impacts"], "modulated": "modulated", "calm": "without impacts", "stuck": "stuck"}
+"""The same of machines that are not known to have an absorber."""
 Number = Annotated[float, BeforeValidator(lambda value: math.nan if value is None else value)]
 """Not known where JSON has null."""
 
@@ -121,6 +123,8 @@ class Recommendation:
     curves : list of Curve
         Responses of the study's machine at the choice, and those to compare with.
     assumed, unknown : list of str
+    absorber : bool
+        Whether an absorber slides in a cavity of the machine, so that the words for it fit.
     """
 
     study: str
@@ -146,6 +150,7 @@ class Recommendation:
     curves: list[Curve] = field(default_factory=list, repr=False)
     assumed: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
+    absorber: bool = True
 
     def to_dict(self) -> dict[str, Any]:
         """For JSON, at full precision."""
@@ -183,12 +188,25 @@ class Recommendation:
         return self.name.replace("_", " ")
 
     @property
+    def at_end(self) -> bool:
+        """Whether the choice is the least or the largest value that was looked at."""
+        values = [place.value for place in self.places]
+        return len(values) > 1 and self.value in (min(values), max(values))
+
+    @property
+    def _kinds(self) -> dict[str, str]:
+        """What simulated motions are, in words that fit the machine."""
+        return MET if self.absorber else PLAIN
+
+    @property
     def headline(self) -> str:
         """The answer in one sentence."""
         if self.value is None:
             return f"No {self._named} can be recommended: {self.unknown[0] if self.unknown else 'nothing is known'}."
         low, high = self.tolerance
         said = f"Recommended: {self._named} {self.shown(self.name, self.value)}"
+        if self.at_end:
+            said += ", at the end of the range that was looked at: a better one may lie beyond"
         if low < high:
             said += f"; from {low:.3g} to {self.shown(self.name, float(f'{high:.3g}'))} it costs less than {100 * self.cost:g} %"
         return said + "."
@@ -219,14 +237,16 @@ class Recommendation:
         if idle:
             kind = max(idle, key=lambda kind: idle[kind])
             found.append(
-                f"The largest response is that of a motion in which the absorber does not do its work ({MET[kind]}): {self.shown(peak, idle[kind])}; "
+                f"The largest response is that of a motion {'in which the absorber does not do its work' if self.absorber else 'of another kind'} "
+                f"({self._kinds[kind]}): {self.shown(peak, idle[kind])}; "
                 f"with impacts in every period it is at most {self.shown(peak, self.met['impacts_peak'])}."
             )
         engaged = self.engaged
         if place is not None and engaged is not None and engaged.engaged < (1.0 - self.cost) * place.worst:
             found.append(
-                f"If the absorber is at work at every {self.parameter} (the lowest response of those that coexist), the best is about "
-                f"{self._named} = {self.shown(self.name, engaged.value)} with {self.shown(peak, engaged.engaged)}; nothing makes sure that it is."
+                f"If {'the absorber is at work' if self.absorber else 'the motion with the lowest response is met'} at every {self.parameter} (the "
+                f"lowest response of those that coexist), the best is about {self._named} = {self.shown(self.name, engaged.value)} with "
+                f"{self.shown(peak, engaged.engaged)}; nothing makes sure that it is."
             )
         return found
 
@@ -270,7 +290,7 @@ class Recommendation:
                 found.append(("recommended, median", self.shown("peak", place.median), ""))
             found.append(
                 (
-                    "absorber at work",
+                    "absorber at work" if self.absorber else "lowest motion",
                     self.shown("peak", place.engaged),
                     "lowest of what coexists, worst of the samples",
                 )
@@ -287,7 +307,7 @@ class Recommendation:
         if not math.isnan(self.target):
             most = self.shown("peak", self.target)
             found.append(("works", said, f"of the samples: at most {most} whatever coexists"))
-        for kind, name in MET.items():
+        for kind, name in self._kinds.items():
             share, top = self.met.get(kind, math.nan), self.met.get(f"{kind}_peak", math.nan)
             if math.isnan(share):
                 continue

@@ -307,6 +307,7 @@ class _Work:
             "within": study.within, "units": {**self.units, "time": "s" if self.model.units else ""},
             "own": self.own(), "cost": cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
             "machine": self._machine(), "places": places, "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
+            "absorber": self.model.flow != "page",
         }  # fmt: skip
         if best is None:
             return Recommendation(
