@@ -48,9 +48,12 @@ def validated(model: type[Section], data: dict[str, Any], wrong: list[str] | Non
     try:
         return model.model_validate(data)
     except ValidationError as error:
+        model_keys = {field.alias or name for name, field in model.model_fields.items()}
         found: dict[Any, str] = {}
         for each in error.errors():
             loc = [part for part in each["loc"] if not (isinstance(part, str) and UNION.fullmatch(part))]
+            if len(loc) == 1 and each["type"] == "missing" and did_you_mean(loc[0], data.keys() - model_keys):
+                continue  # the misspelt section is reported
             union = len(loc) < len(each["loc"])  # of a field that may be one of several types, one sentence
             found.setdefault((*loc, "" if union else each["type"]), _sentence(model, each["type"], loc, each))
         raise together([*(wrong or ()), *found.values()]) from None
@@ -81,7 +84,8 @@ def _sentence(model: type[Section], kind: str, loc: list[Any], error: Any) -> st
         if kind == "extra_forbidden":
             known = ", ".join(f"[{name}]" for name in sections)
             hint = did_you_mean(section, sections)
-            return f"{section} = {value}: no such section{hint}; a study has {known}."
+            written = f"[{section}]" if isinstance(error["input"], dict) else f"{section} = {value}"
+            return f"{written}: there is no such section{hint}; a study has {known}."
         return (
             f"{section} = {value} is not a section; write [{section}] on a line of its own, its keys below."
         )

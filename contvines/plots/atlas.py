@@ -14,7 +14,7 @@ from .diagram import draw_diagram
 from .figures import Size, Style, freeze, given_axes, new_figure, settle, styled, thin_ticks
 from .legends import NARROW, draw_legend, place_legend
 from .picture import lay_out_again
-from .style import axis_label
+from .style import HATCHES, axis_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -125,8 +125,8 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
         name = "others" if key is None else short_word(key[0], 14)
         if key is not None and sum(key[0] == other for other, _ in order) > 1:
             name = f"{name}, k={key[1]}"
-        color = "0.8" if key is None else COLORS[k % len(COLORS)]
-        look = {"align": "edge", "color": color, "linewidth": 0}
+        color, hatch = ("0.8", None) if key is None else (COLORS[k % len(COLORS)], HATCHES[k % len(HATCHES)])
+        look = {"align": "edge", "facecolor": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
         axes.bar(edges[:-1], heights, np.diff(edges), bottoms, label=name, **look)
         bottoms += heights
     axes.set(ylim=(0.0, 1.0), ylabel="share of starts")

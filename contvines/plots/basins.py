@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from ..coexistence.basins import Basins
 
-COLORS = ("#2a6f97", "#e9a23b", "#7b3f8c", "#3f8f4f", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
+# the first ones differ in lightness, too
+COLORS = ("#1f5c87", "#efb04e", "#5f2570", "#58a868", "#c0483f", "#8a8a8a", "#17807e", "#c77dab")
 COLORS += ("#b8b042", "#5b6fd6", "#4d4d4d", "#8fcf8a")
 NAMED = 3  # words of manifolds in the legend
 IMAGE = 0.45  # how much lighter the basin of a mirror image is

@@ -11,7 +11,7 @@ from ..graph.shortening import short_word
 from .figures import LOW, Size, Style, freeze, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, dense, grouped, place_labels, touching
 from .legends import hold_legend, place_legend
-from .style import MARKS, PLAIN, axis_label
+from .style import HATCHES, MARKS, PLAIN, axis_label
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -40,7 +40,6 @@ BORDER_COLORS = {
     "vanishing-event": "#a21caf",
 }
 BORDER_COLOR = "#6b6b6b"  # of any other border
-HATCHES = (None, "////", "....", "\\\\\\\\", "----", "xxxx", "||||", "++++")
 HATCHED = "#d9d9d9"
 TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6dfe6", "#e9e9e4")
 HATCH_LENGTH = 0.012  # of the axes

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
 WIDTHS = {"stable": 1.25, "unknown": 1.1, "unstable": 0.88, "virtual": 0.88}  # in units of lines.linewidth
 STATE_COLORS = {"stable": "#0b3c6f", "unknown": "#4d4d4d", "unstable": "#d9484b", "virtual": "#8a8a8a"}
+HATCHES = (None, "////", "....", "\\\\\\\\", "----", "xxxx", "||||", "++++")  # told apart without colours
 PROVED = {"color": "#7fc97f", "alpha": 0.45}  # beneath what is proved
 STATES = {
     "stable": "stable",

@@ -19,6 +19,7 @@ from orbits import Absorber
 from orbits.simulation import simulate
 
 COLORS = {"mean": "k", "after": paper.RED, "before": paper.BLUE}
+MARKS = {"mean": "", "after": "^", "before": "v"}
 NAMES = {"mean": "mean $B$", "after": "after, $B^+$", "before": "before, $B^-$"}
 
 
@@ -38,8 +39,9 @@ def main():
     figure, ((one, two),) = paper.panels(9.6, 4.4, 1, 2, sharey=True)
     for axes in (one, two):
         for name, color in COLORS.items():
-            axes.plot(right[name][:, 0], right["C2"], color=color, label=NAMES[name])
-            axes.plot(left[name][:, 0], left["C2"], color=color, ls=paper.DASHED, lw=1)
+            look = {"color": color, "marker": MARKS[name], "markevery": 24, "ms": 4}
+            axes.plot(right[name][:, 0], right["C2"], label=NAMES[name], **look)
+            axes.plot(left[name][:, 0], left["C2"], ls=paper.DASHED, lw=1, **look)
     for name, color in COLORS.items():
         for k in (0, 1):
             line = bent[name][:, k]

@@ -30,9 +30,23 @@ def main():
     f = np.linspace(6.8, 8.6, 1500)
     stuck = machine.linear_response(f, base, stuck=True)
     held = machine.is_stuck(f, base)
-    axes.plot(f, 1e3 * machine.linear_response(f, base), color="#c8c8c8", lw=1, label="oscillator alone")
+    axes.plot(
+        f,
+        1e3 * machine.linear_response(f, base),
+        color="#a8a8a8",
+        lw=1,
+        ls=paper.DOTTED,
+        label="oscillator alone",
+    )
     axes.plot(f, np.where(held, 1e3 * stuck, np.nan), color="k", ls=paper.DASHED, label="stuck")
-    axes.plot(f, 1e3 * machine.sticking_limit(f), color=paper.GREEN, lw=1, label=r"$q_{1,\mathrm{cr}}$")
+    axes.plot(
+        f,
+        1e3 * machine.sticking_limit(f),
+        color=paper.GREEN,
+        lw=1,
+        ls=paper.DOT_DASHED,
+        label=r"$q_{1,\mathrm{cr}}$",
+    )
     ranges = {}
     for curve in ms.frequency_response(flow, points=3000):
         line = scale * curve.amplitude
@@ -55,7 +69,7 @@ def main():
             hertz(curve.detuning),
             scale * curve.amplitude,
             color="k",
-            lw=2,
+            lw=1.2,
             label="sliding" if not k else None,
         )
         ranges["sliding"].append((curve.detuning.min(), curve.detuning.max()))

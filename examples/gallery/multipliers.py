@@ -46,10 +46,10 @@ def main():
         c2 = np.array([o.params[0] ** 2 for o in orbits])
         values = np.array([np.sort_complex(o.multipliers) for o in orbits])
         for k in (0, 1):
-            color = paper.BLUE if name == "symmetric" else paper.RED
+            color, style = (paper.BLUE, "-") if name == "symmetric" else (paper.RED, paper.DASHED)
             inside = np.where((name == "symmetric") | (c2 <= border), 1.0, np.nan)
             for axes, part in ((upper, values[:, k].real), (lower, values[:, k].imag)):
-                axes.plot(c2, part * inside, color=color, label=name if k == 0 else None)
+                axes.plot(c2, part * inside, color=color, ls=style, label=name if k == 0 else None)
                 if name == "asymmetric":
                     beyond = np.where(c2 > border, part, np.nan)
                     axes.plot(

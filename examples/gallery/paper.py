@@ -33,7 +33,7 @@ WEAK = {"restitution": 0.76, "friction": 0.1, "gravity": 0.422, "mass_ratio": MA
 MIDDLE = {"restitution": 0.76, "friction": 0.3, "gravity": 0.355, "mass_ratio": MASS_RATIO}
 
 BLUE, RED, GREEN, PURPLE, GREY, PALE = "#0b3c6f", "#b5121b", "#1b7837", "#7b3294", "#5e5e5e", "#9db8d2"
-DASHED, DOTTED = (0, (5, 2.2)), (0, (1, 1.8))
+DASHED, DOTTED, DOT_DASHED = (0, (5, 2.2)), (0, (1, 1.8)), (0, (6, 2, 1, 2))
 COLUMN = 5.0  # inches: in a narrower picture panels stand one above another and legends below
 width: float | None = None  # of the picture that is being drawn, inches; None: as wide as the script has it
 _legends: list[Any] = []  # axes of the picture that is being drawn

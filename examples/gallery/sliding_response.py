@@ -25,7 +25,7 @@ def main():
     omega = 1 + paper.MASS_RATIO * sigma
     drag = paper.MASS_RATIO * flow.damping * omega
     alone = paper.MASS_RATIO * flow.forcing * np.abs((1 + 1j * drag) / (1 - omega**2 + 1j * drag))
-    axes.plot(sigma, alone, color=paper.GREY, label="oscillator alone")
+    axes.plot(sigma, alone, color=paper.GREY, lw=0.8, label="oscillator alone")
     for k, curve in enumerate(ms.frequency_response(flow, "sliding")):
         line = curve.amplitude / (1 + paper.MASS_RATIO)
         axes.plot(curve.detuning, line, color="k", label="sliding, averaged" if k == 0 else None)
@@ -34,7 +34,7 @@ def main():
     )
     axes.axhline(flow.level, color=paper.RED, lw=1, ls=paper.DOTTED, label="$h$: lower bound as printed")
     axes.axhline(
-        high, color=paper.BLUE, lw=1, ls=paper.DASHED, label=r"$\sqrt{1+h^2}$: above, it hits the walls"
+        high, color=paper.BLUE, lw=1, ls=paper.DOT_DASHED, label=r"$\sqrt{1+h^2}$: above, it hits the walls"
     )
 
     worst, words = 0.0, {}

@@ -32,7 +32,7 @@ def main():
     figure = paper.figure(7.4, 4.6)
     axes = figure.add_subplot()
     axes.plot(f, 1e3 * alone, color=paper.GREY, label="oscillator alone")
-    axes.plot(f, 1e3 * limit, color=paper.BLUE, label=r"$q_{1,\mathrm{cr}}=\mu g/\omega^2$")
+    axes.plot(f, 1e3 * limit, color=paper.BLUE, ls=paper.DOTTED, label=r"$q_{1,\mathrm{cr}}=\mu g/\omega^2$")
     axes.plot(f, np.where(held, 1e3 * stuck, np.nan), color="k", ls=paper.DASHED, label="absorber stuck")
     axes.plot(
         [low, high],

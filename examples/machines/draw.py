@@ -64,18 +64,23 @@ def simulated(machine, name: str, count: int = 24) -> list[tuple[float, float]]:
     return found
 
 
-def draw(axes, name: str, legend: str | bool = False) -> None:
-    """One panel."""
+def draw(axes, name: str):
+    """One panel, or with None for the axes a picture of its own, which is returned."""
     machine, graph = diagram(name)
     _, _, measure, _, _, title = RUNS[name]
-    graph.plot(y=measure, axes=axes, legend=legend)
-    for value, height in simulated(machine, name):
-        axes.plot(value, height, "x", color=GREY, ms=4.5, zorder=0)
-    axes.set_title(title)
+    if axes is None:
+        figure = graph.plot(y=measure, figsize=(7.2, 4.6))
+        panel = figure.axes[0]
+        panel.set_xlabel(f"{panel.get_xlabel()} (crosses: simulated)")
+    else:
+        figure, panel = graph.plot(y=measure, axes=axes, legend=False), axes
+        panel.set_title(title)
+    panel.plot(*zip(*simulated(machine, name)), "x", color=GREY, ms=4.5, zorder=0)
     kinds = sorted({p.kind for p in graph.special.values() if p.kind != "end"})
     print(f"{name}: {len(graph.branches)} branches; {', '.join(kinds)}")
     worst = max((p.replay for p in graph.special.values() if p.replay is not None), default=0.0)
     print(f"  simulation follows every special orbit to {worst:.1e}")
+    return figure
 
 
 def main() -> None:
@@ -84,14 +89,17 @@ def main() -> None:
 
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "pictures")
     names = sys.argv[2:] or list(RUNS)
-    columns = min(3, len(names))
-    rows = -(-len(names) // columns)
-    size = (5.2, 3.4) if len(names) == 1 else (4.0 * columns, 3.0 * rows)
-    figure, panels = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
-    for axes, name in zip(panels.flat, names):
-        draw(axes, name, legend=len(names) == 1)
-    for axes in list(panels.flat)[len(names) :]:
-        axes.set_axis_off()
+    if len(names) == 1:
+        figure = draw(None, names[0])
+    else:
+        columns = min(3, len(names))
+        rows = -(-len(names) // columns)
+        size = (4.0 * columns, 3.0 * rows)
+        figure, panels = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False)
+        for axes, name in zip(panels.flat, names):
+            draw(axes, name)
+        for axes in list(panels.flat)[len(names) :]:
+            axes.set_axis_off()
     folder.mkdir(parents=True, exist_ok=True)
     figure.savefig(folder / "machines.png", dpi=160)
     print(folder / "machines.png")

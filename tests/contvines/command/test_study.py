@@ -120,6 +120,10 @@ def test_coupled_studies_have_their_own_parameters():
         ({"model": 3}, ["model = 3 is not a section"]),
         ({"continue_": None}, ["[continue] is missing"]),
         ({"contnue": {"depth": 2}}, ["contnue", "no such section", "did you mean 'continue'"]),
+        (
+            {"continue_": None, "contnue": {"depth": 2}},
+            ["[contnue]: there is no such section", "did you mean 'continue'"],
+        ),
         ({"atlas": {"starts": -1}}, ["[atlas] starts = -1", "from 1 to 10000000"]),
         ({"atlas": {"strts": 3}}, ["[atlas] strts = 3", "did you mean 'starts'"]),
         ({"atlas": {"values": 0}}, ["[atlas] values = 0 is out of range", "or a list of values"]),
