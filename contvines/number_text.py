@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 ROUNDING = 1e-14  # beside numbers of order one this is zero
 ROUNDING_APART = 1e-6  # beside what is to be told apart this is zero
@@ -35,6 +35,21 @@ def figures(value: float, apart: float = 0.0) -> str:
     whole = math.floor(math.log10(size)) + 1
     digits = max(DIGITS, whole + math.ceil(-math.log10(apart)) if apart > 0.0 else 0)
     return f"{value:.0f}" if digits < whole and size < WHOLE else f"{value:.{digits}g}"
+
+
+def complex_figures(values: Iterable[complex]) -> str:
+    """`figures` of complex numbers such as multipliers; what lies near the unit circle can be told from it.
+
+    >>> complex_figures([-0.22232 + 0.26142j, 0.999987])
+    '-0.2223 + 0.2614i, 0.99999'
+    """
+
+    def text(value: complex) -> str:
+        apart = max(abs(abs(value) - 1.0), ROUNDING_APART) if abs(value) < 2.0 else 0.0
+        real, imaginary = (figures(part, min(apart, PART)) for part in (value.real, abs(value.imag)))
+        return real if imaginary == "0" else f"{real} {'+' if value.imag > 0.0 else '-'} {imaginary}i"
+
+    return ", ".join(text(value) for value in values)
 
 
 def figures_in(within: tuple[float, float], others: Sequence[float] = ()) -> Callable[[float], str]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..continuation.hints import hinted
+from ..number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
 
@@ -166,19 +168,20 @@ class Circles:
     def _title(self) -> str:
         kind = "stable" if self.coefficient < 0.0 else "unstable"
         return (
-            f"{self.label}: {kind} circles from {self.parameter} = {self.value:.10g} on, "
-            f"{self.rotation:.8g} turns per period there, first Lyapunov coefficient {self.coefficient:.6g}"
+            f"{self.label}: {kind} circles from {self.parameter} = {figures(self.value)} on, "
+            f"{figures(self.rotation)} turns per period there, first Lyapunov coefficient {figures(self.coefficient)}"
         )
 
     def _table(self) -> Table:
         head = (self.parameter, "radius", "normal form", "turns per period", "simulated", "replay", "stable")
+        value, turns = _told([c.value for c in self.circles]), _told([c.rotation for c in self.circles])
         rows = [
             (
-                f"{c.value:.10g}",
-                f"{c.radius:.6g}",
-                f"{c.predicted:.6g}",
-                f"{c.rotation:.10g}",
-                "-" if c.simulated is None else f"{c.simulated:.10g}",
+                value(c.value),
+                figures(c.radius),
+                figures(c.predicted),
+                turns(c.rotation),
+                "-" if c.simulated is None else turns(c.simulated),
                 f"{c.replay:.1e}",
                 {True: "yes", False: "no", None: "?"}[c.stable],
             )
@@ -191,3 +194,7 @@ class Circles:
         from ..plots.circles import plot_circles
 
         return plot_circles(self, **options)
+
+
+def _told(values: list[float]) -> Callable[[float], str]:
+    return figures_in((min(values), max(values)), values) if values else figures

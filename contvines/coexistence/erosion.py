@@ -12,6 +12,7 @@ from ..branches.branch import Branch
 from ..continuation.hints import hinted, hinting
 from ..graph.shortening import short_word
 from ..graph.table import with_unit
+from ..number_text import figures, figures_in
 from ..problems.abilities import notation_of
 from ..text_table import Table, terminal_width
 from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
@@ -70,9 +71,11 @@ class Erosion:
         }
 
     def __str__(self) -> str:
+        values = self.values
+        value = figures_in((min(values), max(values)), values) if len(values) else figures
         rows = [
             (
-                f"{one.value:.8g}",
+                value(one.value),
                 f"{one.share:.2%}",
                 f"{one.distance:.4g}" if np.isfinite(one.distance) else "none",
                 short_word(one.reaches),

@@ -12,6 +12,7 @@ from ..branches.branch import Branch
 from ..circles.section import section_of
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
+from ..number_text import figures
 from ..problems.abilities import Gauged
 from ..text_table import fitted
 from .basins import wilson
@@ -114,7 +115,7 @@ class Robustness:
         def told(number: str, name: str) -> str:
             return f"{number} {units.get(name, '')}".rstrip()
 
-        text = f"{short_word(self.word)}  k={self.periods}  {self.parameter} = {told(f'{self.value:.10g}', self.parameter)}\n"
+        text = f"{short_word(self.word)}  k={self.periods}  {self.parameter} = {told(figures(self.value), self.parameter)}\n"
         if np.isfinite(self.share):
             text += f"  share of starts: {self.share:.2%} ({low:.2%} to {high:.2%})\n"
         if np.isfinite(self.distance):
@@ -131,8 +132,8 @@ class Robustness:
 
 def _range_text(first: float, last: float, lost: tuple[bool, bool], unit: str) -> str:
     """An interval for people; an end at which the search ended is a bound of the motion's true limit."""
-    low, high = (f"{x:.8g} {unit}".rstrip() for x in (first, last))
-    text = f"from {'' if lost[0] else 'at most '}{first:.8g} to {'' if lost[1] else 'at least '}{high}"
+    low, high = (f"{figures(x)} {unit}".rstrip() for x in (first, last))
+    text = f"from {'' if lost[0] else 'at most '}{figures(first)} to {'' if lost[1] else 'at least '}{high}"
     beyond = ((False, "down to", low), (True, "up to", high))
     unlost = " and ".join(f"{way} {end}" for above, way, end in beyond if not lost[above])
     return f"{text}; not lost {unlost}, where the search ended" if unlost else text

@@ -6,6 +6,7 @@ import html
 from typing import TYPE_CHECKING
 
 from ..graph.shortening import short_word
+from ..number_text import figures
 from ..text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def _shares(basins: Basins) -> Table:
 
 def _title(basins: Basins) -> str:
     across, up = basins.axes
-    return f"{basins.index.size} starts in the plane {across}, {up} at {basins.parameter} = {basins.value:.10g} {basins.unit}".rstrip()
+    return f"{basins.index.size} starts in the plane {across}, {up} at {basins.parameter} = {figures(basins.value)} {basins.unit}".rstrip()
 
 
 def _boundary(basins: Basins) -> list[str]:

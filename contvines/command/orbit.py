@@ -8,6 +8,7 @@ import typer
 
 from contvines.command.frame import check_plot, draw, load_file, say, tell
 from contvines.command.options import JsonOption, PlotOption, TrustOption
+from contvines.number_text import complex_figures, figures
 from contvines.text_table import fitted
 
 
@@ -116,41 +117,34 @@ def _describe(found: Any) -> str:
         lines.append(f"{word}  k = {about['periods']}  ({nature})")
     if "states" in about:  # a cycle of a flow
         lines.append(
-            f"cycle of period {_number(about['period'])}  ({'stable' if about['stable'] else 'unstable'})"
+            f"cycle of period {figures(about['period'])}  ({'stable' if about['stable'] else 'unstable'})"
         )
     parameters = about.get("parameters", {})
     if parameters:
         units = about.get("units", {})
         lines.append(
-            "  " + "  ".join(f"{k} = {v:.10g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
+            "  " + "  ".join(f"{k} = {v:.7g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
         )
     nodes = about.get("nodes", [])
     if nodes:
         names = list(nodes[0])
         units = about.get("units", {})
         head = tuple(with_unit(name, EVENTS.get(name) and units.get(EVENTS[name])) for name in names)
-        rows = [tuple(_number(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names) for n in nodes]
+        rows = [tuple(figures(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names) for n in nodes]
         width = terminal_width()
         lines += [f"  {line}" for line in Table(head, rows, right=head).lines(width and width - 2)]
     if "multipliers" in about:
         pairs = about["multipliers"]
-        text = ", ".join(
-            _number(re) if _number(im) == "0" else f"{_number(re)}{im:+.10g}i" for re, im in pairs
-        )
+        text = complex_figures(complex(re, im) for re, im in pairs)
         if any(math.isnan(part) for pair in pairs for part in pair):
             text = "not defined at a graze"
         lines.append(f"  multipliers: {text or 'none'}")
     if about.get("margins"):
         smallest = min(about["margins"], key=lambda m: m["value"])
         lines.append(
-            f"  smallest margin: {smallest['value']:.6g} ({smallest['kind']}, segment {smallest['segment']}) "
+            f"  smallest margin: {figures(smallest['value'])} ({smallest['kind']}, segment {smallest['segment']}) "
             f"of {len(about['margins'])}"
         )
     if not lines:
         lines = [f"{k}: {v}" for k, v in about.items()]
     return "\n".join(lines)
-
-
-def _number(value: float) -> str:
-    """Ten digits; what is only rounding is 0."""
-    return "0" if abs(value) < 1e-15 else f"{value:.10g}"

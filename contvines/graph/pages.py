@@ -6,6 +6,7 @@ import html
 
 from ..branches.branch import Branch
 from ..branches.special_point import SpecialPoint
+from ..number_text import complex_figures
 from ..number_text import number_text as number
 from ..text_table import Table
 from .graph import Graph
@@ -49,10 +50,6 @@ def branch_page(branch: Branch) -> str:
 
 def point_page(point: SpecialPoint) -> str:
     """What a special point is, line by line."""
-    sizes = ", ".join(
-        number(m.real, 8) + (f" {'+' if m.imag > 0 else '-'} {number(abs(m.imag), 8)}i" if m.imag else "")
-        for m in point.multipliers[:8]
-    )
     rows = [
         (
             "kind",
@@ -61,7 +58,7 @@ def point_page(point: SpecialPoint) -> str:
         ("on", point.branch),
         (point.parameter, number(point.value, 14)),
         ("located to", number(point.location_error, 2)),
-        ("multipliers", sizes or "-"),
+        ("multipliers", complex_figures(point.multipliers[:8]) or "-"),
         *([("note", point.note)] if point.note else []),
     ]
     return Table((point.label, "special point"), rows).html()

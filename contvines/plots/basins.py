@@ -8,6 +8,7 @@ import numpy as np
 
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
+from ..number_text import figures
 from .figures import LOW, Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label
@@ -71,7 +72,7 @@ def plot_basins(
         )
         axes.set_xlabel(across)
         axes.set_ylabel(up.replace(" of the start", "") if low else up)
-        axes.set_title(f"{basins.parameter} = {basins.value:.8g} {basins.unit}".rstrip())
+        axes.set_title(f"{basins.parameter} = {figures(basins.value)} {basins.unit}".rstrip())
         if legend:
             entries = []
             for k, about in enumerate(basins.attractors):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
+from contvines.number_text import complex_figures, figures
 from orbits.plots.portrait import title
 from orbits.plots.shown import quantities
 
@@ -19,16 +20,13 @@ def page(orbit: Orbit) -> str:
     ----------
     orbit : Orbit
     """
-    multipliers = ", ".join(
-        f"{m.real:.8g}" + (f" {'+' if m.imag > 0 else '-'} {abs(m.imag):.8g}i" if m.imag else "")
-        for m in orbit.multipliers[:8]
-    )
+    multipliers = complex_figures(orbit.multipliers[:8])
     least = min(orbit.margins, key=lambda margin: margin.value, default=None)
     rows = [
         ("motion", title(orbit).split("\n")[0]),
-        *quantities(orbit, 10).items(),
+        *quantities(orbit).items(),
         ("multipliers", multipliers or "-"),
-        ("least margin", "-" if least is None else f"{least.value:.6g} ({least.kind})"),
+        ("least margin", "-" if least is None else f"{figures(least.value)} ({least.kind})"),
     ]
     body = "".join(
         f"<tr><th style='text-align:left'>{html.escape(name)}</th>"

@@ -4,7 +4,7 @@ import doctest
 import math
 
 from contvines import number_text
-from contvines.number_text import figures, figures_in
+from contvines.number_text import complex_figures, figures, figures_in
 
 
 def test_the_examples_of_the_docstrings():
@@ -23,3 +23,9 @@ def test_rounding_is_zero_and_nothing_is_lost_at_the_ends():
     assert figures(1e-17) == "0" and figures_in((0.0, 2000.0))(1e-9) == "0"
     assert figures(1.234e-9) == "1.234e-09" and figures(math.nan) == "nan"
     assert figures_in((0.0, math.inf))(1234.5) == "1234"
+
+
+def test_multipliers_are_told_from_the_unit_circle():
+    """Four digits, more where the modulus is nearer to one than these tell."""
+    assert complex_figures([0.5 + 0.1234567j, -0.25]) == "0.5 + 0.1235i, -0.25"
+    assert complex(complex_figures([0.99999713])).real < 1.0

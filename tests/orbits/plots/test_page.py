@@ -15,7 +15,7 @@ def test_an_orbit_shows_itself_as_a_table(word):
     assert rows["motion"].startswith(word or "stuck") and "stable" in rows["motion"]
     assert {name: float(rows[name]) for name in orbit.parameters} == pytest.approx(orbit.parameters)
     first = rows["multipliers"].split(",")[0].replace(" ", "").replace("i", "j")
-    assert first == "-" or abs(complex(first) - orbit.multipliers[0]) < 1e-7
+    assert first == "-" or abs(complex(first) - orbit.multipliers[0]) < 1e-4
     assert float(rows["least margin"].split()[0]) == pytest.approx(
-        min(m.value for m in orbit.margins), rel=1e-5
+        min(m.value for m in orbit.margins), rel=1e-3
     )
