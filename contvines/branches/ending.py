@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Any
 
 from ..continuation.status import Status
-from ..number_text import number_text
+from ..shared.number_text import number_text
 
 
 class Reason(StrEnum):

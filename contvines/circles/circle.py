@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..continuation.hints import hinted
-from ..number_text import figures, figures_in
+from ..shared.number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
 

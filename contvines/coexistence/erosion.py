@@ -12,8 +12,8 @@ from ..branches.branch import Branch
 from ..continuation.hints import hinted, hinting
 from ..graph.shortening import short_word
 from ..graph.table import with_unit
-from ..number_text import figures, figures_in
 from ..problems.abilities import notation_of
+from ..shared.number_text import figures, figures_in
 from ..text_table import Table, terminal_width
 from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
 

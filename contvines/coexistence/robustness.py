@@ -12,8 +12,8 @@ from ..branches.branch import Branch
 from ..circles.section import section_of
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from ..number_text import figures
 from ..problems.abilities import Gauged
+from ..shared.number_text import figures
 from ..text_table import fitted
 from .basins import wilson
 from .population import Population, population_of

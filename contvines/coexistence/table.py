@@ -6,7 +6,7 @@ import html
 from typing import TYPE_CHECKING
 
 from ..graph.shortening import short_word
-from ..number_text import figures
+from ..shared.number_text import figures
 from ..text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:

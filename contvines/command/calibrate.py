@@ -10,7 +10,7 @@ import typer
 from contvines.command.frame import check_plot, draw, tell
 from contvines.command.options import JsonOption, PlotOption, SizeOption
 from contvines.command.study_data import Sort, Study
-from contvines.number_text import figures
+from contvines.shared.number_text import figures
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from contvines.number_text import figures
+from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
     import numpy as np

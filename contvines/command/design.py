@@ -13,7 +13,7 @@ from contvines.command.frame import check_plot, tell
 from contvines.command.frame import draw as draw_in
 from contvines.command.options import JsonOption, StudyArgument
 from contvines.command.study_data import Sort, Study
-from contvines.number_text import figures
+from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

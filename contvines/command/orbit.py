@@ -8,7 +8,7 @@ import typer
 
 from contvines.command.frame import check_plot, draw, load_file, say, tell
 from contvines.command.options import JsonOption, PlotOption, TrustOption
-from contvines.number_text import complex_figures, figures
+from contvines.shared.number_text import complex_figures, figures
 from contvines.text_table import fitted
 
 

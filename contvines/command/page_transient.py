@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import Told, loads_rows
-from contvines.number_text import figures
+from contvines.shared.number_text import figures
 
 
 def frequency_on_line(study: Study, text: str) -> float:

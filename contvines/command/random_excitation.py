@@ -12,7 +12,7 @@ import typer
 from contvines.command.frame import check_plot, draw, say, tell
 from contvines.command.options import JsonOption, PlotOption, SizeOption
 from contvines.command.study_data import Sort, Study
-from contvines.number_text import figures
+from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
     from orbits.design.random_excitation import RandomResponse

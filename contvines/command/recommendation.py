@@ -8,8 +8,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, TypeAdapter
 
-from contvines.number_text import figures
 from contvines.shared.modulation import BAND
+from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 
 MOST = 4  # sentences about what is not known

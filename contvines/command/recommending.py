@@ -15,8 +15,8 @@ import numpy as np
 
 from contvines.command.recommendation import MET, Curve, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
-from contvines.number_text import figures
 from contvines.shared.modulation import BAND
+from contvines.shared.number_text import figures
 from orbits.flows.catalogue import flow_of
 
 if TYPE_CHECKING:

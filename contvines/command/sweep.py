@@ -17,8 +17,8 @@ from contvines.command.frame import (
     tell,
 )
 from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption, SizeOption
-from contvines.number_text import figures
 from contvines.shared.modulation import BAND
+from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contvines.number_text import figures
+from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
     import numpy as np

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from ..number_text import number_text
+from ..shared.number_text import number_text
 
 
 class Status(IntEnum):

@@ -6,8 +6,8 @@ import html
 
 from ..branches.branch import Branch
 from ..branches.special_point import SpecialPoint
-from ..number_text import complex_figures
-from ..number_text import number_text as number
+from ..shared.number_text import complex_figures
+from ..shared.number_text import number_text as number
 from ..text_table import Table
 from .graph import Graph
 from .table import (

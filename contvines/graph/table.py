@@ -9,7 +9,7 @@ import numpy as np
 
 from ..bifurcation.kinds import BORDERS, KINDS
 from ..branches.special_point import TRANSCRITICAL
-from ..number_text import figures_in
+from ..shared.number_text import figures_in
 from ..text_table import Table, fitted, terminal_width
 from .proving import mark, told
 from .shortening import short_text, short_word, short_words

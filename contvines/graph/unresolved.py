@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ..number_text import number_text
+from ..shared.number_text import number_text
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from contvines.shared.modulation import BAND
 
 from ..graph.shortening import motion_name, short_word
 from ..graph.table import with_unit
-from ..number_text import figures, figures_in
+from ..shared.number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
-from ..number_text import figures
+from ..shared.number_text import figures
 from .figures import LOW, Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label

@@ -15,7 +15,7 @@ import numpy as np
 from contvines.shared.modulation import BAND, is_strong, modulation_of
 
 from ..graph.measures import default_measure
-from ..number_text import figures_in
+from ..shared.number_text import figures_in
 from .stretches import LEAST, gaps, highest, stretches, unseen
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import numpy as np
 from ..continuation.hints import hinted
 from ..graph.table import with_unit
 from ..interrupts import Resumable
-from ..number_text import figures
+from ..shared.number_text import figures
 from ..text_table import Table, fitted, terminal_width
 from .files import read, write
 from .outcomes import KNOWN, OF_ALL

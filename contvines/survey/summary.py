@@ -11,7 +11,7 @@ from ..graph.graph import Graph
 from ..graph.measures import default_measure
 from ..graph.shortening import motion_name
 from ..graph.table import with_unit
-from ..number_text import figures, figures_in
+from ..shared.number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .stretches import at_points, gaps, stretches
 

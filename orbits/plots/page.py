@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
-from contvines.number_text import complex_figures, figures
+from contvines.shared.number_text import complex_figures, figures
 from orbits.plots.portrait import title
 from orbits.plots.shown import quantities
 

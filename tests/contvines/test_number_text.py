@@ -3,8 +3,8 @@
 import doctest
 import math
 
-from contvines import number_text
-from contvines.number_text import complex_figures, figures, figures_in
+from contvines.shared import number_text
+from contvines.shared.number_text import complex_figures, figures, figures_in
 
 
 def test_the_examples_of_the_docstrings():
