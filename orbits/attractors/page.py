@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contvines.shared.modulation import BAND, SILENT, modulation_of
+from orbits.attractors.motion import wandering
 from orbits.attractors.settled import Settled
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.cycle_equations import SOLVED
+from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.protocol import Record
 from orbits.flows.solving import solved_at
@@ -374,8 +376,12 @@ def measure_names(machine: Machine) -> tuple[str, ...]:
 
 
 def modulated(found: PageAttractor, measures: Mapping[str, float]) -> str:
-    """How a motion is modulated; empty where it recurs or nothing shakes."""
-    return modulation_of(measures)
+    """How a motion is modulated, chaotic by its largest Lyapunov exponent; empty where it recurs or nothing shakes."""
+    if not modulation_of(measures):
+        return ""
+    simulator = PageSimulator(found.model, found.params)
+    simulator.go_on(found.state)
+    return modulation_of(measures, wandering(*growth(simulator.stepper), True) == "chaotic")
 
 
 def _band(run: PageTrajectory) -> dict[str, float]:

@@ -79,3 +79,16 @@ def test_a_beating_page_has_the_band_of_its_two_frequencies():
     assert (
         high == pytest.approx(2.0 / 0.2, rel=0.01) and low < 0.3 * high and row.modulation.startswith("weak")
     )
+
+
+def test_a_chaotic_page_says_so():
+    """Duffing's oscillator with two wells, damping 0.15 and force 0.3 cos(t): its neighbours part (F. C. Moon and P. J. Holmes,
+    Journal of Sound and Vibration 65 (1979) 275)."""
+    machine = Machine(
+        name="two_wells", states=("x", "v"), parameters={"w": 1.0}, phase_rate="w",
+        motion=lambda state, phase, p, contact: (
+            state.v, state.x - state.x**3 - 0.15 * state.v + 0.3 * cos(phase)
+        ), contacts=[],
+    )  # fmt: skip
+    (row,) = sweep(machine, "w", [1.0])
+    assert row.modulation == "chaotic weak modulation"
