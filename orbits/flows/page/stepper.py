@@ -294,10 +294,11 @@ class Stepper:
         before = self.state.copy()
         watch.move(self.state, self.clock, end, numbers)
         begin, self.clock = self.clock, end
-        values, _, guards = self._guards(self.modes)
-        for value, guard in zip(values, guards):
-            if value < 0.0 and guard.kind == HIT:
+        for value, rate, guard in zip(*self._guards(self.modes)):
+            if value <= 0.0 and rate < 0.0 and guard.kind == HIT:  # a gap that opens is negative by roundoff
                 self.state, self.clock = before, begin
+                if self.contact_values()[guard.contact] <= 0.0:
+                    self._off(guard.contact)
                 return
 
     def _rise(self, watch: Watch, numbers: np.ndarray, end: float) -> None:

@@ -176,6 +176,19 @@ def test_an_absorber_that_sticks_at_its_wall_does_not_hit_it_and_both_slip_at_on
     np.testing.assert_allclose([row[2] for row in found], [row[2] for row in expected], atol=1e-9)
 
 
+@pytest.mark.parametrize("excess", [0.0, 1.8e-15, 5e-13])
+def test_an_absorber_leaves_or_presses_its_wall_however_its_gap_is_rounded(excess):
+    """Away from the left wall as Newton's laws say (time stood still); at the right one it stays in its cavity (it fell through the wall)."""
+    expected = newton(VALUES, {"x1": -15.0}, 4)
+    away = simulate(coupled_two, {"x1": -15.0 - excess}, events=4)
+    assert sorted(away.letters[:2]) == ["u1", "u2"] and sorted(away.letters[2:]) == ["s1", "s2"]
+    seconds = away.clocks[1:5] / (2 * math.pi * 8.0)
+    np.testing.assert_allclose(seconds, [row[1] for row in expected], atol=1e-9)
+    pressed = simulate(coupled_two, {"x2": 10.0 + excess}, events=12, friction_1=0.02)
+    q, x2 = pressed.states[:, 0], pressed.states[:, 2]
+    assert "(R2" in pressed.letters and np.abs(q - x2).max() < 10.0 + 1e-9
+
+
 def test_it_goes_to_other_processes_and_a_machine_without_a_name_says_why_not():
     again = pickle.loads(pickle.dumps(coupled_two))
     assert again.settings() == coupled_two.settings()
