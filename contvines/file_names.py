@@ -19,7 +19,7 @@ def refuse_ending(path: Path, ending: str) -> None:
     Raises
     ------
     ValueError
-        With a sentence that names the file and a name that would do.
+        With a sentence that names the file and a valid name.
     """
     if path.name == "-":
         raise ValueError(

@@ -20,7 +20,7 @@ def shown(asked: Tell | bool | None = None) -> Iterator[Tell | None]:
     Parameters
     ----------
     asked : callable, bool or None
-        A callable is told everything. None: a line on a terminal or in a notebook, else silence; also if the environment variable
+        A callable is called with everything. None: a line on a terminal or in a notebook, else silence; also if the environment variable
         ``CONTVINES_PROGRESS`` is ``off``. True: the same, and a line a minute in a log or a pipe. False: silence.
     """
     if callable(asked):

@@ -71,7 +71,7 @@ class Simulated:
         return [found[key] for key in sorted(found)]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable motion as `witness` tells of it."""
+        """A stable motion as `witness` lists it."""
         kind = self.flow.kind(self.orbit(u, p))
         return {"word": _told(self.word), "periods": self.periods, "kind": kind}
 

@@ -124,7 +124,7 @@ class Orbit(Cycle):
 
     # ------------------------------------------------------------------ seeing it move
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
-        """The motion over one period: positions and velocities in the cavity, or a page's states.
+        """The motion over one period: positions and velocities in the cavity, or a declared machine's states.
 
         See `orbits.flows.native.sampling.sample`, `orbits.flows.page.sampling.sample`.
         """

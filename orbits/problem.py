@@ -350,13 +350,13 @@ class OrbitProblem(Simulated, Relatives, Answers):
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem | None:
     """The problem that `OrbitProblem.describe` described.
 
-    A machine on a page that this process has already is taken as it is. Else its page has to be run: only with `trust`; without it the
+    A declared machine that this process has already is taken as it is. Else its machine file has to be run: only with `trust`; without it the
     answer is None. The other machines are data.
 
     Raises
     ------
     PageChanged
-        If the page is gone or has changed.
+        If the machine file is gone or has changed.
     """
     settings, params = description["model"], np.array(description["params"], dtype=float)
     if "page" in settings:

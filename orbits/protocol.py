@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class BorderPoint(Protocol):
-    """What a problem is told of a special point at a border."""
+    """What a problem is given of a special point at a border."""
 
     @property
     def u(self) -> np.ndarray: ...

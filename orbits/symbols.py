@@ -1,7 +1,7 @@
 """Elementary functions on numbers, arrays and symbols alike: the functions of machine files.
 
 A page is run once with symbols in place of numbers. The operators ``+ - * / **`` and the functions of this module are
-recorded; what cannot be recorded (a comparison, ``abs``, ``math.cos``) is refused with a sentence that says what would do.
+recorded; what cannot be recorded (a comparison, ``abs``, ``math.cos``) is refused with a sentence that says the way out.
 """
 
 from __future__ import annotations

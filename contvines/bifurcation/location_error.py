@@ -43,7 +43,7 @@ def singular_within(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray
 
     With the null vectors of M = [[F_u, F_p], [tangent]], M x = 0 = y M, errors E of the entries change y M x by up to |y| E |x|; it
     grows along the branch with the slope y M' x (perturbation of a simple singular value: Stewart and Sun, Matrix Perturbation Theory
-    (1990), theorem IV.2.3). Zero where it cannot be told.
+    (1990), theorem IV.2.3). Zero where it cannot be determined.
     """
     problem = engine.problem
     if not isinstance(problem, Doubtful):
@@ -64,7 +64,7 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
     """By how much the value of a branch point seems to be wrong: one Newton step for what is zero there.
 
     The derivatives of y.F along both directions of the kernel, the tangent t and the null vector x of M (y as for `singular_within`),
-    vanish at a branch point: y F'' [t, t] a + y F'' [t, x] c = -y F' t and the same with x. Zero where the step cannot be had.
+    vanish at a branch point: y F'' [t, t] a + y F'' [t, x] c = -y F' t and the same with x. Zero where the step cannot be obtained.
     """
     if not isinstance(engine.problem, Doubtful):
         return 0.0

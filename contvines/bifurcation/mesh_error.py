@@ -24,7 +24,7 @@ SINGULAR = ("branch-point", "symmetry-breaking")
 
 
 def mesh_error(engine: Engine, special: Any) -> float | None:
-    """Error of the parameter at a special point, from a finer mesh; None where that cannot be had.
+    """Error of the parameter at a special point, from a finer mesh; None where that cannot be obtained.
 
     Parameters
     ----------

@@ -175,7 +175,7 @@ def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
     """Whether what grows on the way to the border stops growing at the very end, and becomes what is computed there.
 
     As where another impact, before the one that is about to graze, is almost as slow. Nearer than rounding lets the vanishing margin
-    come to zero nothing grows any more, and nothing can be told.
+    come to zero nothing grows any more, and nothing can be determined.
     """
     largest = max(map(abs, computed))
     _, rows = _rows(segment, position, NEAREST)

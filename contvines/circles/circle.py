@@ -41,7 +41,7 @@ class Circle:
     simulated : float or None
         Rotation number of a simulation that has settled; None where it settles on something else.
     stable : bool or None
-        Whether a displaced simulation comes back; None where that cannot be told.
+        Whether a displaced simulation comes back; None where that cannot be determined.
     """
 
     value: float

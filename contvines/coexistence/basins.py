@@ -186,7 +186,7 @@ def basins(
     plane : two names, optional
         Coordinates of the plane; by default the last two of ``population.names`` among position and velocity.
     points : int or (int, int), optional
-        Across and up; by default ``population.across``: 200, of machines on a page 60.
+        Across and up; by default ``population.across``: 200, of declared machines 60.
     within : mapping, optional
         Ranges of the coordinates; by default the machine's box.
     fixed : mapping, optional

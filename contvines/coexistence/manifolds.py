@@ -125,7 +125,7 @@ def check_plane(graph: Graph, parameter: str, plane: tuple[str, str], others: Ma
     Raises
     ------
     ValueError
-        Saying what would do.
+        Saying the way out.
     """
     if graph.parameter != parameter:
         raise ValueError(f"saddles: the graph's parameter is {graph.parameter}, not {parameter}")

@@ -198,7 +198,7 @@ class MapPopulation:
         return []
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
-        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be had again."""
+        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return self.problem.cycle_through(np.reshape(u, (-1, self.problem.node)), p)
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
@@ -231,7 +231,7 @@ class MapPopulation:
         return len(points) % len(known) == 0 and bool(gaps.min() < NEAR * self.size)
 
     def _wandering(self, x: np.ndarray, p: float) -> Cycle:
-        """A motion that does not recur, told by the growth of a tangent vector; blocks give the error of the mean."""
+        """A motion that does not recur, judged by the growth of a tangent vector; blocks give the error of the mean."""
         state = x.copy()
         functions = self.problem.functions
         vector = np.ones(self.problem.node) / np.sqrt(self.problem.node)

@@ -20,7 +20,7 @@ The contract, in words:
    from starts, each once: it reaches a cycle from far more starts than settle on it. What is known in closed form is among them.
 8. ``population.closed(p)`` returns ``(problem, u)`` of the motions known in closed form, stable or not, each once.
 9. ``population.restored(problem.describe(), u, p)`` returns the problem of a motion that `settle`, `embedded` or `returning` had at p, measured as theirs; None
-   where it cannot be had again.
+   where it cannot be rebuilt.
 10. ``population.observed(motion.state, p)`` returns the measures by name of the motion through this state, from simulation; none without a state.
 10. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas; without it only continuation is counted.
 """

@@ -57,7 +57,7 @@ class Robustness:
     units : dict
         Units of parameters by name, empty where they are plain numbers.
     gauges : dict
-        What one of a coordinate is in the unit in which people are told it, and that unit, by name; empty for plain numbers.
+        What one of a coordinate is in the unit in which it is shown, and that unit, by name; empty for plain numbers.
     """
 
     parameter: str
@@ -77,12 +77,12 @@ class Robustness:
     gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
 
     def shown(self, state: np.ndarray) -> np.ndarray:
-        """A state, or a change of one, in the units in which people are told it."""
+        """A state, or a change of one, in the units in which it is shown."""
         return state * np.array([self.gauges.get(name, (1.0, ""))[0] for name in self.names])
 
     @property
     def shown_units(self) -> dict[str, str]:
-        """The units of the numbers that are told, by name of parameter and coordinate."""
+        """Units of the numbers that are shown, by name of parameter and coordinate."""
         named = (self.parameter, *self.parameters)
         own = {name: self.units[name] for name in named if self.units.get(name)}
         return own | {name: unit for name, (_, unit) in self.gauges.items()}
@@ -165,7 +165,7 @@ def robustness(
     directions : int
         Rays from each point.
     starts : int, optional
-        Starts that tell the share, 1024 (of a machine on a page 256); 0: none are made, the share is nan.
+        Starts that tell the share, 1024 (of a declared machine 256); 0: none are made, the share is nan.
     seed : int
         Of the starts, and of the rays where states have more than two coordinates.
     vary : sequence of str

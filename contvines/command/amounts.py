@@ -23,7 +23,7 @@ def amount(option: str, text: str, name: str, units: Mapping[str, str]) -> float
     Raises
     ------
     ValueError
-        If it is neither; the sentence says what would do.
+        If it is neither; the sentence says the way out.
     """
     try:
         value = float(text)

@@ -16,7 +16,7 @@ def check_bounds(study: Study, command: str) -> None:
     Raises
     ------
     ValueError
-        With a sentence that names the measure and what would do.
+        With a sentence that names the measure and the known ones.
     """
     if not study.bounds:
         return

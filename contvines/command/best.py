@@ -68,7 +68,7 @@ def choose(
     fresh: bool,
     quiet: bool,
 ) -> None:
-    """Survey, choose, refine, and say what is sacrificed."""
+    """Survey, choose, refine, and print the other outcomes."""
     import dataclasses
 
     from contvines.command.compare import peaks_compared, told_compared

@@ -163,7 +163,7 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
         for j in range(i):
             if abs(found.correlation[i, j]) > CLOSE:
                 lines.append(
-                    f"{names[j]} and {first} can hardly be told apart by these data (correlation {found.correlation[i, j]:.3f})"
+                    f"{names[j]} and {first} can hardly be distinguished by these data (correlation {found.correlation[i, j]:.3f})"
                 )
     lines += ["", "for [survey] of the study:"]
     for name, value in found.values.items():
@@ -177,7 +177,7 @@ def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -
 
 
 def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
-    """The machine told by the unknown parameters, and their values in the study."""
+    """The machine given by the unknown parameters, and their values in the study."""
     from contvines.command.compose import machine
     from orbits.machines.physical.quantities import near_quantity
 

@@ -45,7 +45,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     if study.sort not in (Sort.CATALOGUE, Sort.PHYSICAL):
         raise StudyError(
             f"{study.path}: [model] name = {study.name!r}: design figures are closed forms of the built-in absorbers; "
-            "contvines survey asks many machines of a page."
+            "contvines survey asks many machines of a declared machine."
         )
     slope = (
         float(study.model.column(study.model.vector(study.loose), "slope"))

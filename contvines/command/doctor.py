@@ -10,6 +10,7 @@ import typer
 
 from contvines.command.frame import tell
 from contvines.command.options import JsonOption
+from contvines.shared.extras import pip_install
 
 EXTRAS = {
     "machines": ("heyoka",),
@@ -42,7 +43,7 @@ def doctor(json: JsonOption = False) -> None:
         for name, value in made.items():
             typer.echo(f"{name:>10}  {value}")
         for name, there in extras.items():
-            way = "installed" if there else f'missing; pip install "contvines[{name}]" adds it'
+            way = "installed" if there else f"missing; {pip_install(name)} adds it"
             typer.echo(f"{name:>10}  {way}")
         verdict = "passed" if test["passed"] else "FAILED"
         typer.echo(

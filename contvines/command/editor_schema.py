@@ -129,7 +129,7 @@ def _physical(name: str) -> dict[str, Any] | None:
 
 
 def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
-    """What a Python file declares, told from the others by the name of its file; its parameters are known when that has run."""
+    """What a Python file declares, distinguished from the others by the name of its file; its parameters are known when that has run."""
     from orbits.machines.catalogue import PAGES, STRUCTURE
 
     about = f'a file beside the study, and the machine or flow in it: "file.py:name"; or one that comes with the package: {", ".join([STRUCTURE, *PAGES])}'

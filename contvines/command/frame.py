@@ -172,7 +172,7 @@ def check_special(graph: "Graph", file: Path, label: str) -> None:
 
 
 def refuse_detached(graph: "Graph", *labels: str) -> None:
-    """Special points whose problem is not at hand, before work starts: a sentence that says why, and what would do."""
+    """Special points whose problem is not at hand, before work starts: a sentence that says why, and a way out."""
     from contvines.problems.registry import without_problem
 
     for label in labels:

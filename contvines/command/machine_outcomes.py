@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def dissipation(found: Findings) -> dict[str, float]:
-    """Power that impacts and friction dissipate where the stable response of the diagram is largest; nan of a page without ``energy=``."""
+    """Power that impacts and friction dissipate where the stable response of the diagram is largest; nan of a declared machine without ``energy=``."""
     from contvines.survey.outcomes import highest, stretches
 
     top = highest(stretches(found.graph))

@@ -35,7 +35,7 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
     page, _, name = said.partition(":")
     if not name:
         raise StudyError(
-            f'[model] name = {said!r} names a page but no machine on it; "{page}:machine" would do.'
+            f'[model] name = {said!r} names a file but no machine in it; "{page}:machine" would do.'
         )
     file = own_code(path, page, f"[model] name = {said!r}")
     flow = load_flow(file, name) if file.is_file() else None

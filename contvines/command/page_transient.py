@@ -1,4 +1,4 @@
-"""Transients of machines on a page, and the frequency from which one runs up."""
+"""Transients of declared machines, and the frequency from which one runs up."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def time_on_line(text: str, second: str) -> float:
 def of_page(
     study: Study, release: str | None, begin: str | None, over: str | None, within: str | None
 ) -> Told:
-    """A transient of a page: its states, its impacts and what these and friction take."""
+    """A transient of a declared machine: its states, its impacts and what these and friction take."""
     import numpy as np
 
     from contvines.command.measured import length_on_line
@@ -107,7 +107,7 @@ def of_page(
 
 
 def _states(study: Study, text: str) -> dict[str, float]:
-    """`--release` of a page: states by name."""
+    """`--release` of a declared machine: states by name."""
     from contvines.shared.near_names import did_you_mean
     from orbits.machines.physical import units
 

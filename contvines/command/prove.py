@@ -9,6 +9,7 @@ import typer
 from contvines.command.amounts import interval
 from contvines.command.frame import held, interruptible, load_file
 from contvines.command.options import JsonOption, TrustOption
+from contvines.shared.extras import pip_install
 from contvines.text_table import fitted
 
 MANY = 2000  # boxes: checking more of them is announced
@@ -165,7 +166,7 @@ def _check(file: Path, labels: list[str], json: bool) -> None:
         from orbits.proofs.checker import check as verify
     except ImportError:
         raise ValueError(
-            "--check needs the package mpmath, which is not installed: pip install 'contvines[proofs]'"
+            f"--check needs the package mpmath, which is not installed: {pip_install('proofs')}"
         ) from None
 
     verdicts: dict[str, dict[str, Any]] = {}

@@ -55,7 +55,7 @@ def random(
     """The answer to a random base motion with a spectral density: statistics with error bars, densities.
 
     [random] psd = [[2, 0.1], [20, 0.1]] are frequencies [Hz] and densities of the base's acceleration [(m/s^2)^2/Hz], linear between; of a study without units
-    frequencies in omega_0 and densities per omega_0. Of a page name the parameter that is random, too. The same seed gives the same numbers.
+    frequencies in omega_0 and densities per omega_0. Of a declared machine name the parameter that is random, too. The same seed gives the same numbers.
     """
     from contvines.command.compose import machine
     from contvines.command.study import read_study

@@ -127,7 +127,7 @@ def recommend(
     Raises
     ------
     ValueError
-        If nothing can be chosen; the sentence names the field and what would do.
+        If nothing can be chosen; the sentence names the field and a way out.
     """
     from contvines.command.study import read_study
 
@@ -281,7 +281,7 @@ class _Work:
     def told(
         self, places: list[Place], best: Place | None, cost: float, target: float | None
     ) -> Recommendation:
-        """All that is told of the choice."""
+        """All that is printed of the choice."""
         from contvines.command.compare import peaks_compared
         from orbits.design.references import KINDS
 
@@ -298,7 +298,7 @@ class _Work:
         compared = peaks_compared(model, study.parameter, study.within, KINDS) if has_bare else {}
         if not has_bare:
             unknown.append(
-                "the response of a bare, a tuned and a friction-damped machine, start-up: they are told of the machine 'coupled' alone"
+                "the response of a bare, a tuned and a friction-damped machine, start-up: they are available for the machine 'coupled' alone"
             )
         bare = compared.get("bare", (math.nan, 0.0))[0]
         goal = QUIETED * bare if target is None else target
@@ -328,7 +328,7 @@ class _Work:
         has = flow_of(self.model).measure_names(self.model)
         most = {name: _largest(rows[name]) for name in LOADS if name in has}
         if not most:
-            unknown.append("loads: a page tells them of walls, with energy=")
+            unknown.append("loads: a declared machine has them for walls, with energy=")
         unknown += [
             f"{name}: no motion that was met has it" for name, value in most.items() if math.isnan(value)
         ]

@@ -1,4 +1,4 @@
-"""Lines that cannot be understood, refused in one sentence each: what is wrong, and what would do."""
+"""Lines that cannot be understood, refused in one sentence each: what is wrong, and a way out."""
 
 import difflib
 import re

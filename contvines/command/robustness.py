@@ -31,7 +31,7 @@ def robustness(
         typer.Option(
             "--starts",
             min=1,
-            help="Starts that tell the share of the basin; 1024 by default, of a machine on a page 256.",
+            help="Starts that tell the share of the basin; 1024 by default, of a declared machine 256.",
         ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the starts.")] = 0,

@@ -24,7 +24,7 @@ class Section(BaseModel):
 
 
 def text(would_do: str, **limits: Any) -> Any:
-    """A field with limits and what would do, for refusals and for editors."""
+    """A field with limits and a way out, for refusals and for editors."""
     return Field(description=would_do, **limits)
 
 
@@ -51,7 +51,7 @@ class WordSection(Section):
 
 
 class PageStart(WordSection):
-    """`[start]` of a machine on a page: the word may be left out (the attractor from `state` is taken)."""
+    """`[start]` of a declared machine: the word may be left out (the attractor from `state` is taken)."""
 
     state: Annotated[dict[str, float] | None, text("states by name, for example { x = 0.1 }")] = None
 
@@ -168,7 +168,7 @@ class RandomSection(Section):
         list[Annotated[list[float], Field(min_length=2, max_length=2)]],
         text("rows [frequency, density], for example [[2, 0.1], [20, 0.1]]", min_length=2),
     ]
-    parameter: Annotated[str | None, text("the name of a parameter of a page")] = None
+    parameter: Annotated[str | None, text("the name of a parameter of a declared machine")] = None
     periods: Annotated[float, text("a number from 10 to 1e6, for example 2000", ge=10, le=1e6)] = 2000.0
     records: Annotated[int, text("a whole number from 2 to 10000, for example 8", ge=2, le=10_000)] = 8
     seed: Seed = 0

@@ -1,6 +1,6 @@
 """A TOML study, read and checked before any work starts.
 
-Every value that cannot be used is refused with a sentence that names the field, the value and what would do;
+Every value that cannot be used is refused with a sentence that names the field, the value and a way out;
 all such sentences of one study are reported together.
 """
 

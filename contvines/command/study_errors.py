@@ -1,4 +1,4 @@
-"""What is wrong with a study, in sentences that name the field, the value and what would do."""
+"""What is wrong with a study, in sentences that name the field, the value and a way out."""
 
 import re
 from typing import Any, get_args
@@ -26,7 +26,7 @@ WANTED = {
 
 
 class StudyError(ValueError):
-    """A study that cannot be run; the message says which value and what would do."""
+    """A study that cannot be run; the message says which value and a way out."""
 
 
 def validated(model: type[Section], data: dict[str, Any], wrong: list[str] | None = None) -> Any:
@@ -100,7 +100,7 @@ def _sentence(model: type[Section], kind: str, loc: list[Any], error: Any) -> st
         known = re.findall(r"'([^']*)'", str(error["ctx"]["expected"]))
         what = "parameter" if key == "parameter" else "choice"
         return f"{place} = {value}: there is no such {what}{did_you_mean(str(error['input']), known)}; choose one of {', '.join(known)}."
-    would = f"; {_would_do(fields[loc[1]])} would do."
+    would = f"; expected {_would_do(fields[loc[1]])}."
     if kind == "missing":
         return f"{place} is missing{would}"
     if kind == "finite_number":

@@ -27,7 +27,7 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
     Raises
     ------
     ValueError
-        If the plan cannot be; the sentence names the field, the value and what would do.
+        If the plan cannot be; the sentence names the field, the value and a way out.
     """
     from contvines.command.compose import machine
     from contvines.survey import planned
@@ -131,7 +131,7 @@ def outcomes_of(study: Study) -> list[Any]:
                 and not (said == "dissipation" and "impact_loss" in measures_of(study))
             ):
                 raise ValueError(
-                    f"[survey] outcomes: {said!r} is told by the built-in machines (dissipation also by a page with energy=); for equations of "
+                    f"[survey] outcomes: {said!r} is known for the built-in machines (dissipation also by a declared machine with energy=); for equations of "
                     'your own give a function of your own: "file.py:function"'
                 )
             else:

@@ -26,7 +26,7 @@ class Kept:
     Attributes
     ----------
     cells : text of the CSV's columns.
-    attractor : kind of the motion, `sliding` told from `periodic`.
+    attractor : kind of the motion, `sliding` distinguished from `periodic`.
     recurrent : whether the motion recurs.
     modulation : how it is modulated; see `contvines.shared.modulation`.
     band : lowest, mean and highest of its largest responses in each forcing period; empty where it has none.

@@ -1,4 +1,4 @@
-"""TOML text to nested dicts; what is no TOML is refused in a sentence that says what would do."""
+"""TOML text to nested dicts; what is no TOML is refused in a sentence that says the way out."""
 
 import re
 import tomllib
@@ -19,7 +19,7 @@ _YES_NO = {
 
 
 class TomlError(ValueError):
-    """Text that is no TOML, or none that a study could be; the message says why and what would do."""
+    """Text that is no TOML, or none that a study could be; the message says why and a way out."""
 
 
 def toml_data(text: str) -> dict[str, Any]:
@@ -59,7 +59,7 @@ def _deeper_than(value: object, levels: int) -> bool:
 
 
 def _hint(text: str) -> str:
-    """What is wrong with the first line that is no TOML, and what would do; empty where it is not one of people's habits."""
+    """What is wrong with the first line that is no TOML, and a way out; empty where it is not one of people's habits."""
     lines = text.splitlines()
     for number, line in enumerate(lines, start=1):
         found = _LINE.match(line[:1000])

@@ -65,7 +65,7 @@ def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
     tolerance : float
     metric : Metric
     noise : float
-        Accuracy to which corrections can be had at all, because the equations are not smooth below it; 0 for roundoff.
+        Accuracy to which corrections can be obtained at all, because the equations are not smooth below it; 0 for roundoff.
 
     Returns
     -------

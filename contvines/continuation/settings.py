@@ -94,7 +94,7 @@ class Settings:
     rounding : float
         Special points: changes of the parameter, in its unit, that are none.
     aside : float
-        Special points: part of a segment, either side of a place, by which signs and tangents there are told.
+        Special points: part of a segment, either side of a place, by which signs and tangents there are read.
     close : float
         Special points: distance from a border (in the metric) of the point that tells one-sided slopes and limits.
     near : float
@@ -128,7 +128,7 @@ class Settings:
     one_place : float
         Special points: distance (in the metric) below which two are at one place, and a fold at a border is the border.
     offset : float
-        Special points: distance (in the metric) over which slopes are told that say how errors move a point.
+        Special points: distance (in the metric) over which slopes are measured that say how errors move a point.
     mesh_caution : float
         Special points: times the difference to a mesh with halved intervals, the stated error of one on a mesh.
     symmetric : float

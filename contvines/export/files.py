@@ -74,7 +74,7 @@ def check_target(path: Path, ending: str) -> None:
     Raises
     ------
     ValueError
-        With a sentence that names the file and a name that would do.
+        With a sentence that names the file and a valid name.
     """
     if path.is_dir():
         raise ValueError(f"{path}: cannot be written: this is a folder; give the name of a file with -o.")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..shared.extras import pip_install
 from .columns import branch_columns, graph_columns, measures_of, parameter_head
 
 if TYPE_CHECKING:
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from ..branches.branch import Branch
     from ..graph.graph import Graph
     from ..loci.chart import Chart
-
-MISSING = "this needs {0}: pip install 'contvines[tables]'"
 
 
 def graph_frame(graph: Graph) -> DataFrame:
@@ -166,7 +165,7 @@ def _xarray() -> ModuleType:
     try:
         import xarray
     except ImportError:
-        raise ValueError(MISSING.format("xarray")) from None
+        raise ValueError(f"this needs xarray: {pip_install('tables')}") from None
     return xarray
 
 
@@ -174,5 +173,5 @@ def _pandas() -> ModuleType:
     try:
         import pandas
     except ImportError:
-        raise ValueError(MISSING.format("pandas")) from None
+        raise ValueError(f"this needs pandas: {pip_install('tables')}") from None
     return pandas

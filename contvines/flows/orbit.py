@@ -100,7 +100,7 @@ class CycleOrbit:
 
     @property
     def multiplier_errors(self) -> np.ndarray:
-        """Error of each multiplier, told in the same way."""
+        """Error of each multiplier, in the same way."""
         apart = np.abs(self.multipliers[:, None] - self._finer[1])
         return 2.0 * apart.min(axis=1, initial=np.inf)
 

@@ -313,7 +313,7 @@ class FlowPopulation:
         return bool((np.linalg.eigvals(self.field.jacobian(x[None], p)[0]).real < 0.0).all())
 
     def _wandering(self, x: np.ndarray, p: float) -> Settled:
-        """Motions that do not recur, told by the growth of vectors along them; motions and blocks of time give the error of the mean."""
+        """Motions that do not recur, judged by the growth of vectors along them; motions and blocks of time give the error of the mean."""
         d, count = self.node, max(len(x), FEW)
         states = x[np.arange(count) % len(x)]
         rng = np.random.default_rng(2)
@@ -367,7 +367,7 @@ class FlowPopulation:
         return []
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
-        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be had again."""
+        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return rebuild(description)
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:

@@ -421,7 +421,7 @@ class FlowProblem:
         return sorted(found, key=lambda one: (str(one["word"]), one["kind"], one.get("u", [])))
 
     def known(self, problem: Any, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable solution as `witness` tells of it."""
+        """A stable solution as `witness` lists it."""
         if problem.spectrum == "flow":
             word, periods, curve = "equilibrium", 0, np.asarray(u, dtype=float)[None, : problem.node]
         else:

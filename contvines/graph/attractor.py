@@ -43,7 +43,7 @@ class Attractor:
 
     @property
     def name(self) -> str:
-        """How people are told of it: its word, or what kind of motion has none."""
+        """Name that is shown: its word, or what kind of motion has none."""
         return self.word or ("no events" if self.kind == "periodic" else self.kind)
 
     def to_dict(self) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from ..bifurcation.kinds import LABELS, RENAMED, kind_named
 from ..continuation.hints import hinted
 from ..interrupts import Resumable
 from ..problems.abilities import notation_of
+from ..shared.extras import pip_install
 from .attractor import Attractor
 from .unresolved import Unresolved
 
@@ -88,7 +89,7 @@ class Graph(Resumable):
     proofs : dict of dict
         By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
     unresolved : list of Unresolved
-        Stretches of branches on which special points cannot be told apart, with what is certain on both sides.
+        Stretches of branches on which special points cannot be distinguished, with what is certain on both sides.
     """
 
     parameter: str = "p"
@@ -256,7 +257,7 @@ class Graph(Resumable):
             import networkx
         except ImportError:
             raise ValueError(
-                "this needs networkx, which is not installed: pip install 'contvines[tables]'"
+                f"this needs networkx, which is not installed: {pip_install('tables')}"
             ) from None
         network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)
         network.add_nodes_from(self.nodes())

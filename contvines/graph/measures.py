@@ -43,7 +43,7 @@ def undrawn(graph: Graph, x: str, y: str) -> str:
 
 
 def measured(branch: Branch, name: str) -> np.ndarray:
-    """A measure along a branch, shape (n,); what cannot be had is refused with the names that can.
+    """A measure along a branch, shape (n,); what cannot be obtained is refused with the names that can.
 
     Raises
     ------

@@ -55,7 +55,7 @@ def graph_from_entries(
     Parameters
     ----------
     entries : contents by kind and key, in the order in which they were written.
-    problems : rebuild the problems of the branches, so that orbits and measures can be had.
+    problems : rebuild the problems of the branches, so that orbits and measures can be obtained.
     trust : import functions of the user's that the branches name (see :mod:`contvines.problems.registry`).
 
     Raises

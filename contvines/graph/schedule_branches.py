@@ -232,7 +232,7 @@ def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
 
 
 def _cubic(problem: Any, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
-    """The coefficient from derivatives of the equations, where these can be had; else the one of the branch that leaves."""
+    """The coefficient from derivatives of the equations, where these can be obtained; else the one of the branch that leaves."""
     if isinstance(problem, Adaptive) or len(u) > DERIVATIVES:
         return rough
     with OPEN:
@@ -438,7 +438,7 @@ def _recorded(seeds: list[Any]) -> dict[str, Any]:
 
 
 def _rebuilt(record: Any) -> list[Any] | None:
-    """The problems of a journal's record; None where one of them cannot be had from it, and is asked for again."""
+    """The problems of a journal's record; None where one of them cannot be obtained from it, and is asked for again."""
     if record is None:
         return None
     try:

@@ -45,7 +45,7 @@ class Unresolved:
             f"{self.branch} at {parameter} = {number_text(0.5 * (self.low + self.high), 12)}, {width} wide"
         )
         if self.reason == "neighbours":
-            return f"unresolved on {where}: {' and '.join(self.points)} cannot be told apart"
+            return f"unresolved on {where}: {' and '.join(self.points)} cannot be distinguished"
         if self.reason == "determinant":
             return f"unresolved on {where}: a branch point, or two branches nearer than that"
         counts = (

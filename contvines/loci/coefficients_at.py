@@ -15,7 +15,7 @@ CRITICAL = 1e-5  # distance of a critical multiplier from the boundary
 
 
 def coefficients(point: PlanePoint) -> dict[str, float]:
-    """Normal-form coefficients at a point, by name; none where the derivatives cannot be had.
+    """Normal-form coefficients at a point, by name; none where the derivatives cannot be obtained.
 
     The normal forms are those of :mod:`contvines.bifurcation.normal_forms.critical`; beside their coefficients "angle" is that of a pair (of the
     problem's own period), "omega" its frequency, where the kind itself leaves them open.

@@ -127,7 +127,7 @@ class KnownMotions:
 
 
 def _told(problem: Any) -> bool:
-    """Whether a solution can be told as `witness` tells it; one without events is seen by any simulation."""
+    """Whether a solution can be listed as `witness` lists it; one without events is seen by any simulation."""
     about = problem.describe()
     return isinstance(problem, Attracting) and about.get("word") != ""
 

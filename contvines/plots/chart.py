@@ -173,7 +173,7 @@ def _label(axes: Axes, chart: Chart, taken: list[Box]) -> None:
 
 
 def _tint(axes: Axes, chart: Chart) -> None:
-    """Tint and hatch the regions, those alike in which the same is stable: told apart without colours, too."""
+    """Tint and hatch the regions, those alike in which the same is stable: distinguished without colours, too."""
     seen: dict[tuple[str, ...], int] = {}
     for region in chart.regions:
         place = seen.setdefault(tuple(sorted(region.words)), len(seen))

@@ -157,7 +157,7 @@ def check_style(style: str | None) -> None:
     Raises
     ------
     ValueError
-        With the names that would do.
+        With the valid names.
     """
     if style is None:
         return

@@ -125,7 +125,7 @@ class Picture:
             self.spots.append((point.label, point.kind, px, py))
 
     def draw_unresolved(self) -> None:
-        """A hollow square round each stretch on which special points cannot be told apart."""
+        """A hollow square round each stretch on which special points cannot be distinguished."""
         for entry in self.graph.unresolved:
             branch = self.graph.branches.get(entry.branch)
             if branch is None or not 0 <= entry.index < len(branch):

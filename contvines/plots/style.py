@@ -34,7 +34,7 @@ class Mark:
     filled: bool = False
 
     def look(self, color: str, size: float) -> dict[str, Any]:
-        """What `plot` is told to draw it."""
+        """Arguments of `plot` to draw it."""
         return {
             "linestyle": "none",
             "marker": self.marker,
@@ -52,7 +52,7 @@ UNRESOLVED = Mark("unresolved", "s")
 
 
 def line_of(state: str, color: str) -> dict[str, Any]:
-    """What `plot` is told to draw a branch in a state."""
+    """Arguments of `plot` to draw a branch in a state."""
     from matplotlib import rcParams
 
     width = WIDTHS[state] * float(rcParams["lines.linewidth"])

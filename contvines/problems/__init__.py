@@ -1,1 +1,1 @@
-"""Problems: what contvines must be told about one, and two that are made of Python callables."""
+"""Problems: what contvines must know about one, and two that are made of Python callables."""

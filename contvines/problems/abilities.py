@@ -50,7 +50,7 @@ class Sectioned(Protocol):
 
 @runtime_checkable
 class Gauged(Protocol):
-    """Its states may have units: what one of a coordinate of its section is in the unit in which people are told it, and that unit; none for plain numbers."""
+    """Its states may have units: what one of a coordinate of its section is in the unit in which it is shown, and that unit; none for plain numbers."""
 
     def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]: ...
 

@@ -179,7 +179,7 @@ class CallableProblem(ProblemDefaults):
 
     @property
     def noise(self) -> float:
-        """Accuracy to which unknowns can be had, relative to their scale; 0: to roundoff."""
+        """Accuracy to which unknowns can be obtained, relative to their scale; 0: to roundoff."""
         return 0.0 if self.scales is None else self.scales.noise
 
     @property
@@ -231,7 +231,7 @@ class CallableProblem(ProblemDefaults):
         return weighed(beside, work.jacobian, lengths, known)
 
     def rates(self, work: DenseWork | SparseWork) -> list[float]:
-        """Sizes of the eigenvalues of dF/du, where they are wanted and can be had cheaply."""
+        """Sizes of the eigenvalues of dF/du, where they are wanted and can be obtained cheaply."""
         return []
 
     def noise_at(self, work: DenseWork | SparseWork, scale: np.ndarray, border: np.ndarray) -> float:
@@ -311,7 +311,7 @@ class CallableProblem(ProblemDefaults):
         return found
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
-        """Why a branch ends where Newton's method fails, as far as that can be told; else an empty string.
+        """Why a branch ends where Newton's method fails, as far as that can be determined; else an empty string.
 
         Parameters
         ----------

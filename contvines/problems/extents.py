@@ -46,7 +46,7 @@ def measured(
     Parameters
     ----------
     f : callable
-        (u of shape (n,)) -> n numbers, not finite where they cannot be had.
+        (u of shape (n,)) -> n numbers, not finite where they cannot be obtained.
     u : ndarray, shape (n,)
     grain : float or ndarray
         Standard deviation of f.
@@ -79,7 +79,7 @@ def measured(
 
 
 def of_parameter(f: Callable[[float], np.ndarray], p: float) -> np.ndarray:
-    """Size of the terms with the parameter in each equation, p times the derivative; 0 where it cannot be had.
+    """Size of the terms with the parameter in each equation, p times the derivative; 0 where it cannot be obtained.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def weighed(
     Parameters
     ----------
     f : callable
-        (v of shape (n,)) -> values of the equations where the unknowns are changed by v; not finite where they cannot be had.
+        (v of shape (n,)) -> values of the equations where the unknowns are changed by v; not finite where they cannot be obtained.
     matrix : ndarray, shape (n, n)
         Derivatives of the equations.
     lengths : ndarray, shape (n,)

@@ -1,4 +1,4 @@
-"""What contvines must be told about a problem: the protocol, and nothing else.
+"""What contvines must know about a problem: the protocol, and nothing else.
 
 The contract, in words:
 
@@ -131,7 +131,7 @@ class Seed:
 
 
 class BorderPoint(Protocol):
-    """What a problem is told of a special point at a border."""
+    """What a problem is given of a special point at a border."""
 
     @property
     def u(self) -> np.ndarray: ...

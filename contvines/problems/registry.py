@@ -168,7 +168,7 @@ def _find(where: str, trust: bool) -> Callable | None:
 
 
 def without_problem(label: str, description: Mapping[str, Any] | None = None) -> str:
-    """The sentence for a branch or point that was loaded without its problem: why, and what would do."""
+    """The sentence for a branch or point that was loaded without its problem: why, and a way out."""
     try:
         named = bool(description and description.get("factory") and factory(description["factory"]))
     except UnknownFactory as error:

@@ -28,7 +28,7 @@ class Scales:
     rate : float
         Typical size of an eigenvalue of dF/du.
     noise : float
-        Accuracy to which unknowns can be had, relative to their scale; 0: to roundoff.
+        Accuracy to which unknowns can be obtained, relative to their scale; 0: to roundoff.
     untold : tuple of int
         Unknowns of which nothing tells how large they become; their scale is 1.
     """

@@ -79,7 +79,7 @@ class SimulatedMap:
         ]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable cycle as `witness` tells of it."""
+        """A stable cycle as `witness` lists it."""
         return {"word": f"{self.cycle}-cycle", "periods": self.cycle, "kind": "cycle"}
 
 
@@ -115,7 +115,7 @@ class SimulatedFlow:
         return sorted(found, key=lambda one: (one["kind"], one.get("u", [])))
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable equilibrium as `witness` tells of it."""
+        """A stable equilibrium as `witness` lists it."""
         place = [float(x) for x in u[: self.node]]
         return {"word": "equilibrium", "periods": 0, "kind": "equilibrium", "u": place}
 

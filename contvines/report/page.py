@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..export import json_text
+from ..shared.extras import pip_install
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
@@ -20,7 +21,6 @@ PROGRAMS = {
     "chart": ("common.js", "orbit.js", "chart.js"),
     "survey": ("common.js", "survey.js"),
 }
-MISSING = "a report needs plotly: pip install 'contvines[report]'"
 
 
 def write_report(
@@ -119,7 +119,7 @@ def _plotly() -> str:
     try:
         from plotly.offline import get_plotlyjs
     except ImportError:
-        raise ValueError(MISSING) from None
+        raise ValueError(f"a report needs plotly: {pip_install('report')}") from None
     return get_plotlyjs()
 
 

@@ -59,8 +59,6 @@ def animated(
     seconds, rate : float, int
         How long it takes, and pictures a second; see `pictures`.
     """
-    from matplotlib.animation import FuncAnimation
-
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
 
@@ -68,10 +66,26 @@ def animated(
         move(frame)
         return []
 
-    made = FuncAnimation(figure, draw, frames=pictures(seconds, rate), interval=1000.0 / rate, blit=False)
+    made = _animation_class()(
+        figure, draw, frames=pictures(seconds, rate), interval=1000.0 / rate, blit=False
+    )
     if path is not None:
         save_animation(made, path, rate)
     return made
+
+
+def _animation_class() -> type[FuncAnimation]:
+    from matplotlib import rc_context
+    from matplotlib.animation import FuncAnimation
+
+    class Animation(FuncAnimation):
+        """An animation that shows itself in a notebook, with its player."""
+
+        def _repr_html_(self) -> str:
+            with rc_context({"savefig.dpi": DPI}):
+                return self.to_jshtml()
+
+    return Animation
 
 
 def pictures(seconds: float, rate: int) -> int:
@@ -102,10 +116,13 @@ def save_animation(animation: FuncAnimation, path: str | Path, rate: int) -> Pat
     ValueError
         As `check_animation` does, or if the file cannot be written.
     """
+    from matplotlib import rc_context
+
     place = check_animation(path)
     try:
         if place.suffix.lower() == ".html":
-            place.write_text(animation.to_jshtml(fps=rate), encoding="utf-8")
+            with rc_context({"savefig.dpi": DPI}):
+                place.write_text(animation.to_jshtml(fps=rate), encoding="utf-8")
         else:
             writer = "pillow" if place.suffix.lower() == ".gif" else "ffmpeg"
             animation.save(str(place), writer=writer, fps=rate, dpi=DPI)

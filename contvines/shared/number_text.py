@@ -38,7 +38,7 @@ def figures(value: float, apart: float = 0.0) -> str:
 
 
 def complex_figures(values: Iterable[complex]) -> str:
-    """`figures` of complex numbers such as multipliers; what lies near the unit circle can be told from it.
+    """`figures` of complex numbers such as multipliers; what lies near the unit circle can be distinguished from it.
 
     >>> complex_figures([-0.22232 + 0.26142j, 0.999987])
     '-0.2223 + 0.2614i, 0.99999'
@@ -53,7 +53,7 @@ def complex_figures(values: Iterable[complex]) -> str:
 
 
 def figures_in(within: tuple[float, float], others: Sequence[float] = ()) -> Callable[[float], str]:
-    """`figures` for values of a parameter in an interval: a thousandth of it can be told apart, and so can the different ones of some values."""
+    """`figures` for values of a parameter in an interval: a thousandth of it can be distinguished, and so can the different ones of some values."""
     width = within[1] - within[0]
     apart = PART * width if 0.0 < width < math.inf else 0.0
     known = sorted(others)

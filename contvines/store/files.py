@@ -88,7 +88,7 @@ def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Any
     ----------
     path : path of the file.
     problems : bool
-        Rebuild the problems of the branches, so that orbits and measures can be had (else numbers only).
+        Rebuild the problems of the branches, so that orbits and measures can be obtained (else numbers only).
     trust : bool
         Import functions of your own that the file names, those of an :class:`~contvines.AlgebraicProblem` say. Without it
         they are found only if this program has made a problem from them before. Importing runs code: only for files whose

@@ -15,7 +15,7 @@ KEYS = ("within", "count", "values", "normal", "uniform")
 
 
 class PlanError(ValueError):
-    """A survey that cannot be planned; the sentence names the field, the value and what would do."""
+    """A survey that cannot be planned; the sentence names the field, the value and a way out."""
 
 
 @dataclass(frozen=True)

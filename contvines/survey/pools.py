@@ -12,6 +12,7 @@ from typing import Any
 
 from contvines.shared.processes import ATTEMPTS, spread
 
+from ..shared.extras import pip_install
 from .plan import PlanError
 from .work import Job, Row, work
 
@@ -89,5 +90,5 @@ def need_dask() -> None:
         import distributed  # noqa: F401
     except ImportError:
         raise PlanError(
-            "--cluster needs dask.distributed, which is not installed: pip install 'contvines[surveys]'"
+            f"--cluster needs dask.distributed, which is not installed: {pip_install('surveys')}"
         ) from None

@@ -1,4 +1,4 @@
-"""What some starts settle on, as atlases and basins are told of it."""
+"""What some starts settle on, as atlases and basins get it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ RARE = 32  # forcing periods of the longest recurrence looked for where neighbou
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """One attractor as `contvines` is told of it.
+    """One attractor as `contvines` gets it.
 
     Attributes
     ----------

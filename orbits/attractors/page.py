@@ -41,7 +41,7 @@ CLOSED = 1e-9  # ... a return to it that is open by more, relative to 1 + states
 
 @dataclass(frozen=True, eq=False)
 class PageAttractor(Settled):
-    """What a start of a machine on a page leads to.
+    """What a start of a declared machine leads to.
 
     Attributes
     ----------

@@ -54,7 +54,7 @@ def find_attractor(
     ----------
     model : Model or Machine
     start : mapping or ndarray, optional
-        As for `orbits.simulation.simulate`; by default the absorber starts from rest in the middle of the cavity, a page with all states zero.
+        As for `orbits.simulation.simulate`; by default the absorber starts from rest in the middle of the cavity, a declared machine with all states zero.
     transient : float, optional
         Forcing periods left out first, 300 (of a self-excited machine events, 100).
     max_period : int
@@ -132,7 +132,7 @@ def different_attractors(
     count, seed : int
         Starts, and the seed of their generator.
     size : float
-        Of a page: states are drawn within +-`size`.
+        Of a declared machine: states are drawn within +-`size`.
     **options
         As for `find_attractor`, parameters of the machine included.
 

@@ -26,8 +26,8 @@ CREEPS = (
     "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
 )
 FALLING = "impacts on {contact} fall together: beyond the border infinitely many pile up, which simulation follows to their end and no finite word describes"
-PILING = "impacts pile up at a wall: of those before it the slowest has {speed:.1e} of the machine's own speed, and a further one cannot be told from rest"
-TOUCHING = "turns pile up at a wall: of those before it the nearest keeps {gap:.1e} of the machine's own length, and a further one cannot be told from contact"
+PILING = "impacts pile up at a wall: of those before it the slowest has {speed:.1e} of the machine's own speed, and a further one cannot be distinguished from rest"
+TOUCHING = "turns pile up at a wall: of those before it the nearest keeps {gap:.1e} of the machine's own length, and a further one cannot be distinguished from contact"
 FADING = "a stick that lasts {length:.1e} of the machine's own time, with {reserve:.1e} of its friction in reserve, is about to vanish as well: motions between the two borders cannot be resolved"
 UNKNOWN = (
     "no motion that goes on from this one was found, neither by the rules of {contact} nor by simulation"

@@ -12,7 +12,7 @@ from orbits.words.edit import Edit
 
 
 def rounds_at(border: Place, edit: Edit, unchanged: list[tuple[np.ndarray, float] | None]) -> Rounds | None:
-    """Unchanged and changed rounds of a border cycle; None where they cannot be told.
+    """Unchanged and changed rounds of a border cycle; None where they cannot be determined.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Dry friction: Coulomb's law in words, and a friction on a machine's page."""
+"""Dry friction: Coulomb's law in words, and a friction in a machine file."""
 
 from __future__ import annotations
 

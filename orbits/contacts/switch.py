@@ -1,4 +1,4 @@
-"""Switches: laws that change at a surface, without a jump of the state. In words, and on a machine's page."""
+"""Switches: laws that change at a surface, without a jump of the state. In words, and in a machine file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Walls: stops that bodies hit. Newton's impact law in words, and a wall on a machine's page."""
+"""Walls: stops that bodies hit. Newton's impact law in words, and a wall in a machine file."""
 
 from __future__ import annotations
 

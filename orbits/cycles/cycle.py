@@ -29,7 +29,7 @@ class Cycle:
     periods : int
         Forcing periods k; 1 for a self-excited machine.
     nodes : float array (L, n)
-        Of a built-in machine per event (Psi, B+) at impacts and (Psi, w) elsewhere; the coupled machine adds v and v'. On a page the
+        Of a built-in machine per event (Psi, B+) at impacts and (Psi, w) elsewhere; the coupled machine adds v and v'. Of a declared machine the
         phase (of a self-excited machine: the duration of the flight that follows) and the states after the event.
     params : float array (P,)
         Parameter vector, in the order of `model.parameter_names`.

@@ -10,7 +10,7 @@ sign in all unchanged rounds and the other one in all changed ones.
 
 At an impact of vanishing speed s one of the derivatives grows as 1/s, since a touch displaces x by g s along some vector g, with s^2 the
 distance beyond the border (Nordmark, J. Sound Vib. 145 (1991) 279): to first order in s the cycle has s_i = 0 in a changed round, as if
-that round were linear with a slope without bound. So the signs of det P_i that count are those for s to 0, told from two sizes of s.
+that round were linear with a slope without bound. So the signs of det P_i that count are those for s to 0, distinguished from two sizes of s.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ def _table(most: int) -> np.ndarray:
 
 def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds | None:
     """Rounds from the derivatives, with their errors, of unchanged and of changed ones, from far to near the border; None where they
-    cannot be told.
+    cannot be determined.
     """
     found, further, error, bounded = [], [], 0.0, True
     for maps in kinds:

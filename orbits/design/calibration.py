@@ -44,7 +44,7 @@ def from_impacts(
 ) -> Calibration:
     """From the instants of successive impacts.
 
-    The clock of the measurement needs no phase: it is set so that the times agree in the mean. Parameters to which time is proportional cannot be told from it.
+    The clock of the measurement needs no phase: it is set so that the times agree in the mean. Parameters to which time is proportional cannot be distinguished from it.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def _measured(times: ArrayLike) -> np.ndarray:
 
 
 def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Any:
-    """The machine told by what is to be estimated."""
+    """The machine given by what is to be estimated."""
     if not unknown:
         raise ParameterError(
             "nothing is unknown: name a parameter and a guess, for example restitution = 0.6"

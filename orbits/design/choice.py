@@ -25,7 +25,7 @@ class Choice:
     outcome : float
         The outcome there (over the samples: the worst, or the quantile).
     others : dict
-        The other outcomes there (over the samples: the median of those that have one; nan where none has): what is sacrificed, or gained.
+        The other outcomes there (over the samples: the median of those that have one; nan where none has).
     tried : list of (dict, float)
         Every choice that was evaluated, and its outcome; nan where there was none.
     bracket : dict

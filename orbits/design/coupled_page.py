@@ -1,4 +1,4 @@
-"""The coupled machine on a page, the bare oscillator beside it: for excitations that closed forms do not know.
+"""The coupled machine as a declared one, the bare oscillator beside it: for excitations that closed forms do not know.
 
 The equations are those of `orbits.machines.coupled`, in its own numbers and counted as it counts; the bare oscillator is two further states.
 """

@@ -1,4 +1,4 @@
-"""Transients of machines on a page: from a state, or from rest while the excitation begins, at once or with a frequency that runs up."""
+"""Transients of declared machines: from a state, or from rest while the excitation begins, at once or with a frequency that runs up."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ class PageTransient:
     states : dict of float array (n,)
         By name.
     impact_times, impact_speeds, impulses : float array (k,)
-        Speeds in m/s and impulses in N s (of a page without units in its own numbers); impulses only of a page with an energy.
+        Speeds in m/s and impulses in N s (of a declared machine without units in its own numbers); impulses only of a declared machine with an energy.
     settled : dict of float
         Of each state: from when on the largest size of every period stays within 5 % of the last ones; nan where it does not settle.
     energy : float array (n,) or None
-        Of all bodies, of a page that tells it.
+        Of all bodies, of a declared machine that tells it.
     taken_times, impacts, friction : float array (m,)
         Energy taken until these times by impacts and by friction; empty without an energy.
     """

@@ -2,7 +2,7 @@
 
 Densities are one-sided: the variance of a signal is the integral of its density over the frequency from 0 on. A signal of N instants has all harmonics of its
 length T, each with the amplitude sqrt(2 S(Omega) 2 pi/T) and a phase drawn evenly (Shinozuka, Deodatis, Applied Mechanics Reviews 44 (1991) 191): its density
-is kept exactly, and linear responses have exact variances over T. Between instants it runs linearly (of pages: it is held), which `hold` of the amplitudes makes up for.
+is kept exactly, and linear responses have exact variances over T. Between instants it runs linearly (of declared machines: it is held), which `hold` of the amplitudes makes up for.
 White noise with E[xi(t) xi(t')] = 2 D delta(t - t') has the one-sided density S = 2 D/pi per radian a unit of time, 4 D per hertz.
 """
 
@@ -100,16 +100,16 @@ class RandomResponse:
     ----------
     numbers : dict of (float, float)
         ``rms_oscillator``, ``peak_oscillator`` (mean of the records' largest), ``rms_relative``, ``impact_rate``, ``absorber_power`` (per unit of M omega_0^3 b^2), ``absorber_share``,
-        and ``rms_bare``, ``peak_bare``, ``rms_tuned``, ``peak_tuned``; of a page ``mean_``, ``rms_`` and ``peak_`` of each state, ``impact_rate``.
+        and ``rms_bare``, ``peak_bare``, ``rms_tuned``, ``peak_tuned``; of a declared machine ``mean_``, ``rms_`` and ``peak_`` of each state, ``impact_rate``.
     omega : float array (k,)
         Frequencies of densities.
     densities : dict of float array (k,)
-        One-sided densities of displacements by name (``oscillator``, ``bare``, ``tuned``; the states of a page).
+        One-sided densities of displacements by name (``oscillator``, ``bare``, ``tuned``; the states of a declared machine).
     duration : float
         Of one record.
     records : int
     samples : dict of float array
-        Of a page: all states at all instants of all records, by name.
+        Of a declared machine: all states at all instants of all records, by name.
     """
 
     numbers: dict[str, tuple[float, float]]
@@ -209,7 +209,7 @@ def random_page(
     seed: int = 0,
     warm: float = 0.1,
 ) -> RandomResponse:
-    """The answer of a machine on a page one of whose parameters is random.
+    """The answer of a declared machine one of whose parameters is random.
 
     Parameters
     ----------

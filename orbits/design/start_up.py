@@ -101,7 +101,7 @@ def start_up(
 
 
 def _running_up(params: np.ndarray, time: float, run_up: tuple[float, float]) -> StartUp:
-    """The same on a page, where the phase may be any function of time."""
+    """The same in a machine file, where the phase may be any function of time."""
     found = page_transient(coupled_page(), params, run_up_from=run_up[0], run_up_time=run_up[1], time=time)
     q1, q2, bare = (found.states[name] for name in ("q1", "q2", "bare"))
     return StartUp(

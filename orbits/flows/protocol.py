@@ -1,4 +1,4 @@
-"""What happens between two events: one protocol, fulfilled by closed forms (`orbits.flows.native`) and by flights on a page (`orbits.flows.page`).
+"""What happens between two events: one protocol, fulfilled by closed forms (`orbits.flows.native`) and by integrated flights (`orbits.flows.page`).
 
 The solving half, in words
 --------------------------
@@ -73,7 +73,7 @@ class Motion(Protocol):
 
 
 class SimulationError(ValueError):
-    """A start or a length of a run that cannot be, or a motion that does not go on; the sentence says what would do."""
+    """A start or a length of a run that cannot be, or a motion that does not go on; the sentence says the way out."""
 
 
 def told(start: Mapping[str, float], allowed: Sequence[str]) -> dict[str, float]:

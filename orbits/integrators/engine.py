@@ -1,4 +1,4 @@
-"""Which integrator flies pages: heyoka, or scipy where heyoka is not installed or `CONTVINES_PAGES=scipy` asks for it."""
+"""Which integrator integrates declared machines: heyoka, or scipy where heyoka is not installed or `CONTVINES_PAGES=scipy` asks for it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from functools import cache
 from importlib.util import find_spec
 from types import ModuleType
 
-HOW = "pip install 'contvines[machines]' (Linux), or conda install heyoka.py -c conda-forge (macOS, Windows)"
+from contvines.shared.extras import pip_install
+
+HOW = "{0} (Linux), or conda install heyoka.py -c conda-forge (macOS, Windows)"
 
 
 class EngineMissing(ImportError):
@@ -29,13 +31,18 @@ def engine() -> ModuleType:
         raise EngineMissing(f"CONTVINES_PAGES={asked}: say heyoka or scipy, or leave it out")
     there = find_spec("heyoka") is not None
     if asked == "heyoka" and not there:
-        raise EngineMissing(f"CONTVINES_PAGES=heyoka, which is not installed: {HOW}")
+        raise EngineMissing(
+            f"CONTVINES_PAGES=heyoka, which is not installed: {HOW.format(pip_install('machines'))}"
+        )
     if there and asked != "scipy":
         from orbits.integrators import heyoka
 
         return heyoka
     if not asked:
-        print(f"pages are integrated by scipy, slowly, for heyoka is missing: {HOW}", file=sys.stderr)
+        print(
+            f"declared machines are integrated by scipy, slowly, for heyoka is missing: {HOW.format(pip_install('machines'))}",
+            file=sys.stderr,
+        )
     from orbits.integrators import solve_ivp
 
     return solve_ivp

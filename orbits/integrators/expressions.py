@@ -180,7 +180,7 @@ def written(layout: Layout, values: Sequence[Symbol], tools: ModuleType) -> Call
     space: dict[str, Any] = {"nan": math.nan, "inf": math.inf, "pow": math.pow if tools is math else np.power}
     for name in ELEMENTARY:
         space[name] = getattr(tools, name if tools is math else NUMPY_NAMES.get(name, name))
-    exec(compile(body, "<formulas of a page>", "exec"), space)
+    exec(compile(body, "<formulas of a declared machine>", "exec"), space)
     return space["values"]
 
 

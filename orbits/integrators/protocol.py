@@ -1,4 +1,4 @@
-"""What an integrator of pages answers, as `orbits.integrators` says in words; `heyoka` and `solve_ivp` do."""
+"""What an integrator of declared machines answers, as `orbits.integrators` says in words; `heyoka` and `solve_ivp` do."""
 
 from __future__ import annotations
 

@@ -152,14 +152,14 @@ class Model(Mechanics):
         Raises
         ------
         ParameterError
-            Naming the parameter, the value and what would do.
+            Naming the parameter, the value and a way out.
         """
         for entry in self.settable:
             if entry.name == name:
                 entry.number(value)
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
-        """The machine's own fields by name, ready for JSON; those of a page are its parameters, at `params` where they are given."""
+        """The machine's own fields by name, ready for JSON; those of a declared machine are its parameters, at `params` where they are given."""
         own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         return {"name": self.name} | {key: own[key] for key in own if key != "contact_time" or own[key]}
 

@@ -28,7 +28,7 @@ NAMES = tuple(PLACES)
 STRUCTURE = "structure"
 """What studies call a machine of matrices (`orbits.machines.structure`)."""
 PAGES = {"coupled_two": "orbits.machines.coupled_two"}
-"""Machines that come with the package, whose flow is a page's; the module holds the machine by its name."""
+"""Machines that come with the package, whose flow is integrated; the module holds the machine by its name."""
 
 
 def model_class(name: str) -> type[Model]:

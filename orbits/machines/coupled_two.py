@@ -4,7 +4,7 @@
 
 with |q - x_i| <= clearance_i and Newton's restitution at the walls, which take and give momentum: of an impact of absorber i, q' changes by m_i/M of what x_i' does.
 Letters: L1, R1, L2, R2 for impacts on the left and right walls; t1, s1, u1 and t2, s2, u2 for turns, sticks and slips. A light second absorber leaves the machine
-`coupled` with mass_ratio = m1/M. Its flow is integrated as that of any page (`orbits.machines.page`): two absorbers stick and slide in nine ways.
+`coupled` with mass_ratio = m1/M. Its flow is integrated as that of any declared machine (`orbits.machines.page`): two absorbers stick and slide in nine ways.
 """
 
 from __future__ import annotations

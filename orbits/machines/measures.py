@@ -73,7 +73,7 @@ KINDS = {
 def way_out(name: str) -> str:
     """What gives a machine a measure that it has not, as a sentence ends with it; empty where nothing does."""
     return (
-        " (a peak force needs contact_time, the duration of an impact: in [model], of a page among its parameters)"
+        " (a peak force needs contact_time, the duration of an impact: in [model], of a declared machine among its parameters)"
         if name == "peak_force"
         else ""
     )

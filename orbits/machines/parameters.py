@@ -14,7 +14,7 @@ LARGEST = 1e6
 
 
 class ParameterError(ValueError):
-    """A parameter without a sensible value; the sentence names it, its value and what would do."""
+    """A parameter without a sensible value; the sentence names it, its value and a way out."""
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ def animate(
     Returns
     -------
     matplotlib.animation.FuncAnimation
-        Keep it as long as it is to move; a notebook shows ``HTML(animation.to_jshtml())``.
+        Shown with a player where it is the value of a notebook's cell.
 
     Raises
     ------

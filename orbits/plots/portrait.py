@@ -48,7 +48,7 @@ def portrait(
     figsize: tuple[float, float] | None = None,
     style: str | Mapping[str, Any] | None = None,
 ) -> Figure:
-    """Draw the orbit: of a built-in machine w' against w, left wall on the left, and motions over forcing periods; of a page the first two
+    """Draw the orbit: of a built-in machine w' against w, left wall on the left, and motions over forcing periods; of a declared machine the first two
     states against one another, and all states over time.
 
     Parameters

@@ -23,7 +23,7 @@ def scene(orbit: Orbit, points: int = 120) -> dict[str, Any]:
     -------
     dict
         ``portrait`` (x, y, their names, walls, whether x grows to the left), ``history`` (turns of the forcing or time, named
-        curves, walls), ``animation`` (positions of the cavity and of the absorber in it, evenly spaced in time; of a page see
+        curves, walls), ``animation`` (positions of the cavity and of the absorber in it, evenly spaced in time; of a declared machine see
         `orbits.plots.track`), ``events``.
     """
     seen = shown(orbit, points)

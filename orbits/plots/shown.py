@@ -119,7 +119,7 @@ def _of_cavity(orbit: Orbit, points: int) -> Shown:
 
 
 def _of_states(orbit: Orbit, points: int) -> Shown:
-    """A machine on a page: its first two states against one another, and all states over time."""
+    """A declared machine: its first two states against one another, and all states over time."""
     motion, names = orbit.sample(points), orbit.model.states
     x, y = names[0], names[1] if len(names) > 1 else names[0]
     clock = motion["phase"] / (2.0 * np.pi) if orbit.forced else motion["time"]

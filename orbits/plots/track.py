@@ -1,4 +1,4 @@
-"""What moves on a page's machine, for an animation: bodies, and the walls that stop them."""
+"""What moves in a declared machine, for an animation: bodies, and the walls that stop them."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
 
 
 def _rates(states: tuple[str, ...], motion: dict[str, np.ndarray]) -> dict[str, str]:
-    """Which state is the rate of which, told by their differences in time along the flights."""
+    """Which state is the rate of which, judged by their differences in time along the flights."""
     inside = np.diff(motion["segment"]) == 0
     steps = np.diff(motion["time"])[inside]
     found: dict[str, str] = {}

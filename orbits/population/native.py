@@ -174,7 +174,7 @@ class NativeFleet:
         return found
 
     def _unsettled(self, i: int, sorting: Sorting) -> None:
-        """A motion that does not recur, told by its growth of small differences; where it may still recur it is looked at again.
+        """A motion that does not recur, judged by its growth of small differences; where it may still recur it is looked at again.
 
         A chaotic transient ends at a rate that does not depend on its age (T. Tel and Y.-C. Lai, Transient Chaos, 2011): that many motions have
         not ended together tells as much as that one has not in as many times the periods.

@@ -1,4 +1,4 @@
-"""Starts of a machine on a page: where they are drawn, and what they settle on, one after the other."""
+"""Starts of a declared machine: where they are drawn, and what they settle on, one after the other."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ RELEASED = 1e-6  # difference of the clocks of two releases that are one
 
 
 class PageStarts:
-    """What `orbits.population.population.Population` asks of the starts of a machine on a page."""
+    """What `orbits.population.population.Population` asks of the starts of a declared machine."""
 
     across = 60
     longest = EMBEDDED
@@ -153,7 +153,7 @@ class _Marks:
 
 
 class PageFleet:
-    """Starts of a machine on a page, one after the other; one that falls onto a known motion is followed no further."""
+    """Starts of a declared machine, one after the other; one that falls onto a known motion is followed no further."""
 
     def __init__(self, machine: Machine, params: np.ndarray, points: np.ndarray, free: np.ndarray) -> None:
         self.machine, self.points, self.free = machine, points, free

@@ -86,7 +86,7 @@ class Population:
     def box(self, p: float) -> np.ndarray:
         """Smallest and largest coordinate of the starts, shape (n, 2).
 
-        Of a built-in machine the cavity, and the velocities its walls can give; of a page what it says (``starts=``), else twice what the motion
+        Of a built-in machine the cavity, and the velocities its walls can give; of a declared machine what it says (``starts=``), else twice what the motion
         from rest reaches in sixty periods.
         """
         return self._sort.box(p)
@@ -106,7 +106,7 @@ class Population:
             if drawn > DRAWS * max(count, 2):
                 raise ValueError(
                     f"the walls of {self.model.name!r} leave nearly none of the box of starts at {self.parameter} = {p:g}; "
-                    "say in the page where starts are drawn: Machine(..., starts={'x': (low, high)})"
+                    "say in the machine file where starts are drawn: Machine(..., starts={'x': (low, high)})"
                 )
             points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn) * (box[:, 1] - box[:, 0])
             drawn += len(points)
@@ -177,7 +177,7 @@ class Population:
         return distinct(self._sort.closed(self.vector(p)), self.parameter, p)
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
-        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be had again."""
+        """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return rebuild(description)
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:

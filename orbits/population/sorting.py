@@ -48,7 +48,7 @@ class Sorting:
         return [self.motions[k] for k in order], place[self.index], self.mirrored
 
     def plain(self, members: np.ndarray | int, kind: str, **facts: Any) -> None:
-        """These starts reach the motion of a kind that is not told apart any further."""
+        """These starts reach the motion of a kind that is not distinguished any further."""
         for k, motion in enumerate(self.motions):
             if motion.kind == kind and self._forms[k] is None and not motion.word:
                 return self.assign(members, k)

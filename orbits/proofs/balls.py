@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING
 
+from contvines.shared.extras import pip_install
 from orbits.proofs.obstacles import ProofError
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def library() -> ModuleType:
         import flint
     except ImportError:
         raise ProofError(
-            "proofs need the package python-flint, which is not installed: pip install 'contvines[proofs]'"
+            f"proofs need the package python-flint, which is not installed: {pip_install('proofs')}"
         ) from None
     return flint
 

@@ -8,7 +8,7 @@ from typing import Any
 
 
 class ProofError(ValueError):
-    """A proof that cannot be begun; the sentence says why and what would do."""
+    """A proof that cannot be begun; the sentence says why and a way out."""
 
 
 class Step(Enum):

@@ -259,7 +259,7 @@ class PageSimulator:
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere.
 
-        Where the forcing passes phase zero; the points just after the events of a self-excited machine are not told apart.
+        Where the forcing passes phase zero; the points just after the events of a self-excited machine are not distinguished.
         """
         if not self.forced:
             return None

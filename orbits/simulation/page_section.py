@@ -1,4 +1,4 @@
-"""Sections of machines on a page, which know the derivatives of their steps."""
+"""Sections of declared machines, which know the derivatives of their steps."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LONGEST = 1e3  # clock without the event of the section after which a motion doe
 
 
 class VariedSection(Section):
-    """A section that knows the derivatives of its steps: of a machine on a page.
+    """A section that knows the derivatives of its steps: of a declared machine.
 
     Parameters
     ----------

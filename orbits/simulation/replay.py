@@ -36,7 +36,7 @@ class Replay:
     message : str
         "" or a sentence that says where the simulation departs from the claim.
     multipliers : ndarray of complex
-        Eigenvalues of the simulated return map's central differences (empty if not asked for or not to be had).
+        Eigenvalues of the simulated return map's central differences (empty if not asked for or not available).
     tracked : int
         Cycles for which the simulation, started on the orbit, stayed within `loss` of it (0 if not asked for).
     expected : float

@@ -41,7 +41,7 @@ def simulate(
     ----------
     model : Model or Machine
     start : mapping or ndarray, optional
-        Of a built-in machine `phase` (radians), `w`, `w_rate`, and in the coupled model `v`, `v_rate` or `q1`, `q2`, `q1_rate`, `q2_rate`; of a page
+        Of a built-in machine `phase` (radians), `w`, `w_rate`, and in the coupled model `v`, `v_rate` or `q1`, `q2`, `q1_rate`, `q2_rate`; of a declared machine
         its states by name, and `phase` if it is forced. What is not given is 0. Or a state, such as `Trajectory.end`.
     periods, time : float, optional
         How long: forcing periods, or the machine's time.

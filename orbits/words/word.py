@@ -140,7 +140,7 @@ class Word:
     def spelled(self, mirror: bool = True) -> str:
         """The word as printed: of the shaken machines one spelling for one motion, from whichever event and in whichever mirror image.
 
-        That of `canonical`, without signs where the letters alone mean this motion. Words of pages stand as they are read.
+        That of `canonical`, without signs where the letters alone mean this motion. Words of declared machines stand as they are read.
         """
         if self.alphabet.alone is None:
             return self.text

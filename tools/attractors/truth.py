@@ -285,7 +285,7 @@ def studied(
     page: bool = False,
     **options: Any,
 ) -> Tally:
-    """An atlas beside the witness, of the machine or of the same one declared on a page; a line of what they have in common."""
+    """An atlas beside the witness, of the machine or of the same one declared in a machine file; a line of what they have in common."""
     begin = time.process_time()
     population = machine.population(over)
     if page:

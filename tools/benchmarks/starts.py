@@ -44,14 +44,14 @@ class Starts:
         return states
 
     def basin(self):
-        """A picture of as many starts, told apart by what they reach."""
+        """A picture of as many starts, distinguished by what they reach."""
         import contvines
 
         side = int(np.sqrt(len(self.states)))
         return contvines.basins(self.population, at=AMPLITUDE, points=side)
 
     def census(self):
-        """As many drawn starts, told apart likewise."""
+        """As many drawn starts, distinguished likewise."""
         side = int(np.sqrt(len(self.states)))
         return self.population.settle(self.drawn[: side * side], AMPLITUDE)
 

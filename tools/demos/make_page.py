@@ -31,7 +31,7 @@ no more was asked by Newton's method for the same equations from 150 random star
 Printed is what the source prints; a closed form is what its equations say by hand. None printed: the sources print no value, for the first five digits
 of every value were looked for in the repositories of AUTO-07p (manual, demos and log of its test), PyDSTool, BifurcationKit and its documentation (as written
 and as rendered), MatContM and cl_matcontL, and nothing was found. These demos show their values when they are run, or as pictures, or are those of a textbook.
-The manuals and tutorials of MatCont, MatContM and COCO are no repositories, and were not to be had whole.
+The manuals and tutorials of MatCont, MatContM and COCO are no repositories, and were not available whole.
 
 In other units: the same demos with u, p and the rows of F times 1e9 or 1e-9, in {sets} sets of units that nothing is said about
 (`python -m tools.demos.units`); the column counts those in which the special points are the same to 1e-10: {alike} of {all} in all.

@@ -111,7 +111,7 @@ def _comes_home(end: Any, beside: list[Any], point: Any) -> bool:
 def _unresolved(point: Any) -> float:
     """How far the motion of a special point goes while the parameter changes by as much as leaves open where it is, or by its last bit.
 
-    No branch can be told to come nearer.
+    No branch is known to come nearer.
     """
     if point.kind == "fold":  # the parameter stands still there, and points are located in the motion
         return 0.0
@@ -188,7 +188,7 @@ def _within_rounding(listed: np.ndarray, beside: list[Any]) -> bool:
 
 
 def _among(listed: np.ndarray, known: list[Any]) -> bool:
-    """Whether the characteristic polynomial lies between those of orbits that the border cannot be told from."""
+    """Whether the characteristic polynomial lies between those of orbits that the border cannot be distinguished from."""
     if len(known) < 2:
         return False
     polynomials = np.array([np.poly(orbit.multipliers).real for orbit in known])

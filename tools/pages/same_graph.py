@@ -1,4 +1,4 @@
-"""The built-in absorbers declared on a page, against themselves: the same words, the same special points, the same graph.
+"""The built-in absorbers declared in a machine file, against themselves: the same words, the same special points, the same graph.
 
 `python -m tools.pages.same_graph [friction] [friction_low] [frequency]` makes the diagrams of these example studies with
 both and compares them: branches by word, periods and ends; special points by kind, value, whether they are real, and multipliers

@@ -40,7 +40,7 @@ def _beside(engine: Engine, point: Solved) -> list[Solved] | None:
 
 
 def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | None:
-    """d(log abs(m))/dp of the critical multiplier (dm/dp for flows) along the known branch; None if not to be had.
+    """d(log abs(m))/dp of the critical multiplier (dm/dp for flows) along the known branch; None if not available.
 
     Parameters
     ----------

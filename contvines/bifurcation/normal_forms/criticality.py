@@ -17,7 +17,7 @@ class Pitch(NamedTuple):
     Attributes
     ----------
     coefficient : float or None
-        d of a cycle, l1 of an equilibrium; None where it cannot be had.
+        d of a cycle, l1 of an equilibrium; None where it cannot be obtained.
     criticality : {"supercritical", "subcritical"} or None
         Supercritical: a stable circle (cycle) is born where the motion has lost its stability.
     note : str

@@ -240,7 +240,7 @@ def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
 def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.ndarray:
     """The eigenvalues of F_u nearest to a shift, by ARPACK; with the factors at hand where the shift is 0.
 
-    Without a matrix they are had by solving with the preconditioner; without that, too, the rightmost ones are looked for.
+    Without a matrix they are obtained by solving with the preconditioner; without that, too, the rightmost ones are looked for.
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def eigenvectors(matrix: Any, values: np.ndarray) -> np.ndarray:
     """
     if not sp.issparse(matrix):
         raise ValueError(
-            "a matrix-free Jacobian has no factors, so eigenvectors cannot be had from its eigenvalues"
+            "a matrix-free Jacobian has no factors, so eigenvectors cannot be obtained from its eigenvalues"
         )
     n = matrix.shape[0]
     size = float(abs(matrix).max())

@@ -16,7 +16,7 @@ CHUNK = 100  # columns at a time
 
 
 def worth_it(operator: Any, n: int) -> bool:
-    """Whether N products for a matrix are less work than GMRES without a preconditioner, told by one solution."""
+    """Whether N products for a matrix are less work than GMRES without a preconditioner, judged by one solution."""
     if n <= ALWAYS or n > AT_MOST:
         return n <= ALWAYS
     with np.errstate(all="ignore"):

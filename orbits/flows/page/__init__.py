@@ -1,1 +1,1 @@
-"""Flows of machines on a page: integrated, with the laws of their contacts."""
+"""Flows of declared machines: integrated, with the laws of their contacts."""

@@ -1,4 +1,4 @@
-"""The flow of machines on a page: integrated."""
+"""The flow of declared machines: integrated."""
 
 from __future__ import annotations
 

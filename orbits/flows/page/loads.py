@@ -1,4 +1,4 @@
-"""Forces and energies at the contacts of a page: of each impact, and what friction takes on a flight."""
+"""Forces and energies at the contacts of a declared machine: of each impact, and what friction takes on a flight."""
 
 from __future__ import annotations
 

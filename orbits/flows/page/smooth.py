@@ -150,7 +150,7 @@ class WithoutEvents(FlowProblem):
         return self._orbits(problem, p).witness(p)
 
     def known(self, problem: CycleProblem, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable motion as `witness` tells of it."""
+        """A stable motion as `witness` lists it."""
         rest = {"word": None, "periods": 0, "kind": "rest"}
         return (
             rest if problem.spectrum == "flow" else {"word": self.word.text, "periods": 1, "kind": "periodic"}
@@ -328,7 +328,7 @@ def rest_near(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state
 
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> Any:
-    """Equilibria or cycles of a machine without events, from what ``describe()`` returned; None where its page is not to be run."""
+    """Equilibria or cycles of a machine without events, from what ``describe()`` returned; None where its machine file is not to be run."""
     about = description["flow"]
     machine = machine_again(about["machine"], trust)
     if machine is None:

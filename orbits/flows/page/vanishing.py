@@ -1,4 +1,4 @@
-"""Where a margin of a page's orbit vanishes, and clocks and states of the events that the contacts' laws propose there."""
+"""Where a margin of a declared machine's orbit vanishes, and clocks and states of the events that the contacts' laws propose there."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A machine on a page of Python: equations of motion and contacts."""
+"""A declared machine of Python: equations of motion and contacts."""

@@ -1,4 +1,4 @@
-"""What the formulas of a page are asked before it becomes a machine; every refusal is a sentence that names the contact and the way out."""
+"""What the formulas of a declared machine are asked before it becomes a machine; every refusal is a sentence that names the contact and the way out."""
 
 from __future__ import annotations
 

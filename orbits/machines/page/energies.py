@@ -1,4 +1,4 @@
-"""What the energy on a page tells of its contacts: the mass behind an impact, and the power that friction takes.
+"""What the energy in a machine file tells of its contacts: the mass behind an impact, and the power that friction takes.
 
 With the energy E, quadratic in the speeds, and a contact whose unit of force changes the states at the rates d, the force is conjugate to the
 contact's speed s: the mass of the relative motion is m = (d . H d) / (ds/dx . d)^2 with the Hessian H of E, an impulse of J newton seconds changes s

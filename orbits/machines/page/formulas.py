@@ -1,4 +1,4 @@
-"""What the formulas of a page are called with (states, phase, parameters, contacts by name), and what is said when they fail."""
+"""What the formulas of a declared machine are called with (states, phase, parameters, contacts by name), and what is said when they fail."""
 
 from __future__ import annotations
 

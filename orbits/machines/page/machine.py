@@ -1,4 +1,4 @@
-"""Machine: a hybrid system on a page."""
+"""Machine: a hybrid system in a machine file."""
 
 from __future__ import annotations
 
@@ -210,7 +210,7 @@ class Machine(Varying):
         Raises
         ------
         ParameterError
-            Naming the parameter, the value and what would do.
+            Naming the parameter, the value and a way out.
         """
         if name == self.phase_rate and not value > 0.0:
             raise ParameterError(f"{name} = {value:g}: a forcing frequency is above 0")

@@ -1,4 +1,4 @@
-"""Names, letters and numbers of a page, before anything is traced; every refusal is a sentence that names the contact and the way out."""
+"""Names, letters and numbers of a declared machine, before anything is traced; every refusal is a sentence that names the contact and the way out."""
 
 from __future__ import annotations
 

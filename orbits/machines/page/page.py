@@ -75,7 +75,7 @@ def again(path: str, name: str) -> Any:
 
 
 def digest_of(text: str) -> str:
-    """A short digest of a page's text."""
+    """A short digest of a declared machine's text."""
     return hashlib.blake2b(text.encode(), digest_size=12).hexdigest()
 
 

@@ -123,7 +123,7 @@ class Equations:
     formulas_of_motion : callable
         As the page gives it.
     factors : mapping of str to float
-        What one of a parameter or state is in SI units: the formulas of a page see SI units, all else the units that are shown.
+        What one of a parameter or state is in SI units: the formulas of a declared machine see SI units, all else the units that are shown.
     energy : Symbol or None
         Of all bodies, in joules.
     flips : dict of (wall, contact) to int or None

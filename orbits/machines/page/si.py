@@ -1,4 +1,4 @@
-"""Units on a page: numbers are given and shown in them, the page's formulas see SI units."""
+"""Units in a machine file: numbers are given and shown in them, the page's formulas see SI units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is no number at a state: which formula of a page divides by zero there, and on which of its lines."""
+"""What is no number at a state: which formula of a declared machine divides by zero there, and on which of its lines."""
 
 from __future__ import annotations
 

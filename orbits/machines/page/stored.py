@@ -1,4 +1,4 @@
-"""Machines on a page from what a file keeps of them."""
+"""Declared machines from what a file keeps of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from orbits.machines.page.page import digest_of
 
 
 class PageChanged(OSError):
-    """The page of a stored machine is gone or has changed; the sentence says what would do."""
+    """The file of a stored machine is gone or has changed; the sentence says the way out."""
 
 
 def page_changed(settings: dict[str, Any]) -> str:
@@ -46,7 +46,7 @@ def _comes_along(settings: dict[str, Any]) -> bool:
 
 
 def loaded(settings: dict[str, Any]) -> Machine | None:
-    """The machine, if its page has been run in this process already."""
+    """The machine, if its machine file has been run in this process already."""
     for module in list(sys.modules.values()):
         if getattr(module, "__file__", None) is None:
             continue
@@ -62,7 +62,7 @@ def machine_again(settings: dict[str, Any], trust: bool) -> Machine | None:
     Raises
     ------
     PageChanged
-        If the page is gone or has changed.
+        If the machine file is gone or has changed.
     """
     machine = loaded(settings)
     if machine is None and _comes_along(settings):

@@ -18,7 +18,7 @@ from orbits.machines.base import ParameterError
 
 
 class QuantityError(ParameterError):
-    """A physical quantity without a sensible value; the sentence names it, its value and what would do."""
+    """A physical quantity without a sensible value; the sentence names it, its value and a way out."""
 
 
 @dataclass(frozen=True)

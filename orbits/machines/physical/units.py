@@ -7,6 +7,7 @@ import re
 from functools import cache
 from typing import Any
 
+from contvines.shared.extras import pip_install
 from orbits.machines.physical.quantities import Quantity, QuantityError
 
 _KINDS = {
@@ -52,7 +53,7 @@ def registry() -> Any:
         import pint
     except ImportError:
         raise QuantityError(
-            "quantities with units are read by pint, which is not installed: pip install 'contvines[units]'"
+            f"quantities with units are read by pint, which is not installed: {pip_install('units')}"
         ) from None
     return pint.UnitRegistry(cache_folder=":auto:")
 

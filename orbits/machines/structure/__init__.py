@@ -1,1 +1,1 @@
-"""Structures: matrices with local contacts, as machines on a page."""
+"""Structures: matrices with local contacts, as declared machines."""

@@ -1,4 +1,4 @@
-"""A linear structure with harmonic forces and local contacts, as a machine on a page.
+"""A linear structure with harmonic forces and local contacts, as a declared machine.
 
     M x'' + C x' + K x = sum of forces A cos(n phase + shift) + contact forces,
 
@@ -113,7 +113,7 @@ def structure(
     Raises
     ------
     ParameterError
-        The sentence names the field, the value and what would do.
+        The sentence names the field, the value and a way out.
     """
     matrices = [
         matrix(name, given, folder)

@@ -49,7 +49,7 @@ def test_the_limit_does_not_depend_on_where_the_branch_is_entered(distance, step
 @pytest.mark.parametrize("distance", [1e-8, 2e-7, 1e-4])
 @pytest.mark.parametrize("noise", [0.0, 1e-10])
 def test_without_bound_beside_the_border_is_without_bound_at_it(distance, noise, step):
-    """-2e-5/t, its t known up to a little: only that it grows like that can be told, and is enough."""
+    """-2e-5/t, its t known up to a little: only that it grows like that can be determined, and is enough."""
     seen = begun_beside(lambda t: -2e-5 / (t + noise * np.sin(1e9 * t)), distance, step)
     assert seen.real <= -1e12
 

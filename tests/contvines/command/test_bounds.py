@@ -44,7 +44,7 @@ def test_branches_end_where_a_measure_leaves_its_interval(tmp_path, monkeypatch)
         ("{ foo = [0, 1] }", "there is no measure 'foo'"),
         ("{ B = [2.0, 1.0] }", r"B = \[2, 1\] is no interval"),
         ("{ B = [nan, 1.0] }", "is no interval"),
-        ("{ B = 3 }", r"bounds\[B\] = 3 cannot be used; two numbers for each measure"),
+        ("{ B = 3 }", r"bounds\[B\] = 3 cannot be used; expected two numbers for each measure"),
         ("{ B = [7.0, 8.0] }", "at the start B = .* is outside of its bounds"),
     ],
 )

@@ -64,7 +64,7 @@ def test_a_page_from_study_to_file(study):
 
 
 REFUSED = {
-    'name = "stop.py"': 'names a page but no machine on it; "stop.py:machine" would do',
+    'name = "stop.py"': 'names a file but no machine in it; "stop.py:machine" would do',
     'name = "stop.py:other"': "it has no machine 'other'; it declares machine",
     'name = "none.py:machine"': "there is no such file",
     'name = "../elsewhere/stop.py:machine"': "a study runs Python files of its own folder (or of folders in it) only",
@@ -154,8 +154,9 @@ def test_a_survey_of_a_page(study):
     assert [row["peak"] / rows[0]["peak"] for row in rows] == pytest.approx([1.0, 2.0, 4.0], rel=1e-6)
     assert [row["stable_R"] for row in rows] == pytest.approx([rows[0]["stable_R"]] * 3, rel=1e-9)
     study.write_text(study.read_text().replace('"stable:R"', '"dissipation"'))
-    assert "'dissipation' is told by the built-in machines (dissipation also by a page with energy=)" in str(
-        run("survey", study).exception
+    assert (
+        "'dissipation' is known for the built-in machines (dissipation also by a declared machine with energy=)"
+        in str(run("survey", study).exception)
     )
     for file in ("../own.py", "/own.py"):
         study.write_text(study.read_text().replace('"dissipation"', f'"{file}:tall"'))

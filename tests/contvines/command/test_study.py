@@ -89,7 +89,7 @@ def test_coupled_studies_have_their_own_parameters():
     )
     assert truncated.parameters["excitation"] == 0.0
     with pytest.raises(
-        StudyError, match=r"\[model\] excitation = 'half' is not a number; 'exact', 'truncated'"
+        StudyError, match=r"\[model\] excitation = 'half' is not a number; expected 'exact', 'truncated'"
     ):
         study(model={**model, "excitation": "half"}, start=start)
     with pytest.raises(StudyError, match=r"\[start\] amplitude = 0.55: there is no such field"):

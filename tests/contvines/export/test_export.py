@@ -36,7 +36,7 @@ def test_csv_has_every_point_at_full_precision(graph, tmp_path):
 
 
 class Measured:
-    """A made-up problem: the measures double and triple, and one that cannot be had."""
+    """A made-up problem: the measures double and triple, and one that cannot be obtained."""
 
     measure_names = ("double", "triple", "u0", "refused", "p")
 

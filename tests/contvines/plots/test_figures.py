@@ -57,7 +57,7 @@ def test_a_picture_that_cannot_be_written_is_refused_before_work(tmp_path, name)
 
 
 def test_colours_differ_in_grey():
-    """Neighbouring branches must be told apart on a grey printer: by luminance (ITU-R BT.601)."""
+    """Neighbouring branches must be distinguished on a grey printer: by luminance (ITU-R BT.601)."""
     style = mpl.rc_params_from_file(STYLE, use_default_template=False)
     grey = [np.dot(mpl.colors.to_rgb(c["color"]), [0.299, 0.587, 0.114]) for c in style["axes.prop_cycle"]]
     assert max(grey) < 0.55  # dark enough on white

@@ -100,7 +100,7 @@ def survey_file(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def declared_file(tmp_path_factory):
-    """A mass on a spring with a wall, on a page."""
+    """A mass on a spring with a wall, in a machine file."""
     pytest.importorskip("heyoka")
     from orbits import Machine, Wall
     from orbits.symbols import cos

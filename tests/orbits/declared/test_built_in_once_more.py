@@ -1,4 +1,4 @@
-"""The built-in absorber declared on a page: the same words and the same special points, found by other means."""
+"""The built-in absorber declared in a machine file: the same words and the same special points, found by other means."""
 
 import numpy as np
 import pytest

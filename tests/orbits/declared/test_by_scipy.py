@@ -1,4 +1,4 @@
-"""Where heyoka is missing scipy flies pages: the same orbits and borders, told in one line."""
+"""Where heyoka is missing scipy integrates declared machines: the same orbits and borders, told in one line."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Margins of motions on a page: what a flight comes closest to between its ends, and motions that come back shifted."""
+"""Margins of motions in a machine file: what a flight comes closest to between its ends, and motions that come back shifted."""
 
 from types import SimpleNamespace
 

@@ -1,4 +1,4 @@
-"""Measures and samples of a page's orbits against one another and the orbit's own path."""
+"""Measures and samples of a declared machine's orbits against one another and the orbit's own path."""
 
 import numpy as np
 import pytest

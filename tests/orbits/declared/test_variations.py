@@ -1,4 +1,4 @@
-"""Derivatives of simulated motions of pages, against central differences of the simulation and a closed form."""
+"""Derivatives of simulated motions of declared machines, against central differences of the simulation and a closed form."""
 
 import numpy as np
 import pytest

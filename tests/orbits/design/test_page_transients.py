@@ -1,4 +1,4 @@
-"""Transients of pages: against solve_ivp, the built-in machine, and the balance of energy."""
+"""Transients of declared machines: against solve_ivp, the built-in machine, and the balance of energy."""
 
 import numpy as np
 import pytest

@@ -111,7 +111,7 @@ def test_half_sine_in_si_units():
 
 
 def test_a_page_with_its_energy_has_the_loads_of_the_machine():
-    """The coupled machine on a page, the oscillator's mass 1: energies and impulses are mass_ratio times those per absorber's mass."""
+    """The coupled machine as a declared one, the oscillator's mass 1: energies and impulses are mass_ratio times those per absorber's mass."""
     values = {**STRONG, "forcing": 2.47, "frequency": 1.01, "damping": 1.0}
     page = load_page(EXAMPLES / "coupled.py", "machine")
     machine = Machine(

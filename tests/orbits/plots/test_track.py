@@ -1,4 +1,4 @@
-"""What moves on a page's machine: bodies where their states are, walls where the page puts them."""
+"""What moves in a declared machine: bodies where their states are, walls where the page puts them."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The checker's decisions are its own: intervals that overlap are told apart by nobody, whatever mpmath makes of them."""
+"""The checker's decisions are its own: intervals that overlap are distinguished by nobody, whatever mpmath makes of them."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Cubic coefficients of machines, told from outside: by the branch that leaves, and by the multiplier of the motion that it leaves."""
+"""Cubic coefficients of machines, distinguished from outside: by the branch that leaves, and by the multiplier of the motion that it leaves."""
 
 import numpy as np
 import pytest
