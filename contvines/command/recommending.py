@@ -265,7 +265,9 @@ class _Work:
 
         self.round += 1
         rest = "" if self.pace is None else f", about {_duration(self.pace * len(plan))}"
-        self.tell(f"round {self.round} of {len(LATER) + 2}: {len(plan)} machines{rest}")
+        self.tell(
+            f"round {self.round} of {len(LATER) + 2}: {len(plan)} {'machine' if len(plan) == 1 else 'machines'}{rest}"
+        )
         begun = monotonic()
         options = {**options_of(self.study), "depth": 0}  # what leaves a branch is met by simulation, too
         with without_main():

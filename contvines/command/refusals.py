@@ -33,7 +33,9 @@ def refusal(error: Any, words: list[str]) -> str:
         return _no_command(error, message)
     extra = re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message)
     if extra:
-        return f"{extra[1]}: this is too much for `{place}`; `{place} --help` says what it takes."
+        options = {parameter.name for parameter in error.ctx.command.params} if error.ctx else set()
+        file = " a file to write is given by --output FILE," if "output" in options else ""
+        return f"{extra[1]}: this is too much for `{place}`;{file} `{place} --help` says what it takes."
     return _bad_value(error, message, words) or (
         f"{message.rstrip('.')}; see `{place} --help`." if message else ""
     )
