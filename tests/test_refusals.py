@@ -234,6 +234,13 @@ REFUSED = {
         lambda x, p, sign: p - x * sign["wal"], [0.5], 1.0, switches=WALL
     ),
     "r = 'x' must be a number": lambda: ParameterSet({"r": "x"}, "r"),
+    "p = [0.0, 2.0] must be a number; several parameters have names": lambda: ParameterSet([0.0, 2.0], "p"),
+    "p[0]: parameters have names; p.a or p['a'] is one": lambda: cv.AlgebraicProblem(
+        lambda u, p: u - p[0], [0.0], {"a": 0.0}
+    ),
+    "it is called with two arguments, the unknowns and the parameters": lambda: cv.AlgebraicProblem(
+        lambda t, u, p: u, [0.0], 0.0
+    ),
     "at least one": lambda: ParameterSet({}, "r"),
     "cycle": lambda: cv.MapProblem(straight, [0.5], 3.0, cycle=0),
     "returns 2 numbers for 1": lambda: cv.MapProblem(lambda x, r: [1.0, 2.0], [0.5], 3.0),

@@ -27,6 +27,7 @@ CELL = 2.0  # pixels of the raster in which curves are drawn for the search
 IMPOSSIBLE = 1e6
 WORST = (60.0, 24.0)  # cost above which a label is left out: of a point, and of a branch's name
 ALONG = 16.0  # half cells of a leader on a curve that count as much as crossing it
+GAP = 3.0  # points between neighbouring texts
 EDGE = 1.5  # points between a text and the frame
 AS_NEAR = 1.25  # times its distance from its own mark: a text that near to another one could be either's
 PLACES = np.linspace(0.0, 1.0, 24)[:, None]  # along a leader, where it may pass through a box
@@ -112,7 +113,7 @@ def place_labels(
         cost, middle, box, line, radius = best
         if cost > WORST[label.near] and not label.kept:
             continue
-        boxes = np.vstack([boxes, box])
+        boxes = np.vstack([boxes, box + GAP * unit * np.array([-1, 0, 1, 0])])
         leader = None
         if radius >= LEADER:
             leaders = np.vstack([leaders, line])

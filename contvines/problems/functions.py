@@ -54,6 +54,8 @@ class UserFunction:
             hint = ""
             if isinstance(error, ValueError) and "read-only" in str(error):
                 hint = f" ({self.name} must not change its argument; let it work on u.copy())"
+            elif isinstance(error, TypeError) and "positional argument" in str(error):
+                hint = " (it is called with two arguments, the unknowns and the parameters)"
             raise NotEvaluable(f"{self.name} raises {type(error).__name__}: {error}{hint}") from error
 
     def __call__(self, u: np.ndarray, p: complex) -> np.ndarray:

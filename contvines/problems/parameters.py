@@ -27,6 +27,9 @@ class Parameters:
         raise AttributeError(f"there is no parameter {name!r}; the problem has {', '.join(self)}")
 
     def __getitem__(self, name: str) -> complex:
+        if not isinstance(name, str):
+            first = next(iter(self))
+            raise TypeError(f"p[{name!r}]: parameters have names; p.{first} or p[{first!r}] is one")
         return getattr(self, name)
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -75,7 +78,8 @@ class ParameterSet:
             try:
                 values[name] = float(value)
             except (TypeError, ValueError):
-                raise ValueError(f"parameter {name} = {value!r} must be a number") from None
+                hint = "" if self.named else "; several parameters have names: {'a': 1.0, 'b': 2.0}"
+                raise ValueError(f"parameter {name} = {value!r} must be a number{hint}") from None
             if not math.isfinite(values[name]):
                 raise ValueError(f"parameter {name} = {value!r} must be finite")
         if varying not in values and varying != UNNAMED:
