@@ -7,10 +7,11 @@ killed loses what it was working on, which another one does again.
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from contvines.shared.processes import ATTEMPTS, spread
+from contvines.shared.processes import ATTEMPTS, may_be_copied, spread
 
 from ..shared.extras import pip_install
 from .plan import PlanError
@@ -70,6 +71,16 @@ def cluster(job: Job, tasks: Sequence[Task], client: Any) -> Iterator[Row]:
     finally:
         if own:
             client.close()
+
+
+def found_here_alone(*functions: object) -> bool:
+    """Whether other processes do not find one of these: it was written in a notebook or at the prompt, and no process is a copy."""
+    main = sys.modules["__main__"]
+    return (
+        not hasattr(main, "__file__")
+        and any("__main__" in (getattr(f, "__module__", ""), type(f).__module__) for f in functions)
+        and not may_be_copied()
+    )
 
 
 def cores() -> int:

@@ -20,7 +20,7 @@ from ..text_table import Table, fitted, terminal_width
 from .files import read, write
 from .outcomes import KNOWN, OF_ALL
 from .plan import Plan, PlanError
-from .work import Row
+from .work import NOT_YET, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -94,12 +94,17 @@ class Survey(Resumable):
     @property
     def failed(self) -> int:
         """Number of systems that failed."""
-        return int(np.count_nonzero(self.lost))
+        return int(np.count_nonzero(self.lost)) - self.waiting
+
+    @property
+    def waiting(self) -> int:
+        """Number of systems that an interrupted survey has not come to."""
+        return int(np.count_nonzero(self.notes == NOT_YET))
 
     @property
     def partly(self) -> int:
         """Number of systems of which something is not known: their notes say what."""
-        return int(np.count_nonzero(self.notes != "")) - self.failed
+        return int(np.count_nonzero(self.notes != "")) - self.failed - self.waiting
 
     def known(self, outcome: str, covered: float = KNOWN) -> np.ndarray:
         """An outcome where it is known: one of all motions together has no number where these do not cover the interval.
@@ -191,8 +196,9 @@ class Survey(Resumable):
         return point, -found if largest else found
 
     def __repr__(self) -> str:
-        failed = f", {self.failed} failed" if self.failed else ""
-        return f"Survey({len(self.plan)} systems over {', '.join(self.plan.names)}: {', '.join(self.columns)}{failed})"
+        counts = {"failed": self.failed, "not done yet": self.waiting}
+        more = "".join(f", {count} {what}" for what, count in counts.items() if count)
+        return f"Survey({len(self.plan)} systems over {', '.join(self.plan.names)}: {', '.join(self.columns) or 'no outcomes'}{more})"
 
     def __str__(self) -> str:
         return "\n".join([fitted(self._title()), "", *self._table().lines(terminal_width())])
@@ -204,6 +210,8 @@ class Survey(Resumable):
         about = f"{len(self.plan)} systems over {', '.join(self.plan.names)}"
         if self.failed:
             about += f"; {self.failed} of them failed, the column note says why"
+        if self.waiting:
+            about += f"; {self.waiting} not done yet"
         if self.partly:
             about += f"; {self.partly} known in part, the column note says why"
         return about

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from functools import partial
@@ -23,9 +24,8 @@ from .journal import Rows
 from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
 from .plan import Plan, PlanError, planned
 from .results import Survey
-from .work import Job, Row
+from .work import NOT_YET, Job, Row
 
-NOT_YET = "not done yet: the survey was interrupted"
 MEANING = 3  # of rows: those of another number were found in another way, and are not taken over
 
 
@@ -182,6 +182,12 @@ def _worked(job: Job, tasks: list[pools.Task], workers: int | None, cluster: Any
     if cluster is not None:
         return pools.cluster(job, tasks, cluster)
     count = workers or pools.cores()
+    if count > 1 and pools.found_here_alone(job.family, *job.outcomes):
+        print(
+            "the survey runs in one process: no other one finds functions of a notebook; import them from a file to use all cores",
+            file=sys.stderr,
+        )
+        count = 1
     if count == 1 or len(tasks) < 2:
         return pools.serial(job, tasks)
     return pools.pool(job, tasks, count)

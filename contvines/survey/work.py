@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
 
 
+NOT_YET = "not done yet: the survey was interrupted"  # note of a row
+
+
 @dataclass(frozen=True)
 class Job:
     """What all systems of a survey share; it is sent to the workers.

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import signal
+import sys
 
 import numpy as np
 import pytest
@@ -50,6 +51,16 @@ def test_two_processes_and_a_lost_worker(one, tmp_path):
     assert (tmp_path / "died").exists()
 
 
+def test_functions_of_a_notebook_are_found_in_this_process_alone(one, monkeypatch, capsys):
+    class Written(Circles):
+        __module__ = "__main__"
+
+    monkeypatch.delattr(sys.modules["__main__"], "__file__", raising=False)
+    monkeypatch.setattr("contvines.survey.pools.may_be_copied", lambda: False)  # a notebook has threads
+    assert same(one, survey(Written("", -1.0), VARY, **ASKED, workers=2))
+    assert "the survey runs in one process" in capsys.readouterr().err
+
+
 def test_a_cluster_that_loses_a_worker(one):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
@@ -73,8 +84,10 @@ def test_a_killed_survey_goes_on(one, tmp_path):
         if len(seen) == 4:
             raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt) as stopped:
         run(workers=1, journal=place, progress=stop)
+    left = stopped.value.graph
+    assert (left.failed, left.waiting) == (0, 6) and "6 not done yet" in repr(left)
     with place.open("a") as file:
         file.write('{"index": 7, "colu')  # cut short
     again = []
