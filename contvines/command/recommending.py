@@ -67,7 +67,7 @@ def met(found: Findings) -> dict[str, float]:
     name = default_measure(found.graph)
     kinds = [_kind(measures, text) for _, measures, text in found.simulated]
     seen = [(kind, measures.get(name, math.nan)) for kind, (_, measures, _) in zip(kinds, found.simulated)]
-    seen += [("modulated", one.measures.get(name, math.nan)) for one in found.unbranched]
+    seen += [(_kind(one.measures, one.kind), one.measures.get(name, math.nan)) for one in found.unbranched]
     seen += [
         ("impacts" if part.branch.description.get("impacts") else "calm", float(np.nanmax(part.response, initial=-np.inf)))
         for part in stretches(found.graph)

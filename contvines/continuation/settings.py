@@ -46,7 +46,16 @@ BETWEEN = (
     "symmetric",
     "same",
 )
-WHOLE = ("max_iterations", "max_points", "first_chunk", "chunk", "max_branches", "halvings")
+WHOLE = (
+    "max_iterations",
+    "max_points",
+    "first_chunk",
+    "chunk",
+    "max_branches",
+    "halvings",
+    "longest",
+    "completion",
+)
 
 
 @hinted
@@ -135,6 +144,11 @@ class Settings:
         Identity: parts that a symmetry changes below this are zero.
     same : float
         Identity: distance of two solutions, relative to 1 + the largest unknown, up to which they are one.
+    longest : int
+        Surveys: unknowns of a motion met by simulation above which it is not traced: it is one of many in narrow windows, and counts as simulated.
+    completion : int
+        Surveys: unknowns of all points of the branches that motions met by simulation may add to a diagram (those of an integrated machine, which take
+        twenty times as long, count twenty times).
     step_rule : StepRule
         Steps: whether a step is accepted, and how long the next one is; by default the rule that aims at `angle`.
     """
@@ -179,6 +193,8 @@ class Settings:
     mesh_caution: float = 2.0
     symmetric: float = 1e-6
     same: float = 1e-6
+    longest: int = 200
+    completion: int = 400_000
     step_rule: StepRule = BY_ANGLE
 
     def __post_init__(self) -> None:

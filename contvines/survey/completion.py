@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..coexistence.build import join
-from ..coexistence.census import Counted, census
+from ..coexistence.census import Counted, census, locate
 from ..coexistence.handover import Handover
 from ..coexistence.population import Population
 from ..coexistence.roots import add_root
@@ -24,20 +24,21 @@ from .stretches import LEAST, gaps, spread, stretches, unseen
 
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
+PASSES = 3  # over the gaps with one value in each, for a branch that is found parts a gap
 HALVINGS = 3  # of the distance between values about the largest response that was simulated
 ON_ITS_WAY = ("slow", "impossible")  # a transient that has not ended; a start inside a wall
 
 
 @dataclass(frozen=True)
 class Unbranched:
-    """An attractor that lies on no branch: chaotic, quasi-periodic, or one that runs away.
+    """An attractor that lies on no branch: chaotic, quasi-periodic, one that runs away, or one that was not traced.
 
     Attributes
     ----------
     value : float
         Of the parameter.
     kind : str
-        See `contvines.graph.attractor.Attractor`.
+        See `contvines.graph.attractor.Attractor`; "periodic" of one that was not traced.
     measures : dict
         Numbers by name, from simulation; empty where there are none.
     """
@@ -56,6 +57,9 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     4. What a few starts settle on where nothing stable is known.
     5. The same between these values, about the largest response, where that is of a motion without a branch.
 
+    A motion of more than `Settings.longest` unknowns is not traced, for its window is narrow, and none is where `Settings.completion` is spent (the graph
+    is not complete then, and says so): these are among what is returned, as they are simulated.
+
     Parameters
     ----------
     graph : Graph
@@ -73,8 +77,16 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     for p in np.linspace(low, high, CLOSED):
         _add(run, population.closed(float(p)), float(p))
     met: list[Counted] = []
+    before, untraced = set(graph.branches), 0
 
     def keep(found: list[Counted], depth: int) -> None:
+        nonlocal untraced
+        for counted in found:
+            if counted.u is None or locate(run, counted) is not None:
+                continue
+            spent = _size(graph, before) * getattr(population, "price", 1.0) > run.settings.completion
+            if spent or len(counted.u) > run.settings.longest:
+                counted.problem, untraced = None, untraced + spent
         join(run, found, depth)
         met.extend(found)
 
@@ -86,10 +98,12 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     for end in handover.left():
         keep(handover.follow(end), run.depth)
     left = _observed(population, met)
-    for at_least in (values, 1) if values else ():  # once more where gaps have become others
+    looked: set[float] = set()
+    for at_least in (values, *[1] * PASSES) if values else ():
         met.clear()
         unknown = unseen(gaps(graph), graph.within, [one.value for one in left if one.measures])
-        for p in spread(unknown, graph.within, at_least):
+        for p in sorted({*spread(unknown, graph.within, at_least)} - looked):
+            looked.add(p)
             keep(census(population, p, FEW, 0, run.journal), run.depth)
         left += _observed(population, met)
     for _ in range(HALVINGS if values else 0):
@@ -97,7 +111,15 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
         for p in _about_the_largest(graph, left):
             keep(census(population, p, FEW, 0, run.journal), run.depth)
         left += _observed(population, met)
+    if untraced:
+        spent = f"completion = {run.settings.completion} is spent: {untraced} motions that were met have no branch; raise it to trace them"
+        graph.message, graph.complete = spent if graph.complete else f"{graph.message}; {spent}", False
     return left
+
+
+def _size(graph: Graph, before: Collection[str]) -> int:
+    """Unknowns of all points of the branches that were not there before."""
+    return sum(b.points.size for label, b in graph.branches.items() if label not in before)
 
 
 def _run(graph: Graph) -> Run:

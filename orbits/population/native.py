@@ -47,6 +47,7 @@ class NativeStarts:
 
     across = 200
     brief = BRIEF
+    price = 1.0
     longest = EMBEDDED
     notation = STARTS
     leftward = "w"  # w = +1 is the left wall, and stands on the left

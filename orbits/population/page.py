@@ -50,6 +50,7 @@ class PageStarts:
     """What `orbits.population.population.Population` asks of the starts of a declared machine."""
 
     across = 60
+    price = 20.0  # flights of a page are integrated
     longest = EMBEDDED
     notation: ClassVar = {"phase": STARTS["phase"]}  # states are shown by the names on the page
     leftward = ""

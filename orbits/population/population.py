@@ -55,7 +55,7 @@ class Population:
             from orbits.population.page import PageStarts as kind
         self._sort = kind(model, parameter, self.parameters)
         self.workers = workers
-        self.across, self.brief = self._sort.across, self._sort.brief
+        self.across, self.brief, self.price = self._sort.across, self._sort.brief, self._sort.price
         self.notation, self.leftward = self._sort.notation, self._sort.leftward
         self.work = 0.0
         """Forcing periods simulated so far, those that solve for cycles included; of a self-excited machine its time over 2 pi."""
