@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..coexistence.build import join
-from ..coexistence.census import Counted, census, locate
+from ..coexistence.census import Counted, census, followed, locate
 from ..coexistence.handover import Handover
 from ..coexistence.population import Population
 from ..coexistence.roots import add_root
@@ -25,7 +25,8 @@ from .stretches import LEAST, gaps, spread, stretches, unseen
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
 PASSES = 3  # over the gaps with one value in each, for a branch that is found parts a gap
-HALVINGS = 3  # of the distance between values about the largest response that was simulated
+HALVINGS = 5  # of the distance between values about the largest response that was simulated, ...
+NEARLY = 0.998  # ... to where it is nearly as large
 ON_ITS_WAY = ("slow", "impossible")  # a transient that has not ended; a start inside a wall
 
 
@@ -41,11 +42,14 @@ class Unbranched:
         See `contvines.graph.attractor.Attractor`; "periodic" of one that was not traced.
     measures : dict
         Numbers by name, from simulation; empty where there are none.
+    state : float array, optional
+        On it.
     """
 
     value: float
     kind: str
     measures: dict[str, float]
+    state: np.ndarray | None = None
 
 
 def complete(graph: Graph, population: Population, values: int) -> list[Unbranched]:
@@ -55,7 +59,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     2. The attractors that a brief look meets, with many starts at a few values.
     3. What takes over where a stable stretch ends.
     4. What a few starts settle on where nothing stable is known.
-    5. The same between these values, about the largest response, where that is of a motion without a branch.
+    5. The same between these values, about the largest response, where that is of a motion without a branch, which is followed to there.
 
     A motion of more than `Settings.longest` unknowns is not traced, for its window is narrow, and none is where `Settings.completion` is spent (the graph
     is not complete then, and says so): these are among what is returned, as they are simulated.
@@ -108,8 +112,13 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
         left += _observed(population, met)
     for _ in range(HALVINGS if values else 0):
         met.clear()
-        for p in _about_the_largest(graph, left):
-            keep(census(population, p, FEW, 0, run.journal), run.depth)
+        places, state = _about_the_largest(graph, left, looked)
+        for p in places:
+            looked.add(p)
+            starts = population.starts(FEW, 0, p)
+            if state is not None and state.shape == starts[0].shape:
+                starts = np.vstack([state, starts])
+            keep(followed(population, p, starts, f"largest/{p!r}", run.journal), run.depth)
         left += _observed(population, met)
     if untraced:
         spent = f"completion = {run.settings.completion} is spent: {untraced} motions that were met have no branch; raise it to trace them"
@@ -153,21 +162,31 @@ def _observed(population: Population, met: Sequence[Counted]) -> list[Unbranched
                 measures = population.observed(counted.state, about.value)
             except ValueError:  # it runs away
                 measures = {}
-            found.append(Unbranched(about.value, about.kind, measures))
+            found.append(Unbranched(about.value, about.kind, measures, counted.state))
     return found
 
 
-def _about_the_largest(graph: Graph, left: Sequence[Unbranched]) -> list[float]:
-    """Values half-way from the largest response to its neighbours; none where it is that of a branch, or these are near."""
+def _about_the_largest(
+    graph: Graph, left: Sequence[Unbranched], looked: Collection[float]
+) -> tuple[list[float], np.ndarray | None]:
+    """Values half-way from the largest response to its neighbours that are not as large, and a state on its motion; no values where it is that of a
+    branch, or these are near."""
     name, (low, high) = default_measure(graph), graph.within
-    known = {met.value: met.measures[name] for met in left if np.isfinite(met.measures.get(name, np.nan))}
+    known: dict[float, float] = {}
+    for one in left:
+        known[one.value] = max(known.get(one.value, -np.inf), one.measures.get(name, -np.inf))
     top = max(known, key=lambda value: known[value], default=low)
     of_branches = max(
         (float(np.nanmax(s.response, initial=-np.inf)) for s in stretches(graph)), default=-np.inf
     )
-    if known.get(top, -np.inf) <= of_branches:
-        return []
-    places = sorted({low, high, *known, *(end for gap in gaps(graph) for end in gap)})
+    if not known.get(top, -np.inf) > of_branches:
+        return [], None
+    places = sorted({low, high, *known, *looked, *(end for gap in gaps(graph) for end in gap)})
     at = places.index(top)
-    neighbours = places[max(at - 1, 0)], places[min(at + 1, len(places) - 1)]
-    return [0.5 * (top + other) for other in neighbours if abs(other - top) > LEAST * (high - low)]
+    beside = [
+        other
+        for other in (places[max(at - 1, 0)], places[min(at + 1, len(places) - 1)])
+        if abs(other - top) > LEAST * (high - low) and known.get(other, -np.inf) < NEARLY * known[top]
+    ]
+    state = next(one.state for one in left if one.value == top and one.measures.get(name) == known[top])
+    return [0.5 * (top + other) for other in beside], state

@@ -8,6 +8,7 @@ from scipy.optimize import fsolve, minimize_scalar
 import contvines as cv
 from contvines.survey import PlanError, survey
 from contvines.survey.stretches import spread, unseen
+from orbits import coupled_two
 from orbits.attractors.sweep import sweep
 from orbits.design import Family
 from orbits.machines.physical import physical
@@ -107,6 +108,36 @@ def test_a_chaotic_response_is_known_where_it_is_simulated():
     assert made["peak"][0] == pytest.approx(largest, rel=5e-3)
     assert made["lower_peak"][0] == pytest.approx(largest, rel=5e-3)  # where it is largest nothing coexists
     assert made.best("peak") == ({"half_width": 8.0}, made["peak"][0])
+
+
+def test_a_large_chaotic_motion_beside_a_stable_one_is_followed_to_where_it_is_largest():
+    """Two absorbers: a sweep downwards meets it from 8.01 Hz on; starts at these frequencies lead to the small motion that coexists."""
+    within, case = (7.0, 9.0), {"clearance_1": 30.0}
+    made = survey(
+        Family(coupled_two, None, over="frequency", within=within, loose=case), {"restitution_1": [0.6]}, over="frequency", within=within,
+        depth=0, workers=1,
+    )  # fmt: skip
+    rows = sweep(coupled_two, "frequency", np.linspace(8.01, 7.984, 14), **case)
+    assert made["peak"][0] == pytest.approx(max(row.measures["max_q"] for row in rows), rel=0.01)
+    assert made["covered"][0] >= 0.999 and "chaotic" in made.notes[0]
+
+
+def test_a_completion_whose_budget_is_spent_says_so_and_answers_by_simulation():
+    within, grid = (7.5, 8.5), np.linspace(7.7, 8.3, 121)
+    case = {**CASE, "half_width": "60 mm", "restitution": 0.7, "friction": 0.155}
+    machine = physical("coupled", case)
+    made = survey(
+        Family(machine, None, over="frequency", within=within), {"half_width": [60.0]}, over="frequency", within=within, depth=0, workers=1,
+        settings={"completion": 1},
+    )  # fmt: skip
+    largest = max(
+        row.measures["max_abs_q1"] for run in (grid, grid[::-1]) for row in sweep(machine, "frequency", run)
+    )
+    assert (
+        "completion = 1 is spent: " in made.notes[0]
+        and "motions that were met have no branch" in made.notes[0]
+    )
+    assert made["peak"][0] == pytest.approx(largest, rel=0.01) or made["covered"][0] < 0.999
 
 
 def test_gaps_are_seen_where_values_are_near_enough():
