@@ -36,19 +36,10 @@ SECOND = second_derivatives(6)
 
 def brc(u, length, m):
     a, b = 2.0, 5.45
-    x, y = u[:6], u[6:]
-    rates = []
-    for i in range(6):
-        react = x[i] ** 2 * y[i]
-        spread = [
-            SECOND[i, 0] * end + sum(SECOND[i, j + 1] * w[j] for j in range(6)) + SECOND[i, 7] * end
-            for w, end in ((x, a), (y, b / a))
-        ]
-        rates.append((react - (b + 1) * x[i] + a, -react + b * x[i], *spread))
-    return [
-        *(r[0] + 0.008 / length**2 * r[2] for r in rates),
-        *(r[1] + 0.004 / length**2 * r[3] for r in rates),
-    ]
+    x, y = np.asarray(u[:6]), np.asarray(u[6:])
+    react = x**2 * y
+    x2, y2 = (np.tensordot(SECOND[:, 1:7], w - end, 1) for w, end in ((x, a), (y, b / a)))
+    return [*(react - (b + 1) * x + a + 0.008 / length**2 * x2), *(b * x - react + 0.004 / length**2 * y2)]
 
 
 def frc(u, beta, t, m):

@@ -95,9 +95,8 @@ PRINTED = {
         "hopf": ["-0.589337"],
         "fold": ["-0.584335", "-0.832514"],
         "symmetry-breaking": ["-0.587029", "-0.832438"],
-        "neimark-sacker": ["-0.591650"],
-        "period-doubling": ["-0.614955"],
     },
+    "tor, unlike": {"neimark-sacker": ["-0.591650"], "period-doubling": ["-0.614955"]},
     "pen": {"period-doubling": ["0.179163"], "symmetry-breaking": ["0.331445", "0.175511"]},
     "brc": {
         "hopf": ["0.513070", "1.02515", "1.59033", "1.97999"],
@@ -283,8 +282,6 @@ DEMOS = [
         mirror=-np.eye(2),
     ),
     CycleDemo("canard", "COCO canard", fields.canard, [0.0, 0.0], -1.1, (-1.1, 1.1), "a"),
-]
-UNFINISHED = [
     CycleDemo(
         "brc",
         "AUTO brc",
@@ -296,7 +293,10 @@ UNFINISHED = [
         mirror=OTHER_WAY,
         depth=2,
     ),
-    CycleDemo("tor", "AUTO tor", eq.tor, [0.0, 0.0, 0.0], -0.62, (-0.9, -0.4), "nu", mirror=ODD, depth=3),
+    CycleDemo("tor", "AUTO tor", eq.tor, [0.0, 0.0, 0.0], -0.6, (-0.84, -0.57), "nu", mirror=ODD, depth=1),
+    CycleDemo(
+        "tor, unlike", "AUTO tor", eq.tor, [0.0, 0.0, 0.0], -0.6, (-0.65, -0.57), "nu", mirror=ODD, depth=3
+    ),
     CycleDemo(
         "pen",
         "AUTO pen",
@@ -307,18 +307,16 @@ UNFINISHED = [
         "I",
         settles=True,
         mirror=OTHER_PENDULUM,
-        depth=3,
+        depth=1,
     ),
     CycleDemo(
         "predator and prey, forced",
         "BifurcationKit, MatCont",
         fields.predator_prey,
         [0.3, 0.3],
-        0.25,
+        0.5,
         (0.2, 0.5),
         "b0",
         period=lambda b: 1.0,
-        depth=2,
     ),
 ]
-"""Demos of which no table was made: they take long, or a branch ends before the points that are printed."""

@@ -6,6 +6,7 @@ python -m tools.flow_demos.make_table [NAME...]
 from __future__ import annotations
 
 import json
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from . import witness
 from .listed import DEMOS, CycleDemo
 
 TABLE = Path(__file__).with_name("table.json")
-CYCLE = ("fold", "period-doubling", "neimark-sacker", "branch-point", "symmetry-breaking")
+PATIENCE = 30.0  # seconds of processor time for the witness's solve of a point
 
 
 def points_of(graph: Any) -> list[Any]:
@@ -76,15 +77,23 @@ def solved(demo: CycleDemo, point: Any) -> float:
     return float(witness.solve(point.kind, shooting, multiplier)[-1])
 
 
+def too_long(*_: Any) -> None:
+    """End a solve that takes too long."""
+    raise ValueError(f"not done in {PATIENCE:g} s")
+
+
 def rows_of(demo: CycleDemo, ours: bool) -> list[dict[str, Any]]:
     """A row for each special point."""
     rows = []
     for point in points_of(demo.graph()):
+        signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE)
         try:
             value = None if ours else solved(demo, point)
         except (ValueError, ArithmeticError, np.linalg.LinAlgError) as failure:
             print(demo.name, point.kind, point.value, "not solved:", failure, file=sys.stderr)
             value = None
+        finally:
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
         period = None if point.kind == "hopf" else float(point.orbit.period)
         rows.append(
             {
@@ -105,6 +114,7 @@ def rows_of(demo: CycleDemo, ours: bool) -> list[dict[str, Any]]:
 
 def main(names: list[str]) -> None:
     """Make the table anew, or the rows of some demos."""
+    signal.signal(signal.SIGVTALRM, too_long)
     ours, names = "--ours" in names, [name for name in names if name != "--ours"]
     for demo in DEMOS:
         if names and demo.name not in names:

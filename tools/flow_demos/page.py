@@ -21,8 +21,8 @@ MatCont's `torBPC` is run with a3 = 0.32858, b3 = 0.93358, beta = 0.5, gamma = -
 
 LP fold, BP branch point, SB symmetry breaking, PD period doubling, NS Neimark-Sacker, all of cycles; HB Hopf; HC homoclinic orbit.
 
-Not in the table: AUTO-07p's `brc` and `tor`, the forced predator and prey, which take long, or end before the points that are printed. Of AUTO-07p's `pen` all printed points are found
-(PD 0.179163776268, SB 0.331445240639 and 0.175511713212; own solves agree to 4e-13; printed 0.179163, 0.331445, 0.175511), and beside them no fold that the accuracy of these values does not tell from rounding.
+Next to two folds of `tor` (-0.799899, -0.787590) lie symmetry breakings 3e-8 and 3e-6 away; `tor, unlike` has the cycles without the symmetry. The forced predator and prey begins at b0 = 0.5, where the motion of
+one forcing period attracts. AUTO-07p's first Hopf point of `brc` is 5e-5 off.
 
 | demo | comes with | parameter | point | found | own solve | differ by | printed |
 |---|---|---|---|---|---|---|---|"""
