@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..continuation.hints import hinting
-from ..graph.table import with_unit
 from .figures import Size, Style, drawing, settle
 from .legends import place_legend
+from .style import axis_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +62,7 @@ def plot_transient(
             low = np.full(hits.size, 0.02)
             ticks: dict[str, Any] = {"marker": "|", "linestyle": "none", "color": DATA, "label": "impacts"}
             axes.plot(hits, low, transform=axes.get_xaxis_transform(), **ticks)
-        axes.set(xlabel=with_unit(clock, second), ylabel=with_unit(name.replace("_", " "), unit))
+        axes.set(xlabel=axis_label(clock, unit=second), ylabel=axis_label(name, unit=unit))
         if name == "energy":
             axes.set(yscale="log", ylabel="energy / first energy")
         axes.margins(x=0.0)
@@ -105,8 +105,8 @@ def plot_densities(
         units = {shown for _, shown in densities.values()}
         axes.set(
             yscale="log",
-            xlabel=with_unit("frequency", unit),
-            ylabel=with_unit("density of the response", units.pop() if len(units) == 1 else ""),
+            xlabel=axis_label("frequency", unit=unit),
+            ylabel=axis_label("density of the response", unit=units.pop() if len(units) == 1 else None),
         )
         axes.margins(x=0.0)
         _finish(figure, axes, True, own)
