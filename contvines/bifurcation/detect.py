@@ -18,12 +18,14 @@ from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicio
 from .kinks import kinked, nearest, pointed
 from .locate import locate
 from .located import NOWHERE, Located, Role
+from .multiplier_counts import counts
 from .scan import Scan, scanner
 from .segment import Segment
 from .segment_search import SegmentSearch
 
 BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
 MOST = 0.5  # ... but not more
+NEARER = 0.25  # times that, where multipliers have passed the circle on it
 NEXT = (
     0.1  # part of the distance from a symmetry's fixed space that a step which ends next to a meeting leaves
 )
@@ -147,6 +149,13 @@ class Detector(SegmentSearch):
         if whole.length > 0.0:
             share = min(max(BESIDE, settings.close / whole.length), MOST)
         start = whole.at(share)
+        while (
+            start is not None and share * whole.length > settings.resolution and self._passed(origin, start)
+        ):
+            closer = whole.at(NEARER * share)
+            if closer is None:
+                break
+            share, start = NEARER * share, closer
         if start is None:
             return []
         segment = Segment(self.engine, start, first)
@@ -171,6 +180,18 @@ class Detector(SegmentSearch):
         bracket = (origin.p, first.p)
         found = [_placed(e, share + (1.0 - share) * e.position, bracket) for e in found]
         return before_stop(found) + ([] if leaping is None else [leaping])
+
+    def _passed(self, origin: Solved, start: Solved) -> bool:
+        """Whether multipliers have passed the circle away from +1 since a branch point: there only the critical ones, at +1, do not tell."""
+        engine = self.engine
+        if engine.detection != "map" or engine.adaptive:
+            return False
+        spectrum = engine.spectrum(origin.row)
+        others = spectrum[np.abs(spectrum - 1.0) > engine.settings.together]
+        if np.any(np.abs(np.abs(others) - 1.0) <= engine.settings.together):
+            return False
+        (_, *before), (_, *after) = counts(engine, np.array([origin.row, start.row])).tolist()
+        return before != after
 
     def _meetings_and_landings(self, scanned: Scan) -> tuple[np.ndarray, np.ndarray]:
         """Segments on which the part that a symmetry changes turns round, and those that end next to where it does.

@@ -26,7 +26,7 @@ from ..continuation.loop import MARGIN
 from ..interrupts import OPEN
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
-from .identity import UNSTATED, same_form, turns_at
+from .identity import UNSTATED, Place, same_form, same_value, turns_at
 from .match_borders import is_border
 from .queue import Origin, Pending
 from .run import Run
@@ -226,9 +226,12 @@ def _known(
         form = problem.canonical(point.u, point.p) if form is None else form
         if same_form(form, run.form(known), engine.scale, run.settings.same):
             return known.label
-        if meets and abs(known.value - point.p) <= near:
+        if not meets or known.branch == branch.label:
+            continue
+        places = Place(known.value, known.location_error), Place(float(point.p), event.error)
+        if same_value(*places, run.unit(point.p), run.settings.same):
             beside.append((abs(known.value - point.p), known.label))
-    # one point seen in two problems, whose forms need not agree: the nearest, where others are near
+    # one point seen in two problems, whose forms need not agree: the nearest of those whose values agree as far as they are known
     return min(beside)[1] if beside else None
 
 

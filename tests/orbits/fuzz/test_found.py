@@ -1,6 +1,7 @@
 """Machines in whose diagrams the search once found something false: nothing of the kind is found in them now."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -230,6 +231,25 @@ def test_a_branch_that_ends_right_beside_its_period_doubling_does_not_turn_back(
     for i in range(1, len(branch) - 1):
         assert np.abs(exact(branch.orbit(i)).multipliers).max() < 1.0
     tally = Tally("cavity", 412, 368)
+    structure.judge(graph, tally)
+    assert not tally.findings
+
+
+def test_a_cascade_within_a_billionth_has_all_its_doublings():
+    """Two period doublings 2.5e-10 apart had one label, and the first of the two no branch: in eighty digits a multiplier is -1 at each."""
+    graph = diagram("absorber", 161, 4411)
+    cascade = sorted(
+        (p for p in graph.of_kind("period-doubling") if 1.072387283 < p.value < 1.072387285),
+        key=lambda p: p.value,
+    )
+    assert [graph[p.branch].problem.periods for p in cascade] == [2, 4, 8]
+    for point, doubled in pairwise(cascade):
+        assert graph[doubled.branch].seed == point.label
+    for point in cascade:
+        found = exact(point.orbit)
+        assert abs(found.shift) < 1e-13
+        assert np.abs(found.multipliers + 1.0).min() < 1e-6
+    tally = Tally("absorber", 4411, 161)
     structure.judge(graph, tally)
     assert not tally.findings
 
