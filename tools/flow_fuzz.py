@@ -29,6 +29,7 @@ PLACES, STARTS = 3, 4  # values at which motions are simulated, and motions at e
 SPAN = 50.0  # times after which a motion has settled, if it settles soon; up to 64 times that otherwise
 EDGE = 1e-5  # multipliers (eigenvalues) so near to the boundary are not judged
 WILD = 1e6  # multipliers so large are not simulated
+TRIVIAL = 1e-3  # error of the trivial multiplier above which a simulation is no judge: it is lost to growth beside a saddle
 CLOSED = 1e-6  # distance of a simulation from a cycle after a period, relative, times its largest multiplier
 NEAR = 2e-3  # relative distance of a motion from the one on which it has settled
 RETURNS = 12  # after which a motion that has settled must have returned, to be periodic
@@ -181,11 +182,15 @@ def _stability(flow: Drawn, branch: Any, i: int, p: float, done: Judged) -> None
     if np.abs(orbit.multipliers).max() > WILD:
         done.tried["cycles too unstable to be simulated"] += 1
         return
-    done.tried["cycles"] += 1
     start = orbit(0.0)
     end, matrix = flow.monodromy(start, p, orbit.period)
     values = np.linalg.eigvals(matrix)
-    values = np.delete(values, int(np.argmin(np.abs(values - 1.0))))
+    trivial = int(np.argmin(np.abs(values - 1.0)))
+    if abs(values[trivial] - 1.0) > TRIVIAL:
+        done.tried["cycles that a simulation cannot judge"] += 1
+        return
+    done.tried["cycles"] += 1
+    values = np.delete(values, trivial)
     largest, size = float(np.abs(values).max()), float(np.ptp(orbit.states, axis=0).max())
     away = float(np.abs(end - start).max()) / size
     if away > CLOSED * (1.0 + largest) * (1.0 + orbit.period):
