@@ -71,7 +71,7 @@ class Erosion:
         }
 
     def __str__(self) -> str:
-        values = self.values
+        values = self.values.tolist()
         value = figures_in((min(values), max(values)), values) if len(values) else figures
         rows = [
             (

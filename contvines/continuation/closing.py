@@ -89,13 +89,15 @@ class Closing:
                 size = engine.scale[: len(here)] if len(here) < len(engine.scale) else 1.0
                 if (np.abs(here - there) <= SAME * (size + np.abs(there))).all():
                     points = chunk.cut(int(i) + 1)
+                    # not the start itself: there the same motion may be told from another time on, or on another mesh
+                    way = 1.0 if engine.inner(found.tangent, points.tangents[-1]) > 0.0 else -1.0
                     return Chunk(
-                        np.vstack([points.points, start.u]),
-                        np.append(points.values, start.p),
-                        np.vstack([points.tangents, start.tangent]),
-                        np.vstack([points.rows, start.row]),
-                        np.append(points.signs, start.sign),
-                        np.append(points.corrections, start.correction),
+                        np.vstack([points.points, found.u]),
+                        np.append(points.values, found.p),
+                        np.vstack([points.tangents, way * found.tangent]),
+                        np.vstack([points.rows, found.row]),
+                        np.append(points.signs, way * found.sign),
+                        np.append(points.corrections, found.correction),
                         Status.CLOSED,
                     )
         return None

@@ -59,7 +59,7 @@ def test_public_api_follows_both_directions():
 
 def test_whole_diagram_has_what_the_example_says():
     table, sizes = run.whole_diagrams(1, ("friction",))
-    assert sizes["friction"].startswith("13 branches, 22 special points, ")
+    assert sizes["friction"].startswith("13 branches, 23 special points, ")
     assert all(row["friction"] > 0.0 for row in table.values())
 
 

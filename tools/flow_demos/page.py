@@ -21,8 +21,9 @@ MatCont's `torBPC` is run with a3 = 0.32858, b3 = 0.93358, beta = 0.5, gamma = -
 
 LP fold, BP branch point, SB symmetry breaking, PD period doubling, NS Neimark-Sacker, all of cycles; HB Hopf; HC homoclinic orbit.
 
-Next to two folds of `tor` (-0.799899, -0.787590) lie symmetry breakings 3e-8 and 3e-6 away; `tor, unlike` has the cycles without the symmetry. The forced predator and prey begins at b0 = 0.5, where the motion of
-one forcing period attracts. AUTO-07p's first Hopf point of `brc` is 5e-5 off.
+Next to two folds of `tor` (-0.799899, -0.787590) lie symmetry breakings 3e-8 and 3e-6 away; `tor, unlike` has the cycles without the symmetry. AUTO-07p's first Hopf point of `brc` is 5e-5 off.
+Not listed: what lies deeper than the stated depth. `tor` goes on to -0.9 with 172 folds towards homoclinic orbits, and has period doublings down to 1e-14 beside its folds; `pen` has a doubling and a fold
+1.5e-15 apart. The forced predator and prey begins at b0 = 0.5, where the motion of one forcing period attracts; its motions of two periods are a loop of their own between folds at 0.221301055 and 0.339991699.
 
 | demo | comes with | parameter | point | found | own solve | differ by | printed |
 |---|---|---|---|---|---|---|---|"""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import fsolve
 
 import contvines as cv
 
@@ -241,3 +242,45 @@ def test_a_linear_centre_has_cycles_of_all_sizes():
     )
     going = graph["B3"]
     assert going.range == (-1.0, 2.0)
+
+
+def test_a_loop_of_doubled_motions_closes_at_the_image_of_its_start():
+    """Predator and prey with a season (Yu. A. Kuznetsov, S. Muratori and S. Rinaldi, International Journal of Bifurcation and Chaos 2
+    (1992) 117): half of the loop leads to the same motion a year later. Its folds against shooting with DOP853."""
+
+    def field(t, z, b):
+        x, y = z[:2]
+        level = b * (1.0 + 0.2 * np.cos(2.0 * np.pi * t))
+        eaten, by_x, by_y = (
+            12.56 * x * y / (level + x),
+            12.56 * y * level / (level + x) ** 2,
+            12.56 * x / (level + x),
+        )
+        rate = [6.28 * x * (1.0 - x) - eaten, eaten - 6.28 * y]
+        jacobian = np.array([[6.28 * (1.0 - 2.0 * x) - by_x, -by_y], [by_x, by_y - 6.28]])
+        return rate if len(z) == 2 else [*rate, *(jacobian @ z[2:].reshape(2, 2)).ravel()]
+
+    def folds(z):
+        run = solve_ivp(
+            field,
+            (0.0, 2.0),
+            [*z[:2], 1.0, 0.0, 0.0, 1.0],
+            args=(z[2],),
+            method="DOP853",
+            rtol=1e-11,
+            atol=1e-12,
+        )
+        end = run.y[:, -1]
+        return [*(end[:2] - z[:2]), np.linalg.det(end[2:].reshape(2, 2) - np.eye(2))]
+
+    flow = cv.FlowProblem(
+        lambda u, b0, t: np.array(field(t, u, b0)), [0.3, 0.3], 0.25, parameter="b0", period=lambda b0: 1.0
+    )
+    graph = cv.diagram(flow.attractor([0.3, 0.3]), over="b0", within=(0.2, 0.5), depth=0)
+    (branch,) = graph.branches.values()
+    assert branch.closed
+    found = graph.of_kind("fold")
+    assert len(found) == 2
+    for point in found:
+        own = fsolve(folds, [*point.orbit.states[0], point.value], xtol=1e-13)
+        assert point.value == pytest.approx(own[2], abs=1e-10)

