@@ -6,14 +6,16 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any
 
+from ..shared.modulation import MODULATIONS
+
 
 def short_word(word: str, limit: int = 24) -> str:
     """A word of events in at most about `limit` characters.
 
     A word that repeats a shorter one is written with its power, ``(LtRLttR)^8``; what is still too long is cut, with the
-    number of its events (signs such as those of ``s+`` belong to the event before them).
+    number of its events (signs such as those of ``s+`` belong to the event before them). Names of modulations stay as they are.
     """
-    if len(word) <= limit:
+    if len(word) <= limit or word in MODULATIONS:
         return word
     length = (word + word).find(word, 1)  # of the shortest root
     power = f"^{len(word) // length}" if length < len(word) else ""

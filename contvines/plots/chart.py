@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..continuation.hints import hinting
 from ..graph.shortening import short_word
+from ..shared.modulation import MODULATIONS
 from .figures import LOW, Size, Style, freeze, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, dense, grouped, place_labels, touching
 from .legends import hold_legend, place_legend
@@ -45,6 +47,7 @@ TINTS = ("#dbe9f6", "#fbe3d6", "#e3f1e0", "#efe4f5", "#fdf3cf", "#d9f0f0", "#f6d
 HATCH_LENGTH = 0.012  # of the axes
 FITS = 0.9  # share of a name that must lie within its region
 AWAY = 5.0  # pixels between a name that was moved and the edges of its region
+WIDTH = 14  # characters in a line of the name of a modulation
 LEAST_SHARE = 0.012  # regions smaller than this part of the plane are not named
 
 
@@ -201,7 +204,7 @@ def _name(axes: Axes, chart: Chart, taken: list[Box]) -> list[Box]:
         if region.share < LEAST_SHARE or not region.words:
             continue
         for count in (4, 2, 1):  # fewer words where there is little room
-            names = [short_word(word, 16) for word in region.words[:count]]
+            names = [_lines(word) for word in region.words[:count]]
             more = [f"+{len(region.words) - count}"] if len(region.words) > count else []
             more += ["(in part)"] if region.others else []
             look = {"ha": "center", "va": "center", "fontsize": "x-small", "color": "0.25", "zorder": 4}
@@ -211,6 +214,10 @@ def _name(axes: Axes, chart: Chart, taken: list[Box]) -> list[Box]:
                 break
             text.remove()
     return boxes
+
+
+def _lines(word: str) -> str:
+    return textwrap.fill(word, WIDTH) if word in MODULATIONS else short_word(word, 16)
 
 
 def _room_for(axes: Axes, chart: Chart, region: Region, text: Text, taken: list[Box]) -> Box | None:

@@ -9,6 +9,9 @@ BAND = ("modulated_low", "modulated_mean", "modulated_high")
 """Measures: the lowest, mean and highest of the largest responses in each forcing period."""
 SILENT = "silent"
 """A measure: the share of the forcing periods without an impact."""
+_NAMES = (("weak modulation", "strong modulation"), ("chaotic weak modulation", "chaotic strong modulation"))
+MODULATIONS = frozenset(_NAMES[0] + _NAMES[1])
+"""What a modulated motion may be called, where others have a word."""
 FEW = 0.01  # of the periods without an impact: fewer do not make a modulation strong
 
 
@@ -17,7 +20,7 @@ def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
     absorbers), either with ``chaotic`` before it; empty for a motion without a band, such as one that recurs."""
     if not math.isfinite(measures.get(BAND[1], math.nan)):
         return ""
-    return f"{'chaotic ' if chaotic else ''}{'strong' if is_strong(measures) else 'weak'} modulation"
+    return _NAMES[chaotic][is_strong(measures)]
 
 
 def is_strong(measures: Mapping[str, float]) -> bool:
