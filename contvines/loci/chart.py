@@ -43,6 +43,8 @@ class Chart(Resumable):
     settings : dict
     units : dict of str
         Units of the parameters, by name, where they have any.
+    notation : dict of str
+        Labels of their axes, by name; none for equations of the user's own.
     finished : bool
         False while the run that makes it goes on, or was interrupted.
     message : str
@@ -57,6 +59,7 @@ class Chart(Resumable):
     model: dict[str, Any] = field(default_factory=dict)
     settings: dict[str, Any] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+    notation: dict[str, str] = field(default_factory=dict)
     finished: bool = False
     message: str = ""
 
@@ -86,11 +89,6 @@ class Chart(Resumable):
             f"Chart({self.parameters[0]} x {self.parameters[1]}: {len(self.loci)} loci, {len(self.points)} points, "
             f"{len(self.regions)} regions{state})"
         )
-
-    @property
-    def notation(self) -> dict[str, str]:
-        """Labels of axes by name of parameter; none for equations of the user's own."""
-        return notation_of(*(locus.branch.problem for locus in self.loci.values()))
 
     def of_kind(self, kind: str) -> list[PlanePoint]:
         """The points of codimension two of a kind.
@@ -213,6 +211,8 @@ def chart_from_entries(
             chart.loci[label].marked = tuple((int(i), chart.points[name]) for i, name in found)
     for content in entries.get("region", {}).values():
         chart.regions.append(Region(**{**content, "at": tuple(content["at"])}))
+    if "notation" not in head:  # an older file
+        chart.notation = notation_of(*(locus.branch.problem for locus in chart.loci.values()))
     check_chart(chart)
     return chart
 

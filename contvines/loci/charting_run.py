@@ -104,6 +104,7 @@ class Charting:
             model=dict(graph.model),
             settings={**settings.to_dict(), "virtual": virtual},
             units={name: unit for name, unit in graph.units.items() if name in (graph.parameter, over)},
+            notation={name: text for name, text in graph.notation.items() if name in (graph.parameter, over)},
         )
         self.queue: deque[tuple[Candidate, int]] = deque()
         self.numbers: dict[str, int] = {}
