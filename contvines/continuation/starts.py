@@ -68,7 +68,8 @@ def problem_and_start(
     if not (hasattr(seed, "problem") and hasattr(seed, "seed")):
         raise TypeError(f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}")
     if over is None:
-        raise ValueError('over = None: name the parameter to continue in, for example over="amplitude"')
+        known = ", ".join(map(repr, getattr(seed, "parameters", None) or ("amplitude",)))
+        raise ValueError(f"over = None: name the parameter to continue in, one of {known}")
     problem = seed.problem(over)
     own_u, own_p = seed.seed(problem)
     return problem, own_u if u is None else u, float(own_p if p is None else p)

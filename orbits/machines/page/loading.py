@@ -22,6 +22,11 @@ def load_page(path: str | Path, name: str) -> Any:
     module = module_at(path)
     machine = getattr(module, name, None)
     if not isinstance(machine, Machine):
+        if machine is not None:
+            kind = type(machine).__name__
+            raise ValueError(
+                f"{path}: {name} is a {kind}; an orbits.Machine or a contvines.FlowProblem is expected"
+            )
         known = [key for key, value in vars(module).items() if isinstance(value, Machine)]
         raise ValueError(f"{path}: it has no machine {name!r}; it declares {', '.join(known) or 'none'}")
     return machine

@@ -66,6 +66,7 @@ def test_a_page_from_study_to_file(study):
 REFUSED = {
     'name = "stop.py"': 'names a file but no machine in it; "stop.py:machine" would do',
     'name = "stop.py:other"': "it has no machine 'other'; it declares machine",
+    'name = "stop.py:cos"': "cos is a function; an orbits.Machine or a contvines.FlowProblem is expected",
     'name = "none.py:machine"': "there is no such file",
     'name = "../elsewhere/stop.py:machine"': "a study runs Python files of its own folder (or of folders in it) only",
     'name = "/elsewhere/stop.py:machine"': '"stop.py" would do',

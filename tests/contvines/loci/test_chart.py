@@ -144,7 +144,9 @@ def test_command_line(tmp_path, monkeypatch, capsys):
     assert result.exit_code == 0, result.output
     assert (tmp_path / "chart.png").exists() and (tmp_path / "study-chart.vines").exists()
     file = cv.load(tmp_path / "study-chart.vines")
-    assert file.notation.keys() == set(file.parameters)  # labels of axes, whether its problems can be built again or not
+    assert file.notation.keys() == set(
+        file.parameters
+    )  # labels of axes, whether its problems can be built again or not
     shown = CliRunner().invoke(app, ["show", "study-chart.vines", "--json"])
     data = json.loads(shown.output)
     assert data["parameters"] == ["amplitude", "friction"]
