@@ -14,6 +14,7 @@ import numpy as np
 
 from contvines.shared.modulation import BAND, is_strong, modulation_of
 
+from ..coexistence.places import UNBRANCHED
 from ..graph.measures import default_measure
 from ..shared.number_text import figures_in
 from .stretches import LEAST, gaps, highest, stretches, unseen
@@ -142,6 +143,8 @@ def unknown(found: Findings) -> str:
         reasons.append(
             f"a motion without a branch ({kind}) is met at {name} = {number(where[0])} {unit}".rstrip() + more
         )
+    if not kinds.keys().isdisjoint(UNBRANCHED):
+        reasons.append("the largest response of such a motion is that of a finite run, and may be larger")
     if not graph.complete:
         reasons.append(str(graph.message))
     return "; ".join(reasons)
