@@ -20,7 +20,7 @@ def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
     absorbers), either with ``chaotic`` before it; empty for a motion without a band, such as one that recurs."""
     if not math.isfinite(measures.get(BAND[1], math.nan)):
         return ""
-    return _NAMES[chaotic][is_strong(measures)]
+    return _NAMES[int(chaotic)][int(is_strong(measures))]
 
 
 def is_strong(measures: Mapping[str, float]) -> bool:
