@@ -174,7 +174,10 @@ class Circles:
 
     def _table(self) -> Table:
         head = (self.parameter, "radius", "normal form", "turns per period", "simulated", "replay", "stable")
-        value, turns = _told([c.value for c in self.circles]), _told([c.rotation for c in self.circles])
+        value, turns = (
+            _figures_of([c.value for c in self.circles]),
+            _figures_of([c.rotation for c in self.circles]),
+        )
         rows = [
             (
                 value(c.value),
@@ -196,5 +199,5 @@ class Circles:
         return plot_circles(self, **options)
 
 
-def _told(values: list[float]) -> Callable[[float], str]:
+def _figures_of(values: list[float]) -> Callable[[float], str]:
     return figures_in((min(values), max(values)), values) if values else figures

@@ -89,7 +89,7 @@ class Closing:
                 size = engine.scale[: len(here)] if len(here) < len(engine.scale) else 1.0
                 if (np.abs(here - there) <= SAME * (size + np.abs(there))).all():
                     points = chunk.cut(int(i) + 1)
-                    # not the start itself: there the same motion may be told from another time on, or on another mesh
+                    # not the start itself: there the same motion may begin at another time, or lie on another mesh
                     way = 1.0 if engine.inner(found.tangent, points.tangents[-1]) > 0.0 else -1.0
                     return Chunk(
                         np.vstack([points.points, found.u]),
