@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from tools.brusselator import brusselator
 
 
 @pytest.mark.parametrize("growth", [5.0, 10.0, 20.0, 30.0])
@@ -20,24 +19,6 @@ def test_a_branch_point_beside_an_eigenvalue_that_has_grown(growth):
     graph = cv.diagram(cv.AlgebraicProblem(F, start, -0.7), within=(-0.8, 0.8), depth=0)
     (point,) = graph.of_kind("branch-point")
     assert abs(point.value - 0.3) <= point.location_error < 1e-8
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("m", [50, 400, 1500])
-def test_stiff_fields_on_a_line(m):
-    """The first Turing point of a brusselator: entries of D/h^2 are rounded, and the stated error grows with them.
-
-    B = (1 + D l)(A^2 + E l)/(E l), l = 4 m^2 sin(k pi/2 m)^2 the eigenvalues of the second difference with no flux at the walls.
-    """
-    A, D, E = 2.0, 0.02, 0.5
-    F, jacobian, derivative = brusselator(m, A, D, E)
-    problem = cv.AlgebraicProblem(F, np.tile([A, 1.0], m), 2.0, "B", jacobian=jacobian, derivative=derivative)
-    graph = cv.diagram(problem, within=(2.0, 2.16), depth=0)
-    lengths = 4.0 * m**2 * np.sin(np.arange(1, 9) * np.pi / (2 * m)) ** 2
-    exact = min((1.0 + D * lengths) * (A**2 + E * lengths) / (E * lengths))
-    (point,) = graph.of_kind("branch-point")
-    assert abs(point.value - exact) <= point.location_error
-    assert point.location_error < 2e-11 + 1e-13 * m**2
 
 
 @pytest.mark.parametrize("start", [-1.7, -0.6, 0.3, 0.9, 1.2, 1.5, 1.9])

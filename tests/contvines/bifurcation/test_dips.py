@@ -35,14 +35,6 @@ class Line(ProblemDefaults):
         return "velocity-graze"
 
 
-@settings(max_examples=40, deadline=None)
-@given(st.floats(-0.6, 0.6), st.floats(1e-3, 0.05))
-def test_short_loss_of_a_margin(centre, half):
-    graph = cv.diagram(Line(margin=lambda p: (p - centre) ** 2 - half**2), within=(-1.0, 1.0))
-    assert graph["VG1"].value == pytest.approx(centre - half, abs=1e-12)
-    assert graph["B1"].values[-1] == graph["VG1"].value
-
-
 class TwoMargins(Line):
     """u = p with a margin that dips, and one that is lost for good a little later."""
 
@@ -155,15 +147,6 @@ def test_a_pair_that_passes_the_circle_and_comes_back_in_the_step_in_which_it_co
     off = half * np.sqrt(np.log(9.0 / 7.0))
     found = sorted(point.value for point in graph.of_kind("neimark-sacker"))
     assert found == pytest.approx([centre - off, centre + off], abs=1e-9)
-
-
-def test_multipliers_that_are_rounding_where_a_branch_begins_at_a_border_cross_nothing():
-    """At the border itself something has no length, and its multiplier is -1.002 by rounding; next to it, and in the limit, -0.992."""
-    forged = Line(margin=lambda p: p + 0.95, multiplier=lambda p: -1.002 if p + 0.95 < 1e-14 else -0.992)
-    assert not cv.diagram(forged, within=(-1.0, 1.0)).of_kind("period-doubling")
-    crossing = Line(margin=lambda p: p + 0.95, multiplier=lambda p: -0.9999 - (p + 0.95))
-    doubling = cv.diagram(crossing, within=(-1.0, 1.0)).of_kind("period-doubling")  # just beside the border
-    assert [point.value for point in doubling] == pytest.approx([-0.9499], abs=1e-12)
 
 
 @pytest.mark.parametrize("slope", [1.0, 1e-4, 1e-8])

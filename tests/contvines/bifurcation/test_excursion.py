@@ -27,14 +27,3 @@ def test_a_parabola_that_turns_at_the_end_of_the_interval_turns():
     (fold,) = graph.of_kind("fold")
     assert abs(fold.value) < 1e-15
     assert graph["B1"].points.min() == pytest.approx(-1.0)
-
-
-@pytest.mark.parametrize("outside", [1e-4, 1e-6])
-def test_a_branch_that_would_meet_a_symmetric_one_outside_ends_before(outside):
-    """x (p - x^2 / 10) = 0: the side branch comes to x = 0 at p = 0, outside."""
-    problem = cv.AlgebraicProblem(
-        lambda u, p: np.array([u[0] * (p - 0.1 * u[0] ** 2)]), [0.9], 0.081, mirror=np.array([[-1.0]])
-    )
-    graph = cv.diagram(problem, within=(outside, 0.1))
-    assert [point.kind for point in graph.special.values()] == ["end", "end"]
-    assert graph["B1"].values.min() == pytest.approx(outside, rel=1e-12)

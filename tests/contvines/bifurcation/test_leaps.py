@@ -6,8 +6,6 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
-from contvines.graph.persistence import same_graph
-from contvines.journal import MemoryJournal
 from contvines.problems.dense import KERNELS, dense_workspace
 from contvines.problems.protocol import Kernels, ProblemDefaults
 
@@ -88,19 +86,3 @@ def test_no_border_on_another_branch():
     assert [point.kind for point in graph.special.values()] == ["end", "end"]
     assert graph["B1"].points.min() > 0.0
     assert graph["B1"].points[-1, 0] == pytest.approx(np.sqrt(1.0 + 1e-6), abs=1e-12)
-
-
-@pytest.mark.slow
-def test_resumed_at_every_record():
-    """Wherever a run was interrupted, before or after a leap was noticed, it ends in the same graph."""
-
-    def run(journal):
-        return cv.diagram(hyperbola(1e-3, np.hypot(1.0, 1e-3), -1.0), within=(-1.0, 1.0), journal=journal)
-
-    whole = MemoryJournal()
-    graph = run(whole)
-    assert any("leap" in entry.get("role", ()) for entry in whole.entries.values())
-    for kept in range(len(whole.entries)):
-        partial = MemoryJournal()
-        partial.entries = dict(list(whole.entries.items())[:kept])
-        assert same_graph(run(partial), graph)

@@ -52,19 +52,3 @@ def test_without_bound_beside_the_border_is_without_bound_at_it(distance, noise,
     """-2e-5/t, its t known up to a little: only that it grows like that can be determined, and is enough."""
     seen = begun_beside(lambda t: -2e-5 / (t + noise * np.sin(1e9 * t)), distance, step)
     assert seen.real <= -1e12
-
-
-@pytest.mark.parametrize("step", [3e-7, 1e-3])
-@pytest.mark.parametrize("distance", [1e-6, 1e-4])
-@pytest.mark.parametrize("late", [1e-9, 1e-10])
-def test_what_stops_growing_at_the_very_border_has_a_limit(late, distance, step):
-    """-2e-5/(t + late) looks as if it grew without bound until it is as near as that; at the border it is -2e-5/late."""
-    seen = begun_beside(lambda t: -2e-5 / (t + late), distance, step, rounded=0.0)
-    assert seen == pytest.approx(-2e-5 / late, rel=1e-2)
-
-
-@pytest.mark.parametrize("step", [3e-7, 1e-3])
-def test_what_stops_growing_where_margins_stop_falling_is_without_bound(step):
-    """-2e-5/t, its t known up to 1e-12: what is computed at the border is rounding, and the margins beside it say so."""
-    seen = begun_beside(lambda t: -2e-5 / (abs(t) + 1e-12), 1e-6, step, rounded=0.0, blur=1e-12)
-    assert seen.real <= -1e14

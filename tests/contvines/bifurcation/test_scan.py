@@ -8,8 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from contvines.bifurcation.detect import Detector
-from contvines.bifurcation.kinks import nearest, pointed
 from contvines.bifurcation.scan import NativeScan, with_arrays
 from contvines.bifurcation.symmetry_test import SymmetryTest
 from contvines.continuation.arrays import Metric
@@ -108,53 +106,3 @@ def test_native_and_numpy_agree(data):
     flat = [[*found[:2], *found.spectra, *found[3:6]] for found in (one, other)]
     for expected, numbers in zip(*flat):
         np.testing.assert_allclose(numbers, np.reshape(expected, numbers.shape), rtol=1e-13, atol=1e-11)
-
-
-@pytest.mark.skipif(not native(), reason="no native core")
-@given(st.integers(0, 2**32 - 1))
-def test_of_a_quiet_chunk_no_segment_is_searched(seed):
-    """Rows are parabolas with a little that is none, and come near to zero here and there."""
-    rng = np.random.default_rng(seed)
-    count, n, m, w = rng.integers((3, 1, 0, 0), (12, 4, 3, 3))
-    engine = Shown(n, m, w, rng.choice(["map", "flow", "real"]))
-    engine.many = engine.exchanges = False
-    detector = Detector.__new__(Detector)
-    detector.engine, detector.own, detector.symmetries = engine, [], []
-
-    def columns(k):
-        bend, place, least = rng.uniform((0.0, -1.5, 0.0), (0.5, 1.5, rng.choice([0.1, 1.0])), (k, 3)).T
-        return (
-            bend * (np.linspace(-1.0, 1.0, count)[:, None] - place) ** 2
-            + least
-            + rng.uniform(0.0, 1e-3, (count, k))
-        )
-
-    rows, slopes = columns(2 * m + w), columns(n + 1)
-    rows[:, 1 : 2 * m : 2] *= rng.choice([0.0, 1.0])
-    values = np.cumsum(0.3 * slopes[:, -1])
-    points = np.cumsum(rng.uniform(0.2, 0.3, (count, n)), axis=0)
-    signs = np.where(np.arange(count) == rng.integers(-20, count), -1.0, 1.0)
-    drawn = Chunk(points, values, slopes, rows, signs, np.zeros(count), Status.RUNNING)
-    if in_native(engine, [], drawn).quiet:
-        assert detector.look(drawn, with_arrays(engine, [], drawn)) == []
-
-
-@pytest.mark.skipif(not native(), reason="no native core")
-@given(st.integers(0, 2**32 - 1))
-def test_no_kink_hides_in_a_quiet_chunk(seed):
-    """A distance from the circle that two straight lines bring to zero within a segment is seen by the scan, too: 2 of a parabola's 1/2 is more than 1.5."""
-    rng = np.random.default_rng(seed)
-    count, engine = rng.integers(3, 9), Shown(1, 1, 0, rng.choice(["map", "flow"]))
-    engine.many = False
-    lengths = rng.uniform(0.2, 1.0, count - 1) * rng.choice([0.1, 1.0], count - 1)
-    place = np.append(0.0, np.cumsum(lengths))
-    corner = rng.uniform(-0.2, 1.2) * place[-1]
-    sides = np.where(place < corner, *rng.uniform(0.1, 2.0, 2))
-    distances = sides * np.abs(place - corner) + rng.choice([1e-9, 0.05]) * rng.uniform(0.5, 1.0, count)
-    rows = np.column_stack([np.exp(-distances) if engine.detection == "map" else -distances, 0.0 * place])
-    points = place[:, None] / np.sqrt(1.25)
-    drawn = chunk(points, place / np.sqrt(1.25), rows)
-    scanned = in_native(engine, [], drawn)
-    np.testing.assert_allclose(scanned.lengths, lengths, rtol=1e-12)
-    if pointed(nearest(engine, rows), np.ones(count), lengths).any():
-        assert not scanned.quiet

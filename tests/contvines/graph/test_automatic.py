@@ -1,71 +1,14 @@
 """The automatic diagram: order, identity, resume."""
 
-import json
-
 import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.journal import MemoryJournal
 from tests.machines import ABSORBER
 
 
 def logistic(x, r):
     return r * x * (1 - x)
-
-
-def cascade(**options):
-    problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
-    return cv.diagram(problem, within=(2.4, 3.5), depth=2, settings={"max_step": 0.1}, **options)
-
-
-def assert_same(a, b):
-    assert a.to_dict() == b.to_dict()
-    for one, other in zip(a, b):
-        for name in ("points", "values", "tangents", "multipliers", "margin", "stable"):
-            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
-        assert one.marks == other.marks
-    for label in a.special:
-        np.testing.assert_array_equal(a[label].u, b[label].u)
-        np.testing.assert_array_equal(a[label].tangent, b[label].tangent)
-
-
-def test_deterministic():
-    assert_same(cascade(), cascade())
-
-
-class Killed(Exception):
-    pass
-
-
-class Fragile(MemoryJournal):
-    """Dies after a number of records."""
-
-    def __init__(self, entries, survive):
-        super().__init__()
-        self.entries, self.survive = entries, survive
-
-    def record(self, key, values):
-        if self.survive == 0:
-            raise Killed
-        self.survive -= 1
-        assert key not in self.entries
-        super().record(key, values)
-
-
-def test_resume_after_an_interruption_at_each_record():
-    whole = MemoryJournal()
-    undisturbed = cascade(journal=whole)
-    total = len(whole.entries)
-    assert total >= 10
-    for survive in range(total):
-        entries: dict = {}
-        with pytest.raises(Killed):
-            cascade(journal=Fragile(entries, survive))
-        assert len(entries) == survive
-        resumed = Fragile(entries, total - survive)
-        assert_same(cascade(journal=resumed), undisturbed)
-        assert list(resumed.entries) == list(whole.entries)
 
 
 def test_labels_run_along_the_branch():
@@ -172,36 +115,6 @@ def test_switch_extends_a_graph():
     assert cv.switch(graph, "PD2") == ["B3"]
     with pytest.raises(KeyError, match="PD9"):
         cv.switch(graph, "PD9")
-
-
-def test_graph_speaks():
-    graph = cascade()
-    text = str(graph)
-    assert "PD1" in text and "B1 -> B2" in text and "supercritical" in text
-    data = json.loads(json.dumps(graph.to_dict()))
-    assert data["branches"][1]["range"][0] == pytest.approx(3.0)
-    assert {"label", "kind", "branch", "value", "multipliers", "real", "criticality"} <= set(
-        data["special"][0]
-    )
-    network = graph.network()
-    assert set(network.nodes) == set(graph.branches) and network.number_of_edges() == len(graph.switches)
-    with pytest.raises(KeyError, match="no label"):
-        graph["XX1"]
-    assert graph.on("B1")[1] is graph["PD1"] and graph["PD1"].orbit.shape == (1, 1)
-
-
-def test_orbit_like_seed():
-    class Orbit:
-        def problem(self, parameter):
-            return cv.MapProblem(logistic, [0.5], 2.5, parameter=parameter)
-
-        def seed(self, problem):
-            return problem.u0, problem.p0
-
-    graph = cv.diagram(Orbit(), over="r", within=(2.0, 2.9))
-    assert graph.parameter == "r" and len(graph) == 1
-    with pytest.raises(ValueError, match="over"):
-        cv.diagram(Orbit(), within=(2.0, 2.9))
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])

@@ -76,13 +76,6 @@ def test_a_branch_ends_at_its_border_exactly():
     assert line.seen.tangent[-1] > 0.0 and line.seen.margin_index == 0  # handed over pointing outward
 
 
-def test_the_earliest_of_several_margins_counts():
-    for at, label in (([0.5, 0.50001], "VG1"), ([0.50001, 0.5], "WG1")):
-        graph = cv.diagram(Line("a", 0.0, 1.0, [-1.0, -1.0], at), within=(0.0, 1.0))
-        assert label in graph and len([k for k in graph.special if k[:2] in ("VG", "WG")]) == 1
-        assert abs(graph[label].value - 0.5) < 1e-13
-
-
 def test_persistence_goes_on_with_the_new_word_and_both_sides_share_the_label():
     graph = cv.diagram(Line("a", 0.0, 1.0, [-1.0], [0.5], [persistent]), within=(0.0, 1.0), depth=0)
     assert [b.description["word"] for b in graph] == ["a", "b"]
@@ -117,29 +110,12 @@ def test_virtual_part_is_a_branch_of_its_own():
     ]
 
 
-def test_virtual_branch_that_becomes_real_again():
-    class Window(Line):
-        def margins(self, u, p):
-            return np.array([(p - 0.4) * (p - 0.6)])
-
-    graph = cv.diagram(Window("a", 0.0, 1.0, [1.0], [0.0]), within=(0.0, 1.0), virtual=True)
-    assert [b.real for b in graph] == [True, False, True]
-    np.testing.assert_allclose([b.range for b in graph], [(0.0, 0.4), (0.4, 0.6), (0.6, 1.0)], atol=1e-13)
-    assert [graph[k].value for k in ("VG1", "VG2")] == pytest.approx([0.4, 0.6], abs=1e-13)
-    assert graph["VG2"].branch == "B2"
-
-
 def test_start_beyond_a_border_is_refused():
     line = Line("a", 0.0, 1.0, [-1.0], [0.2])
     with pytest.raises(ValueError, match="beyond a border"):
         cv.diagram(line, within=(0.0, 1.0))
     graph = cv.diagram(line, within=(0.0, 1.0), virtual=True)
     assert not graph["B1"].real and abs(graph["VG1"].value - 0.2) < 1e-13 and graph["B2"].real
-
-
-def test_trace_stops_at_a_border_if_asked():
-    points = list(cv.trace(Line("a", 0.0, 1.0, [-1.0], [0.5]), (0.0, 1.0), stop_at_border=True))
-    assert "border" in points[-1].status and points[-2].margin > 0.0 > points[-1].margin
 
 
 def test_a_margin_that_is_zero_all_along_ends_nothing():
@@ -170,38 +146,6 @@ def test_where_a_margin_is_flat_the_border_says_how_well_it_is_known(max_step, s
     border = graph["VG1"]
     assert abs(border.value - 0.5) <= 2.0 * border.location_error + 1e-12
     assert border.location_error <= 2e-12 / slope
-
-
-@pytest.mark.parametrize("max_step", [0.5, 0.3, 0.03, 0.01])
-@pytest.mark.parametrize("later", [0.51, 0.52, 0.7])
-def test_a_margin_that_touches_zero_where_another_one_passes_it(max_step, later):
-    """(p - 1/2)^2 (later - p) comes back from zero at p = 1/2, where 1/2 - p does not; in its kind it would come first."""
-
-    class Touched(Line):
-        def margins(self, u, p):
-            return np.array([(p - 0.5) ** 2 * (later - p), 0.5 - p])
-
-    graph = cv.diagram(
-        Touched("a", 0.0, 1.0, [1.0, 1.0], [0.0, 0.0]), within=(0.0, 1.0), settings={"max_step": max_step}
-    )
-    assert [point.kind for point in graph.special.values() if point.kind != "end"] == ["wall-graze"]
-    assert graph["WG1"].value == pytest.approx(0.5, abs=1e-13) and graph["WG1"].margin_index == 1
-
-
-@pytest.mark.parametrize("max_step", [0.3, 0.03, 0.004])
-@pytest.mark.parametrize("flip, border", [(0.5, 0.501), (0.5, 0.52), (0.437, 0.4371), (0.5, 0.500003)])
-def test_what_lies_before_a_border_is_found_whatever_is_behind(max_step, flip, border):
-    """The multiplier passes -1 before the border, and jumps back behind it, as one does that passes infinity at a graze."""
-
-    class Coming(Line):
-        def multiplier(self, p):
-            return -1.0 + 3.0 * (p - flip) if p < border else -4.0
-
-    line = Coming("a", 0.0, 1.0, [-1.0], [border])
-    graph = cv.diagram(line, within=(0.0, 1.0), settings={"max_step": max_step})
-    found = [(point.kind, point.value) for point in graph.special.values() if point.kind != "end"]
-    assert [kind for kind, _ in found] == ["period-doubling", "velocity-graze"]
-    assert [value for _, value in found] == pytest.approx([flip, border], abs=1e-12)
 
 
 @pytest.mark.parametrize("max_step", [0.03, 0.007])
@@ -301,28 +245,3 @@ def test_a_border_at_which_the_equations_are_singular(turn, max_step):
     assert graph["B1"].range[0] == -1.0 and not graph["B2"].real
     x, t = problem.rotation.T @ graph["B2"].points.T
     assert graph["B2"].range[1] == pytest.approx(1.0) and np.allclose(t, -3.0 * graph["B2"].values, atol=1e-9)
-
-
-class Twice(Line):
-    """u = (p, 2 p - 1/2): two rounds, which are alike at p = 1/2 only; real for p > 1/2 by their margin."""
-
-    dimension = 2
-
-    def workspace(self):
-        return dense_workspace(2)
-
-    def equations(self, u, p):
-        return u - np.array([p, 2.0 * p - 0.5]), np.eye(2), np.array([-1.0, -2.0])
-
-    def root(self, u, p):
-        return (Line("a", 0.0, 1.0, [1.0], [0.5]), u[:1]) if abs(u[0] - u[1]) < 1e-9 else None
-
-
-def test_a_virtual_branch_that_comes_to_the_border_of_shorter_solutions_leads_on_to_these():
-    twice = Twice("aa", 0.0, 1.0, [1.0], [0.5])
-    twice.u0 = np.array([0.3, 0.1])
-    graph = cv.diagram(twice, within=(0.0, 1.0), virtual=True)
-    assert [(b.description["word"], b.real) for b in graph] == [("aa", False), ("a", True)]
-    assert [(s.source, s.target, s.note) for s in graph.switches] == [("B1", "B2", "real again")]
-    assert graph["B2"].range == pytest.approx((0.5, 1.0), abs=1e-12)
-    assert graph["B2"].points[:, 0] == pytest.approx(graph["B2"].values, abs=1e-12)

@@ -1,7 +1,5 @@
 """Identity of solutions and branches, apart from any diagram."""
 
-from types import SimpleNamespace
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -79,25 +77,3 @@ def test_a_symmetric_branch_does_not_part_from_itself():
     assert whole.n > engine.n
     assert not parts_further_on(graph["B1"], engine, whole, same)
     assert not parts_further_on(graph["B1"], engine, whole, same._replace(u=same.u + 1e-8))
-
-
-def test_a_branch_that_turns_away_from_a_known_one_is_followed_round_its_corner():
-    """u (u - 4 p) = e^2 has two branches, 2 e apart at p = 0, that turn there within some e: a step too long lands on the other one."""
-    slope, e = 4.0, 2e-7
-    problem = cv.AlgebraicProblem(
-        lambda u, p: np.array([u[0] * (u[0] - slope * p) - e**2]), [1.0], (1.0 - e**2) / slope, scale=1.0
-    )
-    engine = Engine(problem, (-1.0, 1.0), Settings())
-    p = np.concatenate([-np.geomspace(1.0, 1e-11, 400), np.geomspace(1e-11, 1.0, 400)])
-    u = 0.5 * (slope * p + np.hypot(slope * p, 2.0 * e))
-    along = np.stack([slope * u / (2.0 * u - slope * p), np.ones_like(p)], axis=1)
-    upper = SimpleNamespace(
-        values=p, points=u[:, None], tangents=along / np.linalg.norm(along, axis=1)[:, None]
-    )
-    start = 1e-7
-    lower = 0.5 * (slope * start - np.hypot(slope * start, 2.0 * e))
-    first = engine.start(np.array([lower]), start)
-    assert first is not None
-    if first.tangent[-1] < 0.0:
-        first = first._replace(tangent=-first.tangent, sign=-first.sign)
-    assert parts_further_on(upper, engine, engine, first)  # type: ignore[arg-type]

@@ -98,13 +98,6 @@ def test_bounds_of_measures():
         cv.diagram(problem, within=(-1.0, 9.0), bounds={"u0": (3.0, 2.0)})
 
 
-def test_a_branch_that_leaves_stays_within_the_bounds():
-    problem = cv.AlgebraicProblem(lambda u, p: p * u - u**3, [0.0], -0.5)
-    graph = cv.diagram(problem, within=(-1.0, 4.0), bounds={"u0": (-1.0, 1.5)})
-    assert graph["B2"].range == pytest.approx((0.0, 2.25), abs=1e-12)
-    assert sorted((graph["B2"].points[0, 0], graph["B2"].points[-1, 0])) == pytest.approx([-1.0, 1.5])
-
-
 def brusselator(u, b):
     return np.array([2.0 - (b + 1.0) * u[0] + u[0] ** 2 * u[1], b * u[0] - u[0] ** 2 * u[1]])
 
@@ -142,24 +135,6 @@ def test_eigenvectors_of_a_sparse_jacobian():
     )
     point = cv.diagram(problem, within=(0.0, 1.0)).of_kind("end")[0]
     np.testing.assert_allclose(second @ point.eigenvectors, point.eigenvectors * point.multipliers, atol=1e-7)
-
-
-@pytest.mark.parametrize("spectrum", ["none", "flow"])
-def test_a_small_circle_through_two_branch_points_of_one_step(spectrum):
-    """u (u^2 + (p - 0.3)^2 - 1e-6): both branch points lie between neighbouring points of the line u = 0."""
-    problem = cv.AlgebraicProblem(
-        lambda u, p: u * (u**2 + (p - 0.3) ** 2 - 1e-6), [0.0], -0.5, spectrum=spectrum
-    )
-    graph = cv.diagram(problem, within=(-1.0, 1.0))
-    assert [s.value for s in graph.of_kind("branch-point")] == pytest.approx([0.299, 0.301], rel=1e-10)
-    assert len(graph) == 2 and graph["B2"].closed and len(graph["B2"]) < 200
-
-
-def test_the_table_marks_transcritical_points_and_points_at_the_end():
-    graph = cv.diagram(cv.AlgebraicProblem(lambda u, p: p * u - u**2, [0.0], -0.5), within=(-1.0, 1.0))
-    assert "transcritical" in str(graph)
-    graph = cv.diagram(cv.AlgebraicProblem(parabola, [1.0], 1.0), within=(0.0, 1.0))
-    assert "at the end" in str(graph) or not graph.of_kind("fold")
 
 
 def test_where_one_eigenvalue_leaves_as_another_enters():

@@ -28,19 +28,3 @@ def test_kinds_and_labels_of_a_graph():
         "proof": {"VE1": {"existence": True}},
         "attractor": {"0": {"kind": "chatter", "word": ""}},
     }  # fmt: skip
-
-
-def test_chenciner_points_of_a_chart_keep_their_label():
-    entries = {
-        "locus": {"CH2": {"label": "CH2", "kind": "chatter", "seed": "CH2", "marks": [[1, "CH1"]]}},
-        "plane-point": {"CH1": {"label": "CH1", "kind": "chenciner", "on": ["CH2"]}},
-    }
-    assert renamed(entries) == {
-        "locus": {"VE2": {"label": "VE2", "kind": "vanishing-event", "seed": "VE2", "marks": [[1, "CH1"]]}},
-        "plane-point": {"CH1": {"label": "CH1", "kind": "chenciner", "on": ["VE2"]}},
-    }
-
-
-def test_entries_of_today_are_handed_on():
-    entries = {"special": {"LP1": {"label": "LP1", "kind": "fold"}}}
-    assert renamed(entries) is entries

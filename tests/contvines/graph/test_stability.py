@@ -9,42 +9,12 @@ import contvines as cv
 from tests.machines import ABSORBER
 
 
-@pytest.mark.parametrize("width", [1e-1, 2e-2])
-def test_window_between_two_neighbouring_folds(width):
-    """u' = u^3 / 3 - w^2 u - p: the middle piece is stable, however close its folds are."""
-
-    def field(u, p):
-        return np.array([(u[0] ** 3 / 3.0 - width**2 * u[0]) - p])
-
-    problem = cv.AlgebraicProblem(field, [-1.0], -1.0 / 3.0 + width**2, spectrum="flow")
-    graph = cv.diagram(problem, within=(-2.0, 2.0), settings={"max_step": 0.03})
-    bend = 2.0 * width**3 / 3.0
-    assert len(graph.of_kind("fold")) == 2
-    np.testing.assert_allclose(graph["B1"].stable_intervals(), [(-bend, bend)], atol=1e-12)
-
-
 def test_marginal_end_takes_the_stability_of_its_neighbour():
     absorber = ABSORBER
     seed = absorber.symmetric_orbit(amplitude=0.6)
     graph = cv.diagram(seed, over="restitution", within=(0.3, 1.0), depth=0)
     assert graph["B1"].stable_intervals() == [(0.3, 1.0)]
     assert abs(np.abs(graph["B1"].multipliers[-1]).max() - 1.0) < 1e-9
-
-
-def test_window_between_fold_and_doubling():
-    absorber = ABSORBER
-    seed = absorber.symmetric_orbit(amplitude=0.55)
-    graph = cv.diagram(seed, over="amplitude", within=(0.2, 1.3), depth=3)
-    for branch in graph:
-        if branch.description["word"] != "LRLttRLt":
-            continue
-        fold, doubling = (graph.of_kind(kind) for kind in ("fold", "period-doubling"))
-        lower = next(point.value for point in fold if point.branch == branch.label)
-        upper = next(point.value for point in doubling if point.branch == branch.label)
-        assert branch.stable_intervals() == [(lower, upper)]
-        assert branch.orbit(int(np.flatnonzero(branch.stable)[1])).stable
-        return
-    pytest.fail("the word LttRLtLR is missing")
 
 
 def test_one_border_reached_from_two_branches():
@@ -83,29 +53,6 @@ def test_a_sliver_between_a_fold_and_a_doubling_is_marked(width):
     assert len(branch.stable_intervals()) == 1
 
 
-@pytest.mark.parametrize("width", [1e-2, 1e-5, 1e-7])
-def test_a_sliver_between_a_neimark_sacker_point_and_a_doubling_is_marked(width):
-    """A spiral of modulus 1 - p, and y' = -(1 + p - d) y: stable for 0 < p < d only, exactly."""
-    c, s = np.cos(1.1), np.sin(1.1)
-    problem = cv.MapProblem(
-        lambda z, p: np.array(
-            [
-                (1.0 - p) * (c * z[0] - s * z[1]),
-                (1.0 - p) * (s * z[0] + c * z[1]),
-                -(1.0 + p - width) * z[2],
-            ]
-        ),
-        [0.0, 0.0, 0.0],
-        -0.09,
-        parameter="p",
-    )
-    graph = cv.diagram(problem, within=(-0.1, 0.2), depth=0)
-    (circle,), (flip,) = graph.of_kind("neimark-sacker"), graph.of_kind("period-doubling")
-    assert (circle.value, flip.value) == pytest.approx((0.0, width), abs=1e-13)
-    assert graph["B1"].stable.sum() >= 3  # both ends, and something between
-    assert graph["B1"].stable_intervals() == [(circle.value, flip.value)]
-
-
 @pytest.mark.parametrize(("width", "resolved"), [(3e-9, False), (2e-8, False), (1e-4, True)])
 def test_a_sliver_too_narrow_to_be_seen_is_told_of(width, resolved):
     """x' = x + p - x^2 with a second multiplier -(1 + x - width): stable between its fold at p = 1 and its flip at p = 1 + width^2."""
@@ -131,10 +78,3 @@ def test_a_flow_is_stable_left_of_the_axis_only(rate, stable):
     assert bool(cv.diagram(problem, within=(-1.0, 1.0))["B1"].stable.all()) is stable
     turning = cv.AlgebraicProblem(lambda u, p: np.array([u[1], p - u[0]]), [0.0, 0.0], 0.0, spectrum="flow")
     assert not cv.diagram(turning, within=(-1.0, 1.0))["B1"].stable.any()
-
-
-def test_a_slow_instability_beside_fast_decays_is_one():
-    """Nine eigenvalues at -1, and one at 1e-4: however small beside them, it is to the right of the axis."""
-    rates = np.array([-1.0] * 9 + [1e-4])
-    problem = cv.AlgebraicProblem(lambda u, p: rates * (u - p), np.zeros(10), 0.0, spectrum="flow")
-    assert not cv.diagram(problem, within=(-1.0, 1.0))["B1"].stable.any()

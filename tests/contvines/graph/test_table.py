@@ -5,7 +5,6 @@ import dataclasses
 import pytest
 
 import contvines as cv
-from contvines.graph.shortening import short_word
 from contvines.graph.table import table
 from tests.contvines import fakes
 from tests.contvines.graph.test_borders import Line, folding
@@ -54,9 +53,3 @@ def test_a_border_at_which_nothing_goes_on_says_why():
     graph = cv.diagram(Line("a", 0.0, 1.0, [-1.0], [0.5], [folding]), within=(0.0, 1.0), depth=1)
     (row,) = (line for line in table(graph).splitlines() if line.startswith("VG1"))
     assert "depth" not in row and "B1 -> B2 (nonsmooth fold)" in row
-
-
-def test_names_of_modulations_are_no_words_of_events():
-    """Words are cut, with the number of their events; what modulated motions are called has none."""
-    assert short_word("chaotic strong modulation", 16) == "chaotic strong modulation"
-    assert short_word("LRLttRLttRLttsLtR", 16) == "LRLttRLt... 17 events"

@@ -6,12 +6,12 @@ Where there is no closed form (points at which a Lyapunov coefficient vanishes) 
 import mpmath as mp
 import numpy as np
 import pytest
+from tests.contvines.bifurcation.normal_forms.test_textbook_coefficients import Planar, lyapunov
 
 import contvines as cv
 from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
 from tests.contvines.bifurcation.normal_forms.test_critical import Bend, polar
-from tests.contvines.bifurcation.normal_forms.test_textbook_coefficients import Planar, lyapunov
 from tests.contvines.loci.systems import R, generalized_henon
 
 

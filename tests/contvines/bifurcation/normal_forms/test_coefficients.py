@@ -5,22 +5,12 @@ import pytest
 
 import contvines as cv
 from contvines.bifurcation.normal_forms.coefficients import Forms
-from contvines.bifurcation.normal_forms.criticality import pair_form
 
 
 def flow(function, size):
     return Forms(
         cv.AlgebraicProblem(function, np.zeros(size), 0.0, spectrum="flow", scale=1.0), np.zeros(size), 0.0
     )
-
-
-@pytest.mark.parametrize("a", [0.7, -1.3])
-def test_folds(a):
-    """z' = p + a z^2, and z -> z + p + a z^2; the sign is that along the direction given."""
-    up = np.array([1.0])
-    assert flow(lambda u, p: p + a * u**2, 1).quadratic(up).value == pytest.approx(a, rel=1e-6)
-    fold = cv.MapProblem(lambda x, p: x + p + a * x**2, [0.0], 0.0, scale=1.0)
-    assert Forms(fold, np.zeros(1), 0.0).quadratic(up).value == pytest.approx(a, rel=1e-6)
 
 
 @pytest.mark.parametrize(("slaved", "own"), [(0.0, -1.0), (0.5, 0.0), (-0.8, 0.3)])
@@ -30,13 +20,6 @@ def test_a_pitchfork_with_a_slaved_unknown(slaved, own):
         lambda u, p: np.array([p * u[0] + u[0] * u[1] + own * u[0] ** 3, -u[1] + slaved * u[0] ** 2]), 2
     )
     assert forms.cubic(0.0).value == pytest.approx(slaved + own, rel=1e-5)
-
-
-@pytest.mark.parametrize(("a", "b"), [(0.0, 0.5), (0.6, 0.0), (0.9, -0.4)])
-def test_a_flip(a, b):
-    """x -> -x + a x^2 + b x^3 has the coefficient a^2 + b (Kuznetsov, Elements of Applied Bifurcation Theory, 4.5)."""
-    problem = cv.MapProblem(lambda x, p: -x + a * x**2 + b * x**3, [0.0], 0.0, scale=1.0)
-    assert Forms(problem, np.zeros(1), 0.0).cubic(-1.0).value == pytest.approx(a * a + b, rel=1e-5)
 
 
 OMEGA = 1.4
@@ -78,10 +61,3 @@ def test_a_hopf_point_of_any_plane_system(seed):
     unit, found = (flow(planar(*parts), 2).lyapunov(1j * OMEGA)[0].value for parts in (radial, drawn))
     assert unit < 0.0
     assert found / unit == pytest.approx(by_hand(*drawn) / by_hand(*radial), rel=1e-5)
-
-
-@pytest.mark.parametrize(("sign", "said"), [(-1.0, "supercritical"), (1.0, "subcritical")])
-def test_the_side_of_a_hopf_point(sign, said):
-    parts = ({(3, 0): sign, (1, 2): sign}, {(2, 1): sign, (0, 3): sign})
-    problem = cv.AlgebraicProblem(planar(*parts), np.zeros(2), 0.0, spectrum="flow", scale=1.0)
-    assert pair_form(problem, np.zeros(2), 0.0, np.array([1j, -1j]) * OMEGA).criticality == said

@@ -6,7 +6,6 @@ u = x Re q - y Im q the amplitude is r = 2 |z| for the z of the form z' = i omeg
 
 import numpy as np
 import pytest
-import scipy.sparse as sp
 import sympy
 
 import contvines as cv
@@ -62,49 +61,3 @@ def test_all_cells_of_a_line_at_once():
     assert abs(point.value - (1.0 + A**2)) < 1e-9
     assert point.criticality == "supercritical"
     assert point.coefficient == pytest.approx(of_one_cell(m**-0.5), rel=1e-6)
-
-
-@pytest.mark.parametrize("unit", [1.0, 1e6, 1e-6])
-def test_one_cell_among_damped_ones_in_other_coordinates_and_units(unit):
-    """Of m cells one is critical; y = T x makes its vector T q long and spread over three cells."""
-    m, k, b = 200, 70, 1.0 + A**2
-    damping = np.linspace(0.5, 3.0, m)
-    damping[k] = 0.0
-    damping, n = np.repeat(damping, 2), 2 * m
-    T = sp.csc_array(
-        sp.eye_array(n) + sp.diags_array([0.3 * np.ones(n - 2), 0.2 * np.ones(n - 4)], offsets=[-2, -4])
-    )
-    back = sp.csc_array(sp.linalg.inv(T.tocsc()))
-    rest = np.empty(n)
-
-    def states(y):
-        return back @ (y / unit)
-
-    def rates(y, p):
-        x = states(y)
-        u, v, out = x[0::2], x[1::2], np.empty(n)
-        rest[0::2], rest[1::2] = A, p / A
-        out[0::2], out[1::2] = A - (p + 1.0) * u + u * u * v, p * u - u * u * v
-        return unit * (T @ (out - damping * (x - rest)))
-
-    def slopes(y, p):
-        x = states(y)
-        u, v = x[0::2], x[1::2]
-        here, above, below = np.empty(n), np.zeros(n - 1), np.zeros(n - 1)
-        here[0::2], here[1::2] = -(p + 1.0) + 2.0 * u * v, -u * u
-        above[0::2], below[0::2] = u * u, p - 2.0 * u * v
-        return (
-            T @ (sp.diags_array([below, here, above], offsets=[-1, 0, 1]) - sp.diags_array(damping)) @ back
-        ).tocsc()
-
-    p0 = 3.0
-    start = unit * (T @ np.tile([A, p0 / A], m))
-    problem = cv.AlgebraicProblem(rates, start, p0, jacobian=slopes, spectrum="flow", leading=6)
-    point = cv.diagram(problem, within=(3.0, 3.5), depth=0).of_kind("hopf")[0]
-    assert abs(point.value - b) < 1e-8
-    block = (T[2 * k :, 2 * k : 2 * k + 2]).toarray()
-    matrix = np.array([[b - 1.0, A**2], [-b, -(A**2)]])
-    values, vectors = np.linalg.eig(matrix)
-    q = vectors[:, np.argmax(values.imag)]
-    length = np.linalg.norm(q) / np.linalg.norm(block @ q)
-    assert point.coefficient * unit**2 == pytest.approx(of_one_cell(length), rel=1e-6)
