@@ -19,6 +19,10 @@ from .graph import Graph
 DEEPEST = 60  # levels of nested values
 
 
+class OtherEquations(ValueError):
+    """A branch whose points have another number of unknowns than its problem: an older version had other equations for it."""
+
+
 def check_graph(graph: Graph) -> None:
     """Refuse a graph that cannot be shown.
 
@@ -79,8 +83,8 @@ def check_branch(label: str, branch: Branch) -> None:
     if n < 1 or any(length != n for length in lengths) or branch.tangents.shape[1] != size + 1:
         raise ValueError(f"{label}: its arrays are not of the same length")
     if branch.problem is not None and branch.problem.dimension != size:
-        raise ValueError(
-            f"{label}: its points have {size} unknowns, its problem has {branch.problem.dimension}"
+        raise OtherEquations(
+            f"{label}: its points have {size} unknowns, its problem has {branch.problem.dimension} now"
         )
     if any(not -n <= i < n for i, _ in branch.marks):
         raise ValueError(f"{label}: a mark lies on none of its points")

@@ -227,6 +227,7 @@ class Store:
         With `trust`, functions that the file names are imported; see :mod:`contvines.problems.registry`.
         """
         from contvines.graph.persistence import graph_from_entries
+        from contvines.graph.well_formed import OtherEquations
 
         entries: dict[str, dict[str, Any]] = {}
         for kind, key, content in self._entries("e.kind != 'journal'"):  # as one checkpoint has left them
@@ -240,6 +241,11 @@ class Store:
             return graph_from_entries(entries, problems=problems, trust=trust)
         except OSError as error:  # a page that the graph needs
             raise StoreError(f"{self.path}: {error}.") from None
+        except OtherEquations as error:
+            raise StoreError(
+                f"{self.path}: an older version of contvines made this file, with other unknowns ({error}); its table can be read "
+                "(`contvines show`), for its orbits run its study again with --fresh."
+            ) from None
         except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
             raise StoreError(
                 f"{self.path}: this file does not hold a graph as contvines writes it ({error}); "

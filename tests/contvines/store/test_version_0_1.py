@@ -12,6 +12,8 @@ from typer.testing import CliRunner
 
 import contvines as cv
 from contvines.command.cli import app
+from contvines.graph.persistence import graph_entries
+from contvines.store import Store, StoreError
 
 FILE = Path(__file__).with_name("version_0_1.vines")
 H = 0.5 * np.pi * (1 + 0.006) * 0.5 * 0.211
@@ -63,3 +65,14 @@ def test_commands(file, words, monkeypatch):
     monkeypatch.chdir(file.parent)
     done = CliRunner().invoke(app, [words[0], file.name, *words[1:]])
     assert done.exit_code == 0, done.output
+
+
+def test_equations_that_have_changed_since_are_named(file):
+    """Unknowns of another number, as motions without events had, are those of an older version: its table still opens."""
+    (_, _, content), *_ = [e for e in graph_entries(cv.load(file)) if e[:2] == ("branch", "B1")]
+    fewer = {name: content[name][:, :-1] for name in ("points", "tangents")}
+    with Store.open(file, write=True) as store, store.transaction():
+        store.put("branch", "B1", {**content, **fewer})
+    with pytest.raises(StoreError, match=r"an older version .* \(B1: its points have 1 .* 2 now\).*--fresh"):
+        cv.load(file)
+    assert "B1" in CliRunner().invoke(app, ["show", str(file)]).output
