@@ -49,6 +49,11 @@ def find_border(segment: Segment, real: bool) -> Border | None:
         return None
     if len(falling) == 1:
         return Border(root, int(falling[0]))
+    if not real:
+        # another margin that is zero to rounding all along hides where those that were negative come back
+        own = first_zero(segment, a.nonzero()[0], real)
+        if own is not None and engine.smallest_margin(own.point.row) >= MARGIN:
+            root = own
     if real:
         passing = _passing(segment, root, falling)
         if len(passing) < len(falling):

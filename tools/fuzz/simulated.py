@@ -136,7 +136,7 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: flo
         tally.count("orbits at which the return map has a kink")
     if stable and width < UNRESOLVED:
         tally.count("stable stretches narrower than floating point resolves")
-        if not in_many_digits(orbit):
+        if not _as_narrow(orbit, width):
             tally.find("return", f"{said}: called stable, which many digits do not confirm")
     elif stable and seen.returned is not None:
         tally.count("stable orbits simulated")
@@ -187,6 +187,18 @@ def in_many_digits(orbit: Any, exactly: float = EXACTLY) -> bool:
         and abs(found.shift) < PARAMETER
         and alike(orbit.multipliers, found.multipliers) < exactly
     )
+
+
+def _as_narrow(orbit: Any, width: float) -> bool:
+    """Whether the orbit in many digits, at the same parameter but for rounding and a tenth of the stretch's width, has these multipliers.
+
+    They run from 1 to -1 over the width, so that a shift of the parameter, or its last bit, moves them by its part of the width.
+    """
+    found = exact(orbit)
+    if found is None or abs(found.shift) > 0.1 * width:
+        return False
+    moved = 2.0 * max(abs(found.shift), float(np.finfo(float).eps))
+    return alike(orbit.multipliers, found.multipliers) * width < max(EXACTLY * width, moved)
 
 
 def _certainly_stable(orbit: Any, width: float) -> bool:

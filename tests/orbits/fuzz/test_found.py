@@ -46,6 +46,16 @@ LATER = [
     ),  # a branch 5e-8 beside the end of another one, with the same word, taken for that one
     ("level", 4411, 109),  # the first point of a branch beyond a border, behind the end of the interval
     ("level", 4411, 25),  # stable motions over 1e-8 of the parameter, between a doubling and a border
+    (
+        "cavity",
+        4411,
+        148,
+    ),  # doublings 2.4e-13 apart, between which a last bit of the amplitude moves a multiplier
+    (
+        "coupled",
+        4411,
+        255,
+    ),  # a margin that is zero to rounding all along hid where a virtual branch is real again
     ("coupled", 9401, 139),  # a slip of no length at the limit of rest: minus half of the digits
 ]
 
