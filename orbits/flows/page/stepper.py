@@ -53,9 +53,7 @@ class Stepper:
         self.clock, self.base = 0.0, 0.0
         self.modes: tuple[int, ...] = ()
         self.count = 0  # events so far
-        self._last = (
-            -1
-        )  # the friction that has turned, stuck or slipped, where another may at the same instant
+        self._last = -1  # the contact of the event before, where another one may follow at the same instant
         self._cache: dict[tuple[int, ...], Tools] = {}
         self._pushes: dict[tuple[int, tuple[int, ...]], Values] = {}
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
@@ -64,7 +62,7 @@ class Stepper:
             for w, contact in enumerate(machine.contacts)
             if isinstance(contact, Wall)
         }
-        self._several = sum(isinstance(contact, DryFriction) for contact in machine.contacts) > 1
+        self._frictions = [j for j, c in enumerate(machine.contacts) if isinstance(c, DryFriction)]
         self._tied = {  # frictions that stop what closes and opens a wall's gap
             w: [
                 j
@@ -83,8 +81,7 @@ class Stepper:
         """Go on with other parameters, on which neither gaps nor surfaces nor velocities of contacts depend; what sticks may begin to slide."""
         self.params = params
         self._cache.clear()
-        frictions = [j for j, contact in enumerate(self.machine.contacts) if isinstance(contact, DryFriction)]
-        if any(self.modes[j] == STUCK for j in frictions):
+        if any(self.modes[j] == STUCK for j in self._frictions):
             self.start(self.state, self.base + self.clock)
 
     def start(self, state: np.ndarray, clock: float, modes: tuple[int, ...] | None = None) -> None:
@@ -108,8 +105,7 @@ class Stepper:
             self._fresh = True
             self._settle_touches()
             return
-        found = list(self.machine.rest_mode(self.params, self.state, self.clock))
-        self.modes = tuple(found)
+        self.modes = tuple(self.machine.rest_mode(self.params, self.state, self.clock))
         values = self.contact_values()
         for j, contact in enumerate(self.machine.contacts):
             if isinstance(contact, Wall) and values[j] < -FIRST_EVENT * (1.0 + np.abs(self.state).max()):
@@ -117,10 +113,9 @@ class Stepper:
                     f"the gap of wall {contact.letter!r} is {values[j]:.6g} at the start: bodies overlap; "
                     "give a start with all gaps at 0 or above"
                 )
-        for j, contact in enumerate(self.machine.contacts):
-            if isinstance(contact, DryFriction) and found[j] == STUCK:
-                found[j] = self._at_rest(j)
-                self.modes = tuple(found)
+        for j in self._frictions * len(self._frictions):  # one that slips may be too much for another
+            if self.modes[j] == STUCK:
+                self.modes = self._with(j, self._at_rest(j))
         self._fresh = True
         self._impacts_at_start(values)
 
@@ -258,25 +253,42 @@ class Stepper:
                 return None
             if place < 0:
                 raise SimulationError(self._lost(before, began))
-            event = self._happened(guards[place])
+            guard, alone = self._first(guards[place])
+            event = self._happened(guard)
             if event is not None:
                 self.count += 1
-                self._last = event[0] if self._several and event[1] in (SLIP, TURN, STICK) else -1
+                stuck = any(self.modes[j] == STUCK for j in self._frictions if j != event[0])
+                self._last = -1 if alone and not stuck else event[0]
                 self._rebase()
                 return event
 
     def _at_once(self) -> tuple[int, int, int] | None:
-        """What happens together with the event before: alike bodies begin to slip, and come to rest, at one instant; a quantity that begins at
-        zero is not seen to fall through it.
+        """What happens together with the event before: alike bodies begin to slip, and come to rest, at one instant, and what an event adds to the
+        forces may be more than another friction holds; a quantity that begins at zero or below is not seen to fall through it.
         """
-        for value, rate, guard in zip(*self._guards(self.modes)):
-            if guard.contact == self._last or guard.kind not in (SLIP, TURN):
-                continue
-            if rate < -TOUCH and abs(value) < TOGETHER * (1.0 - rate):
-                self._last = guard.contact
-                return self._happened(guard)
-        self._last = -1
-        return None
+        guard = next((guard for guard in self._vanishing() if guard.contact != self._last), None)
+        self._last = -1 if guard is None else guard.contact
+        return None if guard is None else self._happened(guard)
+
+    def _first(self, guard: Guard) -> tuple[Guard, bool]:
+        """Of the turns and slips of several bodies at one instant the first in the machine's order, and whether there is one only.
+
+        Which one roundoff meets first is chance. What follows is the same: each changes its own mode, no state, and one that the others undo
+        happens again at once.
+        """
+        if len(self._frictions) < 2 or guard.kind not in (SLIP, TURN):
+            return guard, True
+        found = [one for one in self._vanishing() if one is not guard]
+        return min([guard, *found], key=lambda one: one.contact), not found
+
+    def _vanishing(self) -> list[Guard]:
+        """Turns and slips that happen now."""
+        return [
+            guard
+            for value, rate, guard in zip(*self._guards(self.modes))
+            if (guard.kind in (SLIP, TURN) and rate < -TOUCH and abs(value) < TOGETHER * (1.0 - rate))
+            or (guard.kind == SLIP and value < -TOUCH)
+        ]
 
     def _lost(self, state: np.ndarray, clock: float) -> str:
         """Why a flight from a state came to no number."""

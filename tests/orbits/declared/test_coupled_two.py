@@ -15,6 +15,7 @@ from contvines.command.machine_outcomes import dissipation
 from contvines.command.study import check_study
 from contvines.survey.outcomes import Findings
 from orbits import Coupled, Machine, coupled_two
+from orbits.machines.coupled_two import _motion
 from orbits.machines.page.names import check_response
 from orbits.problem import rebuild
 from orbits.simulation import simulate
@@ -35,8 +36,8 @@ def newton(values, start, count):
     masses = [p[f"absorber_mass_{i}"] for i in (1, 2)]
     room = [1e-3 * p[f"clearance_{i}"] for i in (1, 2)]
     holds = [p[f"friction_{i}"] * p["gravity"] for i in (1, 2)]
-    y = np.array([1e-3 * start.get(name, 0.0) for name in coupled_two.states])
-    modes, t, found = [0, 0], 0.0, []
+    y = np.array([start.get(name, 0.0) for name in coupled_two.states]) * [1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0]
+    modes, t, found = [int(np.sign(y[3] - y[4 + i])) for i in (0, 1)], 0.0, []
 
     def force(t, y):
         return stiffness * (E * math.sin(omega * t) - y[0]) + damper * (
@@ -56,7 +57,8 @@ def newton(values, start, count):
         modes[i] = 0 if abs(a) <= holds[i] else int(np.sign(a))
 
     for i in (0, 1):
-        choose(i, t, y)
+        if not modes[i]:
+            choose(i, t, y)
     while len(found) < count:
         watch = []
         for i in (0, 1):
@@ -85,7 +87,10 @@ def newton(values, start, count):
             choose(i, t, y)
             letter = "t" if modes[i] else "s"
         found.append((f"{letter}{i + 1}", t, *y[:3]))
-    return found
+        if not modes[1 - i]:  # the other one may not bear it
+            choose(1 - i, t, y)
+            found += [(f"u{2 - i}", t, *y[:3])] if modes[1 - i] else []
+    return found[:count]
 
 
 @pytest.mark.parametrize("frequency", [7.8, 8.0])
@@ -171,9 +176,49 @@ def test_an_absorber_that_sticks_at_its_wall_does_not_hit_it_and_both_slip_at_on
     seconds, step = 2 * math.pi * 8.0, 1e-6  # equal frictions give way, and hold again, at one instant
     expected = sorted((round(row[1] / step), row[0], row[1]) for row in newton(VALUES, at_wall, 4))
     run = simulate(coupled_two, at_wall, events=4)
-    found = sorted((round(c / seconds / step), x, c / seconds) for c, x in zip(run.clocks[1:], run.letters))
-    assert [row[1] for row in found] == [row[1] for row in expected] == ["u1", "u2", "s1", "s2"]
-    np.testing.assert_allclose([row[2] for row in found], [row[2] for row in expected], atol=1e-9)
+    assert list(run.letters) == [row[1] for row in expected] == ["u1", "u2", "s1", "s2"]
+    np.testing.assert_allclose(run.clocks[1:] / seconds, [row[2] for row in expected], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "amplitude", "q", "rate", "rate_1"),
+    [(7.4, 0.12, 0.37, -0.0026, 0.014), (7.6, 0.2, -0.25, -0.04, -0.041), (7.4, 0.3, -0.044, 0.034, 0.079)],
+)
+def test_a_heavy_absorber_that_comes_to_rest_makes_the_other_one_slip(frequency, amplitude, q, rate, rate_1):
+    start = {"q": q, "q_rate": rate, "x1_rate": rate_1, "x2_rate": rate}
+    own = {"frequency": frequency, "base_amplitude": amplitude, "friction_1": 0.3, "friction_2": 0.05}
+    expected = newton(VALUES | own | {"absorber_mass_1": 0.5}, start, 6)
+    run = simulate(coupled_two, start, events=6, absorber_mass_1=0.5, **own)
+    assert list(run.letters) == [row[0] for row in expected] and 0.0 in np.diff(run.clocks)
+    np.testing.assert_allclose(
+        run.clocks[1:] / (2 * math.pi * frequency), [row[1] for row in expected], atol=1e-9
+    )
+
+
+def test_turns_at_one_instant_have_one_order_on_which_the_motion_does_not_depend():
+    walls, (first, second) = coupled_two.contacts[:4], coupled_two.contacts[4:]
+    told = {*coupled_two.states, *coupled_two.parameters}
+    other = Machine(
+        name="other", states=coupled_two.states, parameters=dict(coupled_two.parameters), phase_rate="frequency",
+        motion=_motion, contacts=[*walls, second, first],
+        units={name: unit for name, unit in coupled_two.units.items() if name in told},
+    )  # fmt: skip
+    generator, times = np.random.default_rng(1), np.linspace(0.0, 5.0, 300)[:-1]
+    seen = 0
+    for heavy in (0.032, 1.0) * 3:  # the heavy one makes the light one turn, stick and slip with it
+        q, x, v, w = generator.uniform(-2.0, 2.0, 4)
+        start = {"q": q, "q_rate": v / 10, "x1": x, "x2": x, "x1_rate": w / 10, "x2_rate": w / 10}
+        run, turned = (
+            simulate(machine, start, periods=5, absorber_mass_1=heavy) for machine in (coupled_two, other)
+        )
+        assert np.abs(run.coordinates(times) - turned.coordinates(times)).max() < 1e-9
+        for one, order in ((run, "12"), (turned, "21")):
+            at_once = set(np.flatnonzero(np.diff(one.clocks[1:]) == 0.0))
+            pairs = [(one.letters[k], one.letters[k + 1]) for k in at_once if k - 1 not in at_once]
+            orders = [x[1] + y[1] for x, y in pairs if x[0] == y[0]]
+            assert set(orders) <= {order}
+            seen += len(orders)
+    assert seen > 20
 
 
 @pytest.mark.parametrize("excess", [0.0, 1.8e-15, 5e-13])
