@@ -14,6 +14,7 @@ import argparse
 import time
 from collections import Counter
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,9 +29,8 @@ EACH = 3  # solutions of each branch
 PLACES, STARTS = 3, 4  # values at which motions are simulated, and motions at each
 SPAN = 50.0  # times after which a motion has settled, if it settles soon; up to 64 times that otherwise
 EDGE = 1e-5  # multipliers (eigenvalues) so near to the boundary are not judged
-WILD = 1e6  # multipliers so large are not simulated
-TRIVIAL = 1e-3  # error of the trivial multiplier above which a simulation is no judge: it is lost to growth beside a saddle
-CLOSED = 1e-6  # distance of a simulation from a cycle after a period, relative, times its largest multiplier
+PIECES = 40  # simulations along a cycle, each of which starts on it: their growths stay small beside a saddle
+CLOSED = 1e-6  # distance of a simulation from a cycle, relative to its size, times the growth
 NEAR = 2e-3  # relative distance of a motion from the one on which it has settled
 RETURNS = 12  # after which a motion that has settled must have returned, to be periodic
 RECURS = 1e-6
@@ -179,24 +179,31 @@ def _stability(flow: Drawn, branch: Any, i: int, p: float, done: Judged) -> None
             done.find(f"{said}, its eigenvalues go to {growth:.3g}")
         return
     orbit = branch.problem.orbit(u, p)
-    if np.abs(orbit.multipliers).max() > WILD:
-        done.tried["cycles too unstable to be simulated"] += 1
-        return
-    start = orbit(0.0)
-    end, matrix = flow.monodromy(start, p, orbit.period)
-    values = np.linalg.eigvals(matrix)
-    trivial = int(np.argmin(np.abs(values - 1.0)))
-    if abs(values[trivial] - 1.0) > TRIVIAL:
-        done.tried["cycles that a simulation cannot judge"] += 1
-        return
     done.tried["cycles"] += 1
-    values = np.delete(values, trivial)
-    largest, size = float(np.abs(values).max()), float(np.ptp(orbit.states, axis=0).max())
-    away = float(np.abs(end - start).max()) / size
-    if away > CLOSED * (1.0 + largest) * (1.0 + orbit.period):
-        done.find(f"{branch.label} at p = {p:.12g} is no cycle: after a period it is {away:.1e} away")
+    nodes = orbit.times[:: branch.problem.rule.degree]
+    times = nodes[np.unique(np.linspace(0, len(nodes) - 1, PIECES + 1).astype(int))]
+    maps, size, away = [], float(np.ptp(orbit.states, axis=0).max()), 0.0
+    for begin, end in pairwise(times):
+        state, matrix = flow.monodromy(orbit(begin), p, end - begin)
+        away = max(away, float(np.abs(state - orbit(end)).max()) / (size * (1.0 + np.abs(matrix).max())))
+        maps.append(matrix)
+    largest = _largest_multiplier(maps)
+    if away > CLOSED * (1.0 + orbit.period):
+        done.find(f"{branch.label} at p = {p:.12g} is no cycle: a simulation is {away:.1e} away")
     elif abs(largest - 1.0) > EDGE and (largest < 1.0) != stable:
         done.find(f"{said}, its multipliers go to {largest:.8g}")
+
+
+def _largest_multiplier(maps: list[np.ndarray]) -> float:
+    """The largest modulus but for the trivial multiplier: the block-cyclic matrix of the maps has all their N-th roots as eigenvalues."""
+    count, d = len(maps), len(maps[0])
+    whole = np.zeros((count * d, count * d))
+    for i, matrix in enumerate(maps):
+        to = (i + 1) % count * d
+        whole[to : to + d, i * d : (i + 1) * d] = matrix
+    with np.errstate(divide="ignore"):
+        growths = count * np.log(np.sort(np.abs(np.linalg.eigvals(whole)))[count // 2 :: count])
+    return float(np.exp(np.delete(growths, np.argmin(np.abs(growths))).max()))
 
 
 def _settles(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import mesh
+from .elimination import multipliers_of
 from .kernels import growth_of_volume, linearise, spectrum
 from .newton import solved
 from .simulation import integrated, variational
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
+SPREAD = 1e4  # ratio of growths in one simulation: twelve digits of the integrator leave eight of the least
 
 
 class CycleOrbit:
@@ -154,12 +156,42 @@ class CycleOrbit:
         return worst
 
     def simulated_multipliers(self) -> np.ndarray:
-        """Multipliers from the variational equations, integrated along a simulation (scipy's DOP853), the trivial one included."""
-        edges = np.linspace(0.0, self.period, SEGMENTS + 1)
-        product = np.eye(self._problem.node)
-        for start, stop in pairwise(edges):
-            product = variational(self._problem.field, self.value, self(start), start, stop)[1] @ product
-        return np.linalg.eigvals(product)
+        """Multipliers from the variational equations, integrated along simulations (scipy's DOP853), the trivial one included; largest first.
+
+        Each simulation begins on the cycle and lasts until one perturbation has grown 1e4 times as much as another, at most an eighth of the period;
+        the multipliers are those of the product of all, from its factors. So 1e+30 and 1e-30 are right beside each other. Of sparse flows growth alone ends
+        a simulation: their multipliers below 1e-8 are not known.
+
+        Raises
+        ------
+        ValueError
+            If a simulation fails.
+        """
+        nodes = self.times[:: self._problem.rule.degree]
+        cuts = np.unique(np.linspace(0, len(nodes) - 1, SEGMENTS + 1).astype(int))
+        found = [m for i, j in pairwise(cuts) for m in self._flights(nodes[i : j + 1], self(nodes[i]))]
+        return multipliers_of(
+            np.array(found), np.broadcast_to(-np.eye(len(found[0])), (len(found), *found[0].shape))
+        )
+
+    def _flights(self, times: np.ndarray, x: np.ndarray) -> list[np.ndarray]:
+        """Derivatives of a simulation from a state, in parts that are short enough, cut at mesh points while there are some."""
+        field, scale = self._problem.field, self._problem.node_scale
+        matrix = variational(field, self.value, x, times[0], times[-1])[1]
+        if not np.isfinite(matrix).all():
+            raise ValueError(
+                f"the simulation from t = {times[0]:.6g} on the cycle fails; orbit.multipliers has the multipliers by collocation"
+            )
+        spread = np.linalg.norm if self._problem.sparse is not None else np.linalg.cond
+        if spread(matrix * scale / scale[:, None]) < SPREAD:
+            return [matrix]
+        half = len(times) // 2
+        if len(times) == 2:
+            times = np.linspace(times[0], times[1], 3)
+            middle = integrated(field, self.value, x, times[0], times[1])
+        else:
+            middle = self(times[half])
+        return self._flights(times[: half + 1], x) + self._flights(times[half:], middle)
 
     # ------------------------------------------------------------------ pictures
     def plot(self, **options: Any):

@@ -43,7 +43,7 @@ def integrated(field: Field, p: float, x: np.ndarray, start: float, stop: float)
 def variational(
     field: Field, p: float, x: np.ndarray, start: float, stop: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The state at another time and its derivative by the first one."""
+    """The state at another time and its derivative by the first one; NaN where the integrator fails."""
     from scipy.integrate import solve_ivp
 
     d = len(x)
@@ -55,4 +55,5 @@ def variational(
 
     begin = np.concatenate([x, np.eye(d).reshape(-1)])
     found = solve_ivp(rate, (start, stop), begin, atol=1e-13, **TIGHT)
-    return found.y[:d, -1], found.y[d:, -1].reshape(d, d)
+    end = found.y[:, -1] if found.success else np.full(len(begin), np.nan)
+    return end[:d], end[d:].reshape(d, d)

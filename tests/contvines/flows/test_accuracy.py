@@ -171,3 +171,26 @@ def test_a_planar_multiplier_is_that_of_liouville():
     end = solve_ivp(rate, (0.0, orbit.period), start, method="Radau", rtol=1e-9, atol=1e-10).y[:, -1]
     assert np.log(orbit.multipliers[0].real) == pytest.approx(max(end[2], -707.0), rel=1e-4)
     assert orbit.volume_error < 1e-9 or end[2] < -707.0
+
+
+def saddle(x, p):
+    """r' = r (1 - r^2), turning once in 2 pi, and y = R(t) z with z' = diag(a, -b) z: multipliers 1, exp(-4 pi), exp(2 pi a), exp(-2 pi b)."""
+    (c, s), (y, z) = x[:2], x[2:]
+    inward, mean, half = 1.0 - c * c - s * s, 0.5 * (p.a - p.b), 0.5 * (p.a + p.b)
+    double, twice = c * c - s * s, 2.0 * c * s
+    return [
+        inward * c - s,
+        inward * s + c,
+        mean * y + half * (double * y + twice * z) - z,
+        mean * z + half * (twice * y - double * z) + y,
+    ]
+
+
+@pytest.mark.parametrize(("a", "b"), [(3.9, 1.0), (11.0, 11.0)])
+def test_simulated_multipliers_beside_strong_saddles(a, b):
+    """A growth of 4e10 (a = 3.9), and one of 1e30 beside 1e-30, of which a product of matrices has nothing left."""
+    t = np.linspace(0.0, 2.0 * np.pi, 201)
+    states = np.stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t], axis=1)
+    orbit = cv.FlowProblem(saddle, states[0], {"a": a, "b": b}).cycle(t, states)
+    expected = np.exp(2.0 * np.pi * np.array([a, 0.0, -min(2.0, b), -max(2.0, b)]))
+    assert orbit.simulated_multipliers() == pytest.approx(expected, rel=1e-7, abs=0.0)
