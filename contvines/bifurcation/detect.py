@@ -25,7 +25,7 @@ from .segment_search import SegmentSearch
 
 BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
 MOST = 0.5  # ... but not more
-NEARER = 0.25  # times that, where multipliers have passed the circle on it
+NEARER = 0.25  # times that, where its end tells that something is on it
 NEXT = (
     0.1  # part of the distance from a symmetry's fixed space that a step which ends next to a meeting leaves
 )
@@ -142,25 +142,28 @@ class Detector(SegmentSearch):
     def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
         """The special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
 
-        The beginning of the segment, where every solution is that of a nearly singular system, is left out.
+        The beginning of the segment, where every solution is that of a nearly singular system, is left out but where its end tells that something is there.
         """
         whole, settings = Segment(self.engine, origin, first), self.engine.settings
         share = BESIDE
         if whole.length > 0.0:
             share = min(max(BESIDE, settings.close / whole.length), MOST)
-        start = whole.at(share)
-        while (
-            start is not None and share * whole.length > settings.resolution and self._passed(origin, start)
-        ):
+        start = seen = whole.at(share)
+        beyond = share
+        while start is not None and share * whole.length > settings.resolution:
+            if not self._hides(origin, start):
+                break
             closer = whole.at(NEARER * share)
             if closer is None:
                 break
             share, start = NEARER * share, closer
-        if start is None:
+        if start is None or seen is None:
             return []
         segment = Segment(self.engine, start, first)
-        window = None if real else self.passed(segment)
-        found = self.search(segment, real) if window is None else self.both(segment, *window, real)
+        split = None if real else self.passed(segment)
+        if share < beyond:
+            split = (beyond - share) / (1.0 - share), seen
+        found = self.search(segment, real) if split is None else self.both(segment, *split, real)
         found.sort(key=lambda e: e.position)
         leaping = leap(segment, found)
         leaping = leaping if leaping is not None and leaping.role is Role.LEAP else None
@@ -180,6 +183,22 @@ class Detector(SegmentSearch):
         bracket = (origin.p, first.p)
         found = [_placed(e, share + (1.0 - share) * e.position, bracket) for e in found]
         return before_stop(found) + ([] if leaping is None else [leaping])
+
+    def _hides(self, origin: Solved, start: Solved) -> bool:
+        """Whether a point beside a branch point tells that multipliers have passed the circle between both, or that the parameter has turned.
+
+        No border lies there: first points are brought so near that margins are those of the branch point.
+        """
+        engine, settings = self.engine, self.engine.settings
+        unit, gap = engine.parameter_unit(origin.p), engine.join(start.u - origin.u, start.p - origin.p)
+        # away from the branch point: the parameter's direction there, where it has one, its change, and its direction here
+        away = float(np.sign(engine.inner(origin.tangent, gap))) * float(origin.tangent[-1])
+        ways = (
+            (away, settings.stationary * unit),
+            (start.p - origin.p, settings.rounding * max(unit, abs(origin.p))),
+            (float(start.tangent[-1]), engine.upright(origin.p)),
+        )
+        return len({way > 0.0 for way, least in ways if abs(way) > least}) > 1 or self._passed(origin, start)
 
     def _passed(self, origin: Solved, start: Solved) -> bool:
         """Whether multipliers have passed the circle away from +1 since a branch point: there only the critical ones, at +1, do not tell."""

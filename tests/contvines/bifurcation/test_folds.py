@@ -73,3 +73,12 @@ def test_folds_beside_borders_of_a_machine():
         changes = np.array([value(step), value(-step)]) - fold.value
         assert np.all(changes < 0.0) or np.all(changes > 0.0)
         assert abs(changes[0] - changes[1]) < 0.1 * abs(changes).min()
+
+
+@pytest.mark.parametrize(("b", "c"), [(0.002, 100.0), (0.006, 100.0), (0.02, 1000.0)])
+def test_a_fold_just_behind_a_branch_point(b, c):
+    """p = c u^2 - b u crosses u = 0 at p = 0 and turns at u = b / 2c, within a fiftieth of the first step."""
+    problem = cv.AlgebraicProblem(lambda u, p: u * (p + b * u - c * u**2), [0.0], -0.5, scale=1.0)
+    graph = cv.diagram(problem, within=(-0.5, 0.5), depth=1)
+    (fold,) = graph.of_kind("fold")
+    assert (fold.value, fold.u[0]) == pytest.approx((-(b**2) / (4.0 * c), b / (2.0 * c)), rel=1e-6)
