@@ -8,7 +8,6 @@ import pytest
 import contvines as cv
 from contvines.coexistence.basins import Basins
 from contvines.coexistence.maps import MapPopulation
-from orbits.machines.physical import physical
 
 
 def plane(index, mirrored, shares=()):
@@ -46,21 +45,3 @@ def test_starts_reach_the_fixed_point_on_their_side():
     assert [motions[k].kind for k in index] == ["periodic"] * 4 + ["escaped", "periodic"]
     ends = [float(motions[k].u[0]) for k in index if motions[k].kind == "periodic"]
     assert ends == pytest.approx(np.sqrt(0.5) * np.array([1.0, -1.0, 1.0, -1.0, 1.0]))
-
-
-def test_a_machine_with_units_is_drawn_and_told_in_them():
-    """A half-width is 14 mm, and as much in the time of one radian of the free oscillation is 14 mm times 2 pi 8 Hz."""
-    case = {
-        "oscillator_mass": "3.8 kg", "natural_frequency": "8 Hz", "damping_ratio": 0.007, "absorber_mass": "32 g", "half_width": "14 mm",
-        "restitution": 0.6, "friction": 0.1, "base_amplitude": "0.3 mm", "frequency": "7.9 Hz",
-    }  # fmt: skip
-    found = cv.basins(physical("coupled", case), over="frequency", at=7.9, points=6, fixed={"v": 0.5})
-    (axes,) = found.plot().axes
-    assert axes.get_xlim() == pytest.approx((14.0, -14.0))
-    assert "[mm]" in axes.get_xlabel() and "[mm/s]" in axes.get_ylabel()
-    fast = 14.0 * 2.0 * np.pi * 8.0
-    assert max(axes.get_ylim()) / fast == pytest.approx(found.y[-1] + 0.5 * (found.y[1] - found.y[0]))
-    assert axes.get_title(loc="left") == "frequency = 7.9 Hz" and "frequency = 7.9 Hz" in str(found)
-    told = found.to_dict()
-    assert told["fixed"]["v"] == pytest.approx(7.0) and told["units"]["v"] == "mm"
-    assert told["units"]["frequency"] == "Hz"

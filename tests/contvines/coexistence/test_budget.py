@@ -4,19 +4,14 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.progress import as_text
 from orbits import Absorber
 from orbits.attractors import recurrence
 from orbits.attractors.recurrence import LONGEST, settle
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import RATE, TURNS, W
-from orbits.population.native import TRANSIENTS
 from orbits.simulation.driver import skip
-from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
-
-CHAOTIC = 1.75  # amplitude; exponent 1.19 per period
 
 
 def logistic():
@@ -46,12 +41,6 @@ def test_a_budget_is_kept_and_what_it_leaves_out_is_said():
     part = made(budget)
     assert not part.complete and budget <= part.settings["work"] < work
     assert motions(least) <= motions(part) <= motions(whole)
-
-
-def test_the_given_values_come_first():
-    part = made(made(1).settings["work"] + 1)
-    given = 2.55 + 0.85 * (np.arange(4) + 0.5) / 4
-    assert "given values" in part.message and {a.value for a in part.attractors} <= set(given)
 
 
 def test_a_motion_between_the_given_values_that_all_starts_reach():
@@ -98,39 +87,3 @@ def test_a_cycle_longer_than_looked_for_is_not_waited_for():
     assert returns[64] < 1e-11 and 1e-5 < returns[32] < 1e-3 < 10 * returns[16]
     assert not settle(absorber, engine, params, state, 0.0, 32, 1e-7, 1).recurrent
     assert state[TURNS] < 1000.0
-
-
-def test_motions_that_wander_together_are_not_followed_one_by_one():
-    """A chaotic transient ends at a constant rate: sixteen motions of n periods that have not ended tell as much as one of 16 n."""
-    absorber = Absorber(restitution=0.8564451, friction=0.1418559, gravity=0.4553905, mass_ratio=0.006)
-    population = absorber.population("amplitude")
-
-    def looked_at(count):
-        before = population.work
-        (motion,), _, _ = population.settle(population.starts(count, 3, CHAOTIC), CHAOTIC)
-        assert motion.kind == "chaotic" and motion.exponent > 10 * motion.error
-        return population.work - before - count * sum(TRANSIENTS)
-
-    assert looked_at(16) < 0.5 * looked_at(2)
-
-
-def test_progress_counts_the_pieces_of_work():
-    told = []
-    graph = cv.atlas(
-        logistic(), within=(2.55, 3.4), values=4, starts=4, scan=8, depth=1, progress=told.append
-    )  # fmt: skip
-    left = [state.left for state in told]
-    assert left[0].known == 4 + 8 + 4  # given values, values in a row, searches for cycles at the given ones
-    assert all(each.done <= each.known and (each.seconds >= 0.0 or not each.done) for each in left)
-    assert graph.settings["scanned"] >= 8 and left[-1].done >= 4 + 8
-    text = as_text(told[-1]._replace(left=left[-1]._replace(seconds=90.0, budget=0.03)))
-    assert text.endswith(" pieces of work known so far, about 90 s left, 3% of the budget")
-
-
-def test_branches_that_wait_at_the_end_are_counted():
-    told = []
-    graph = cv.atlas(
-        ABSORBER, over="amplitude", within=(0.2, 1.3), values=3, starts=8, scan=0, progress=told.append, settings={"max_branches": 2}
-    )  # fmt: skip
-    assert len(graph.branches) > 2  # every motion that starts reach has its branch
-    assert f"with {told[-1].waiting} branches waiting" in graph.message

@@ -1,21 +1,14 @@
 """What follows a motion that ceases to be stable: cascades, symmetry breaking, and where chaos ends, against closed forms."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import contvines as cv
 from contvines.coexistence.handover import Handover, loose_ends
-from contvines.coexistence.places import RESOLVED, unresolved
 from contvines.continuation.settings import Settings
 from contvines.graph.builder import adopt
 from contvines.graph.run import Run
 from contvines.journal import NullJournal
-from orbits.attractors import find_attractor
-from tests.machines import ABSORBER
 
 
 def logistic(x, p):
@@ -96,42 +89,3 @@ def test_an_atlas_goes_down_a_cascade_of_its_own_accord():
         assert np.abs(doublings - value).min() < 1e-9
     assert graph.settings["unfollowed"] == 0
     assert all(a.starts or a.share == 0.0 for a in graph.attractors)
-
-
-@pytest.mark.slow
-@given(st.lists(st.booleans(), min_size=2, max_size=12), st.integers(0, 100))
-def test_where_chaos_begins_and_ends_is_asked_until_it_is_known(kinds, seed):
-    """The values at which a kind is met and those at which it is not come as near as is promised, whatever it does between."""
-    values = np.sort(np.random.default_rng(seed).random(len(kinds)))
-    met = {"chaotic": [float(v) for v, k in zip(values, kinds, strict=True) if k]}
-    asked = [float(v) for v in values]
-    for _ in range(20):
-        wanted = unresolved(met, asked, (0.0, 1.0), 1000)
-        asked += wanted
-        met["chaotic"] += [p for p in wanted if np.sin(40.0 * p) > 0.0]
-    assert unresolved(met, asked, (0.0, 1.0), 1000) == []
-    here = set(met["chaotic"])
-    order = sorted(asked)
-    for first, last in pairwise(order):
-        assert (first in here) == (last in here) or last - first <= RESOLVED
-    assert len(unresolved({"chaotic": [0.2, 0.6]}, [0.0, 0.2, 0.4, 0.6], (0.0, 1.0), 2)) == 2
-
-
-@pytest.mark.slow
-def test_the_machine_hands_over_what_a_start_of_its_own_finds():
-    """Past the fold at which `LR` is born (amplitude 0.2526) the motion slides: so says a simulation of its own there."""
-    machine = ABSORBER
-    graph = cv.diagram(machine.orbit("LR", amplitude=0.5), over="amplitude", within=(0.2, 0.55), depth=0)
-    handover = Handover(run_on(graph), machine.population("amplitude"))
-    (end,) = [end for end in handover.left() if abs(end.value - 0.2526) < 1e-4]
-    found = handover.follow(end)
-    assert end.side == -1.0 and found
-    for counted in found:
-        alone = find_attractor(
-            machine, {"phase": 0.0, "w": 0.0, "w_rate": 0.0}, amplitude=counted.attractor.value
-        )
-        assert (
-            (counted.attractor.kind, counted.attractor.periods)
-            == (alone.kind, alone.periods)
-            == ("sliding", 1)
-        )

@@ -55,15 +55,6 @@ def test_shares_agree_with_a_count_one_by_one():
     assert mine == alone
 
 
-def test_results_do_not_depend_on_the_number_of_threads():
-    one, two = ABSORBER.population("amplitude"), ABSORBER.population("amplitude")
-    one.workers, two.workers = 1, 2
-    starts = one.starts(1500, 0, 0.6)
-    first, second = one.settle(starts, 0.6), two.settle(starts, 0.6)
-    assert np.array_equal(first[1], second[1]) and np.array_equal(first[2], second[2])
-    assert all(np.array_equal(a.u, b.u) for a, b in zip(first[0], second[0], strict=True))
-
-
 def test_atlases_with_one_seed_are_equal_to_the_last_bit_on_one_core_and_on_two():
     graphs = []
     for workers in (1, 2, 2):
@@ -105,26 +96,6 @@ def test_the_look_says_what_a_diagram_lacks():
     assert graph.to_dict()["missing"][0]["share"] > 0
 
 
-def test_an_atlas_is_kept_and_goes_on_after_a_stop(tmp_path):
-    options = {"over": "amplitude", "within": (1.05, 1.15), "values": 3, "starts": 32, "depth": 0}
-    whole = cv.atlas(ABSORBER, **options)
-
-    class Stop(Exception):
-        pass
-
-    def until(progress):
-        if progress.branches >= 1:
-            raise Stop
-
-    path = tmp_path / "a.vines"
-    with pytest.raises(Stop), cv.resume(path) as journal:
-        cv.atlas(ABSORBER, journal=journal, progress=until, **options)
-    with cv.resume(path) as journal:
-        again = cv.atlas(ABSORBER, journal=journal, **options)
-    assert repr(again.attractors) == repr(whole.attractors)
-    assert repr(cv.load(path).attractors) == repr(whole.attractors)
-
-
 def test_graphs_are_merged_without_doubles(graph):
     seed = ABSORBER.symmetric_orbit(1.1, stable=True)
     one = cv.diagram(seed, over="amplitude", within=(1.0, 1.3), depth=0, virtual=False)
@@ -147,15 +118,3 @@ def test_graphs_are_merged_without_doubles(graph):
                 depth=0,
             )
         )
-
-
-def test_basins_name_their_motions():
-    found = cv.basins(ABSORBER, "amplitude", 0.6, points=40)
-    words = {a.word for a in found.attractors}
-    assert "LR" in words
-    assert sum(a.share for a in found.attractors) == pytest.approx(1.0)
-    with pytest.raises(ValueError, match="'q' is no coordinate"):
-        cv.basins(ABSORBER, "amplitude", 0.6, plane=("w", "q"))
-    figure = found.plot(figsize=(3.4, 3.0))
-    low, high = figure.axes[0].get_xlim()
-    assert low > high  # the left wall, w = +1, stands on the left

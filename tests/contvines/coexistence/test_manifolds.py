@@ -9,7 +9,6 @@ from typer.testing import CliRunner
 import contvines as cv
 from contvines.coexistence.manifolds import stable_manifolds
 from tests.machines import ABSORBER
-from tools.pages.pages import page
 
 pytestmark = pytest.mark.slow
 
@@ -28,22 +27,6 @@ def test_a_parabola(slow):
         assert np.abs(half.points[:, 0] - bend * half.points[:, 1] ** 2).max() < 1e-3
         assert abs(half.points[-1, 1]) > 2.0
     assert halves[0].points[-1, 1] * halves[1].points[-1, 1] < 0.0
-
-
-def test_a_saddle_that_is_bent_near_by_and_throws_far():
-    # beside a grazing impact one multiplier is large, and the curve straight on a small scale only; here x = h(y) is invariant for any h
-    def bend(y):
-        return 2e-3 * np.tanh(y / 1e-3)
-
-    def step(u, p):
-        return np.array([300.0 * p * (u[0] - bend(u[1])) + bend(0.2 * u[1]), 0.2 * u[1]])
-
-    graph = cv.diagram(cv.MapProblem(step, [0.0, 0.0], 2.0), within=(1.9, 2.1), depth=0)
-    halves = stable_manifolds(graph, 2.0, PLANE)
-    assert [half.ended for half in halves] == ["leaves", "leaves"]
-    for half in halves:
-        assert np.abs(half.points[:, 0] - bend(half.points[:, 1])).max() < 1e-4
-        assert abs(half.points[-1, 1]) > 2.0
 
 
 def test_points_of_henons_manifold_fall_into_the_saddle():
@@ -105,21 +88,6 @@ def test_the_two_sides_of_a_manifold_reach_different_motions(absorber):
     assert np.array_equal(lines[0].get_xydata(), found.manifolds[0].points)
 
 
-def test_a_page_has_the_same_manifolds(absorber):
-    pytest.importorskip("heyoka")
-    machine, graph = absorber
-    limits = machine.population("amplitude").box(0.3)[1:]
-    start = page("absorber").attractor(amplitude=0.55)
-    own = cv.diagram(start, over="amplitude", within=(0.25, 0.56), depth=0)
-    # a wall need not be where the plane ends
-    one, other = (stable_manifolds(g, 0.3, 1.3 * limits, longest=0.6) for g in (graph, own))
-    one = [half for half in one if half.word == "LR"]
-    assert one[0].ended == "wall" and len(one) == len(other) > 2
-    for half, twin in zip(one, other, strict=True):
-        assert half.ended == twin.ended
-        assert half.points == pytest.approx(twin.points, abs=1e-6)
-
-
 def test_on_the_command_line(tmp_path, absorber):
     from contvines.command.cli import app
 
@@ -134,16 +102,3 @@ def test_on_the_command_line(tmp_path, absorber):
     said = CliRunner().invoke(app, words)
     assert said.exit_code == 0
     assert "stable manifold of LR on B1" in said.stdout
-
-
-def test_a_graph_that_begins_with_the_absorber_at_rest():
-    machine = ABSORBER
-    resting = cv.diagram(machine.orbit("", amplitude=0.05), over="amplitude", within=(0.04, 0.06), depth=0)
-    with pytest.raises(ValueError, match="the graph has no motions that can be simulated period by period"):
-        cv.basins(machine, "amplitude", 0.05, points=4, saddles=resting)
-    resting.merge(
-        cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 0.6), depth=0)
-    )
-    assert {
-        curve.word for curve in cv.basins(machine, "amplitude", 0.3, points=4, saddles=resting).manifolds
-    } == {"LR"}

@@ -49,16 +49,6 @@ def test_coexisting_cycles_are_roots_of_their_own():
             assert a.share == pytest.approx(1 / 3, abs=0.05 if a.starts == 64 else 0.1)  # by symmetry
 
 
-def test_an_isola_is_found_and_nothing_is_listed_twice():
-    """The logistic map's period-3 window at p > 1 + sqrt 8 hangs together with no other cycle."""
-    problem = cv.MapProblem(lambda x, p: p * x * (1 - x), [0.6], 3.5)
-    population = problem.population(box=[(0.01, 0.99)])
-    graph = cv.atlas(population, within=(3.82, 3.84), values=[3.835], starts=32, depth=0)
-    threes = [b for b in graph if b.problem.cycle == 3]
-    assert len(threes) == 1
-    assert graph.of_kind("fold")[0].value == pytest.approx(1 + np.sqrt(8), abs=1e-12)
-
-
 def test_shares_of_henons_basin_are_within_three_sigma_of_counts_from_elsewhere():
     """Attractors.jl, test/mapping/attractor_mapping_tests.jl: 0.451 of 1000 starts, drawn uniformly from [-2, 2]^2, stay.
 

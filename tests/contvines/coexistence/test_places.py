@@ -3,11 +3,9 @@
 from itertools import pairwise
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import contvines as cv
 from contvines.branches.branch import Branch
 from contvines.coexistence.places import changes, scattered, unasked
 from contvines.graph.graph import Graph
@@ -52,17 +50,3 @@ def windows(x, p):
     inside = 40.0 * ((p - 0.41) ** 2 - 0.01**2) * 1e4
     near = 1.0 + (x - 1.0) * (0.5 + 0.6 * (1.0 + np.tanh(inside)) / 2.0)
     return np.where(np.abs(x - 1.0) < 0.5, near, 0.5 * x)
-
-
-@pytest.mark.slow
-def test_a_window_narrower_than_the_distance_of_the_values_is_found():
-    population = cv.MapProblem(windows, [0.0], 0.5).population(box=[(-2.0, 2.0)])
-    few = cv.atlas(population, within=(0.0, 1.0), values=8, starts=32, depth=0, scan=0)
-    assert len(few.branches) == 1
-    atlas = cv.atlas(population, within=(0.0, 1.0), values=8, starts=32, depth=0, scan=96)
-    other = next(b for b in atlas if abs(b.points[0, 0] - 1.0) < 1e-9)
-    (stable,) = other.stable_intervals()
-    assert stable == pytest.approx((0.4, 0.42), abs=4e-4)
-    assert atlas.settings["scanned"] >= 96 and atlas.settings["quiet"] == 96
-    assert "the last 96 met nothing new" in str(atlas)
-    assert any(a.branch == other.label and a.starts == 16 for a in atlas.attractors)

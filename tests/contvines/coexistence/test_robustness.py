@@ -7,8 +7,6 @@ import pytest
 from typer.testing import CliRunner
 
 import contvines as cv
-from orbits import Absorber
-from orbits.machines.physical import physical
 from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
@@ -32,28 +30,10 @@ def test_the_smallest_kick_of_a_map_is_the_distance_to_its_boundary(well):
     assert "no kick within the box of starts" in str(found)
 
 
-def test_units_change_what_is_near(well):
-    found = cv.robustness(well, 1.4, starts=0, units={"x1": 10.0})
-    assert found.distance == pytest.approx(1.0 / 1.4, rel=2e-3)
-    found = cv.robustness(well, 1.4, starts=0, units={"x0": 0.1, "x1": 1.0})
-    assert found.distance == pytest.approx(10.0 / 1.4, rel=2e-2)
-
-
 @pytest.fixture(scope="module")
 def graph():
     machine = ABSORBER
     return cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.17, 1.27), depth=1)
-
-
-def test_another_unit_of_time_gives_the_same_kick(graph):
-    # with time counted in 1/1.4 and gravity 1.4^2 times as large the equations are the same; velocities are 1.4 times as large
-    other = Absorber(restitution=0.76, friction=0.5, gravity=0.211 * 1.96, mass_ratio=0.006, frequency=1.4)
-    same = cv.diagram(other.orbit("LR", amplitude=0.3), over="amplitude", within=(0.28, 0.32), depth=0)
-    one = cv.robustness(graph["B1"], 0.3, starts=0)
-    two = cv.robustness(same["B1"], 0.3, starts=0, units={"w_rate": 1.4})
-    assert two.place == pytest.approx(one.place * [1.0, 1.4], abs=1e-8)
-    assert two.distance == pytest.approx(one.distance, rel=1e-6)
-    assert two.kick == pytest.approx(one.kick * [1.0, 1.4], rel=1e-5)
 
 
 def test_a_kick_leads_elsewhere_and_a_smaller_one_does_not(graph):
@@ -114,39 +94,3 @@ def test_on_the_command_line(tmp_path, graph):
     assert picture.stat().st_size > 5000
     said = call(app, ["robustness", file, "B9"])
     assert "B9 is no branch of it" in str(said.exception)
-
-
-def test_a_kick_of_a_machine_in_kilograms_leads_to_the_sliding_motion():
-    """Four states, and quantities with units; `attractor` simulates what is short of the kick, and the kick."""
-    machine = physical(
-        "coupled",
-        {
-            "oscillator_mass": "3.8 kg",
-            "natural_frequency": "8 Hz",
-            "absorber_mass": "32 g",
-            "half_width": "30 mm",
-            "damping_ratio": 0.007,
-            "restitution": 0.6,
-            "friction": 0.1,
-            "base_amplitude": "0.3 mm",
-        },
-    )
-    graph = cv.diagram(machine.orbit("LR", frequency="7.9 Hz"), over="frequency", within=(7.8, 8.1), depth=0)
-    found = cv.robustness(graph["B1"], 8.0, starts=64, directions=16)
-    assert found.names == ("w", "w_rate", "v", "v_rate") and found.reaches == "tt"
-    assert 0.8 < found.share <= 1.0
-    for part, impacts in ((0.98, 2), (1.0, 0)):  # the boundary is folded: further out may be inside again
-        start = dict(zip(found.names, found.place + part * found.kick, strict=True))
-        assert machine.attractor(start, frequency="8 Hz").impacts == impacts
-    # told in millimetres and millimetres a second: 30 mm and 30 mm 2 pi 8 Hz are one
-    told, speed = found.to_dict(), 30.0 * 2.0 * np.pi * 8.0
-    assert told["kick"] == pytest.approx(found.kick * [30.0, speed, 30.0, speed], rel=1e-12)
-    assert told["units"] == {"frequency": "Hz", "w": "mm", "w_rate": "mm/s", "v": "mm", "v_rate": "mm/s"}
-    assert "frequency = 8 Hz" in str(found) and f"w {told['kick'][0]:+.4g} mm, w_rate" in " ".join(
-        str(found).split()
-    )
-    assert (
-        str(cv.erosion(graph["B1"], [8.0], starts=64, directions=16))
-        .splitlines()[2]
-        .startswith("frequency [Hz]")
-    )

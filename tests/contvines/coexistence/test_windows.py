@@ -6,7 +6,6 @@ import pytest
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractor
-from tools.attractors.drawn import drawn
 from tools.attractors.isolas import window
 
 pytestmark = pytest.mark.slow
@@ -69,18 +68,6 @@ def test_unstable_cycles_in_an_absorber_s_chaos_return(friction, amplitude):
         assert orbit.replay() < 1e-7
 
 
-def test_newton_from_drawn_starts_finds_henon_s_cycles():
-    """Both fixed points are the roots of a x^2 + (1 - b) x - 1 = 0; the others are iterated."""
-    population = cv.MapProblem(henon, [0.6, 0.2], 1.0).population(box=[(-2.0, 2.0), (-2.0, 2.0)])
-    cycles = [u.reshape(-1, 2) for _, u in population.returning(population.starts(16, 0, 1.4), 1.4)]
-    fixed = sorted(points[0, 0] for points in cycles if len(points) == 1)
-    assert np.allclose(fixed, np.sort(np.roots([1.4, 0.7, -1.0])), rtol=0.0, atol=1e-10)
-    assert max(map(len, cycles)) > 4
-    for points in cycles:
-        images = np.array([henon(x, 1.4) for x in points])
-        assert np.abs(images - np.roll(points, -1, axis=0)).max() < 1e-7
-
-
 def test_a_motion_that_hardly_any_start_meets_is_reached_from_afar():
     """Ten impacts in five periods, reached at 0.979167 by 3 of 2000 starts of `witness.c`; the starts are at 1.02 only."""
     machine = Absorber(restitution=0.76, friction=0.05, gravity=0.211, mass_ratio=0.006)
@@ -105,14 +92,3 @@ def test_a_motion_that_hardly_any_start_meets_is_reached_from_afar():
         problem.canonical(*orbit.seed(problem))[0]
         == rare[0].problem.canonical(rare[0].points[0], rare[0].values[0])[0]
     )
-
-
-def test_sliding_that_hardly_any_start_reaches_is_on_the_atlas():
-    """One of 200 starts of `witness.c` slides at 0.97269; none of these four does, and none leads Newton's method to it."""
-    machine, over, _ = drawn("coupled", 15)
-    graph = cv.atlas(machine, over=over, within=(0.9715, 0.974), values=[0.97269], starts=4, depth=0, scan=1)
-    assert not any("R" not in found.word for found in graph.attractors if found.starts)
-    (sliding,) = [branch for branch in graph if branch.real and branch.description.get("word") == "tt"]
-    assert sliding.stable_intervals() == [(0.9715, 0.974)]
-    for row, value in zip(sliding.points[::8], sliding.values[::8], strict=True):
-        assert sliding.problem.orbit(row, float(value)).replay() < 1e-7

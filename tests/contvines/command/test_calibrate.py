@@ -34,24 +34,6 @@ def test_restitution_and_friction_of_a_free_decay(run, study, tmp_path):
     assert imread(tmp_path / "c.png").shape[:2] == (480, 680)  # at 200 dots an inch
 
 
-def test_restitution_from_a_sweep_in_hertz_and_metres(run, study, tmp_path):
-    """Steady responses of exact orbits, in other units than the study's."""
-    from contvines.command.compose import machine
-    from contvines.command.study import read_study
-
-    study.write_text(STUDY.replace('"4 mm"', '"2 mm"'))
-    model = machine(read_study(study)).with_(restitution=0.62)
-    values = [21.8, 21.85, 21.9]
-    orbits = [model.orbit("LR", frequency=f"{value} Hz") for value in values]
-    assert all(orbit.stable and orbit.real for orbit in orbits)
-    rows = [f"{60.0 * v};{orbit.measure('max_abs_q1') / 1e3!r}" for v, orbit in zip(values, orbits)]
-    (tmp_path / "s.csv").write_text("speed (1/min);response [m]\n" + "\n".join(rows))
-    done = run("calibrate", study, "--sweep", tmp_path / "s.csv")
-    line = next(line for line in done[1].splitlines() if line.startswith("restitution"))
-    assert float(line.split()[1]) == pytest.approx(0.62, abs=2e-3)
-    assert "vary.restitution = { uniform = [" in done[1]
-
-
 @pytest.mark.parametrize(
     ("data", "options", "says"),
     [

@@ -73,12 +73,3 @@ def test_picture(study, tmp_path):
     target = tmp_path / "map.png"
     assert run(study, "--plot", target).exit_code == 0
     assert target.stat().st_size > 20_000
-
-
-@pytest.mark.parametrize(("low", "high"), [(11.3, 19.2), (0.3, 27.0), (1.02, 1.4)])
-def test_contours_of_a_map_are_at_round_values(low, high):
-    from contvines.command.design import _round_levels
-
-    levels = _round_levels(low, high)
-    assert levels[0] <= low and levels[-1] >= high and 4 <= len(levels) <= 14
-    assert all(float(f"{level:.3g}") == pytest.approx(level, rel=1e-9) for level in levels)

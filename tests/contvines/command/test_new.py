@@ -2,7 +2,6 @@
 
 import json
 import platform
-import tomllib
 
 import numpy
 import pytest
@@ -54,14 +53,6 @@ def test_a_kind_that_is_none_is_refused_with_those_there_are(capsys):
     assert said.startswith("contvines: foo: ") and all(kind.value in said for kind in Kind)
 
 
-def test_templates_are_toml_of_the_kinds_that_are_offered(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for kind in Kind:
-        assert not call("new", kind.value)
-        data = tomllib.loads((tmp_path / f"{kind.value}.toml").read_text())
-        assert {"model", "start", "continue"} <= set(data)
-
-
 def test_the_self_test_passes_and_names_what_computes(capsys):
     assert not call("doctor", "--json")
     said = json.loads(capsys.readouterr().out)
@@ -79,28 +70,6 @@ def test_a_file_says_with_what_it_was_made(tmp_path, capsys):
         assert set(store.made) == {"contvines", "numpy", "scipy", "python", "platform", "core", "date"}
     assert not call("show", path, "--json")
     assert json.loads(capsys.readouterr().out)["made"]["python"] == platform.python_version()
-
-
-def test_help_lists_each_command_once_and_explains_one(capsys):
-    from contvines.bifurcation.kinds import LABELS
-    from contvines.command.commands import COMMANDS
-    from contvines.command.help import TASKS
-
-    assert {name for names in TASKS.values() for name in names} <= set(COMMANDS)
-    assert not call("help")
-    lines = capsys.readouterr().out.splitlines()
-    listed = [line.split()[0] for line in lines if line[:2] == "  " and line[2] != " "]
-    assert sorted(listed) == sorted([*COMMANDS, "labels", "words", "cite"])
-    assert not call("help", "diagram")
-    assert "--plot" in capsys.readouterr().out
-    assert not call("help", "labels")
-    assert {line.split()[0] for line in capsys.readouterr().out.splitlines() if line[:2] == "  "} == set(
-        LABELS.values()
-    )
-    assert not call("help", "cite")
-    assert capsys.readouterr().out.startswith("@software{contvines,")
-    assert call("help", "diagam") == 1
-    assert "did you mean diagram?" in capsys.readouterr().err
 
 
 def test_a_file_of_python_is_no_study(tmp_path, capsys):

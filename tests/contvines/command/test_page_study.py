@@ -1,7 +1,6 @@
 """Studies whose machine is a page of Python."""
 
 import json
-import re
 
 import numpy as np
 import pytest
@@ -84,20 +83,6 @@ def test_refusals(study, line):
     assert REFUSED[line] in str(refused.value)
 
 
-@pytest.mark.parametrize(
-    ("parameter", "within", "sentence"),
-    [
-        ("frequency", [-1.0, 3.0], "within = [-1.0, 3.0]: frequency = -1: a forcing frequency is above 0"),
-        ("restitution", [0.5, 1.5], "within = [0.5, 1.5]: restitution = 1.5 is out of range"),
-    ],
-)
-def test_limits_of_what_varies(study, parameter, within, sentence):
-    text = STUDY.replace('parameter = "frequency"', f'parameter = "{parameter}"')
-    study.write_text(re.sub(r"within = .*", f"within = {within}", text))
-    with pytest.raises(StudyError, match=re.escape(sentence)):
-        read_study(study)
-
-
 def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     run("diagram", study, "-q")
     from orbits.machines.page import stored
@@ -110,22 +95,6 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     done = run("orbit", "stop.vines", "B1", "--trust")
     assert done.exit_code != 0 and "make the result anew" in str(done.exception)
     assert "does not hold" not in str(done.exception)
-
-
-@pytest.mark.slow
-def test_robustness_of_a_page(study, monkeypatch):
-    run("diagram", study, "-q", "--no-look")
-    with monkeypatch.context() as patch:
-        patch.setattr("orbits.machines.page.stored.loaded", lambda settings: None)  # as in another process
-        done = run("robustness", "stop.vines", "B1", "--at", "2.3")
-    assert done.exit_code != 0 and "--trust" in str(done.exception)
-    graph = cv.load("stop.vines", trust=True)
-    branch = next(b for b in graph if b.real and b.stable_intervals())
-    low, high = branch.stable_intervals()[0]
-    at = 0.5 * (low + high)
-    done = run("robustness", "stop.vines", branch.label, "--at", at, "--starts", 6, "--trust")
-    assert done.exit_code == 0, done.output
-    assert "share of starts" in done.output and "kick" in done.output, done.output
 
 
 @pytest.mark.slow

@@ -57,15 +57,6 @@ def test_a_failed_start_leaves_nothing_and_the_mended_study_runs(run, tmp_path, 
     assert names(tmp_path) == ["s.toml", "x.vines"]
 
 
-def test_a_chart_that_is_refused_leaves_nothing(run, tmp_path, study):
-    assert run("diagram", study, "-q", "--no-look")[0] == 0
-    there = names(tmp_path)
-    for over, within in (("friction", ("0.6", "0.7")), ("colour", ("0", "1"))):
-        status, _, err = run("chart", "s.vines", "--over", over, "--within", *within, "-q")
-        assert status == 1 and "Traceback" not in err
-        assert names(tmp_path) == there
-
-
 def test_an_edited_study_is_refused_and_fresh_sets_the_old_file_aside(run, tmp_path, study):
     assert run("diagram", study, "-q", "--no-look")[0] == 0
     first = load("s.vines", problems=False)
@@ -86,19 +77,6 @@ def test_fresh_sets_aside_what_cannot_be_read(run, tmp_path, study):
     assert run("diagram", study, "-q", "--no-look")[0] == 1
     assert run("diagram", study, "-q", "--no-look", "--fresh")[0] == 0
     assert (tmp_path / "s.old.vines").read_bytes() == b"mine"
-
-
-@pytest.mark.slow
-def test_fresh_of_sweeps_and_surveys(run, tmp_path, study):
-    for command, kind, others in (("sweep", "csv", ()), ("survey", "nc", ("csv",))):
-        assert run(command, study, "-o", f"{command}.{kind}", "-q")[0] == 0
-        before = (tmp_path / f"{command}.{kind}").read_bytes()
-        assert run(command, study, "-o", f"{command}.{kind}", "-q", "--fresh")[0] == 0
-        assert (tmp_path / f"{command}.old.{kind}").read_bytes() == before
-        made = {f"{command}.{kind}", *(f"{command}.{other}" for other in others)}
-        assert {name for name in names(tmp_path) if name.startswith(command)} == made | {
-            name.replace(".", ".old.") for name in made
-        }
 
 
 @pytest.mark.slow

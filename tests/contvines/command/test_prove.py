@@ -109,28 +109,6 @@ def test_without_the_extra_a_sentence_names_it(package, words, tmp_path, capsys,
     assert status == 1 and '[proofs]"' in err
 
 
-@pytest.mark.parametrize(
-    "paper",
-    [
-        "{}",
-        "[]",
-        "null",
-        "[" * 100_000,
-        "9" * 5001,
-        '{"start": 7}',
-        '{"start": []}',
-        '{"start": [7]}',
-        '{"start": {"boxes": []}}',
-        "{",
-    ],
-)
-def test_damaged_certificates_are_refused(paper, tmp_path, capsys):
-    papers = tmp_path / "papers.json"
-    papers.write_text(paper)
-    status, out, err = run(capsys, "prove", papers, "--check")
-    assert status == 1 and ("NOT verified" in out or "certificates" in err) and "should not" not in err
-
-
 def test_what_is_proved_is_marked_in_tables_pictures_and_the_report(kept, capsys, tmp_path):
     graph = cv.load(kept)
     plain = cv.load(kept)
@@ -156,18 +134,3 @@ def test_what_is_proved_is_marked_in_tables_pictures_and_the_report(kept, capsys
     told = contents(graph, "marked.vines")
     assert [branch["proof"] for branch in told["branches"]] == ["0.55..0.57 real, stable"]
     assert next(point for point in told["special"] if point["label"] == "SB1")["proof"] == "proved"
-
-
-def test_points_of_the_response_are_verified_where_the_branch_bends_and_words_are_long(tmp_path, capsys):
-    """Pairs that cross the circle, folds and doublings of 2 to 8 events: by another arithmetic, tile and all."""
-    path = tmp_path / "f.vines"
-    assert run(capsys, "diagram", STUDY.with_name("frequency.toml"), "-o", path, "--quiet")[0] == 0
-    labels = [
-        label
-        for kind in ("neimark-sacker", "fold", "period-doubling")
-        for label in (point.label for point in cv.load(path).of_kind(kind)[:2])
-    ]
-    assert len(labels) == 6
-    assert run(capsys, "prove", path, *labels)[0] == 0
-    status, out, _ = run(capsys, "prove", path, "--check")
-    assert status == 0 and out.count(": verified") == len(labels)

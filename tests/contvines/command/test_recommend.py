@@ -93,25 +93,6 @@ def test_what_is_not_known_stays_unknown_in_a_file():
     assert "No half width can be recommended" in str(again) and "not known: the response" in str(again)
 
 
-def test_a_choice_at_the_end_of_its_range_says_so_and_speaks_of_absorbers_only_where_there_is_one():
-    places = [
-        Place(gap, worst, worst, 0.8 * worst, 0, 1) for gap, worst in ((0.4, 1.0), (0.5, 2.0), (0.6, 3.0))
-    ]
-    met = {"impacts": 0.5, "impacts_peak": 0.7, "calm": 0.5, "calm_peak": 1.0}
-
-    def told(value: float, absorber: bool) -> str:
-        return str(Recommendation(
-            "a.toml", "a", "gap", "frequency", (1.0, 2.0), {}, value, None, (value, value), 0.05, {}, places, {}, math.nan, math.nan, met, {},
-            None, None, absorber=absorber,
-        ))  # fmt: skip
-
-    end = "at the end of the range that was looked at: a better one may lie beyond"
-    assert end in told(0.4, False) and end in told(0.6, False) and end not in told(0.5, False)
-    assert "absorber at work" in told(0.4, True) and "slides without impacts" in told(0.4, True)
-    for word in ("absorber", "slides"):
-        assert word not in told(0.4, False)
-
-
 @pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no browser that prints")
 def test_a_page_is_printed_on_paper(tmp_path):
     page = tmp_path / "a.html"

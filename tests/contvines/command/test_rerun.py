@@ -78,17 +78,6 @@ def test_what_differs_is_listed(folder, capsys):
     assert float(moved.split()[-1]) == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.slow
-def test_a_chart_again(folder, capsys):
-    assert not call("chart", "s.toml", "-q")
-    assert not call("rerun", "s-chart.vines", "-q")
-    assert "no differences" in capsys.readouterr().out
-    assert not call(
-        "chart", "s.vines", "--over", "friction", "--within", "0.45", "0.5", "-q", "-o", "c.vines"
-    )
-    assert not call("rerun", "c.vines", "-q")
-
-
 def test_files_without_a_study_and_studies_with_code_are_refused(folder, capsys):
     save(fakes.pitchfork_graph(), "python.vines")
     assert call("rerun", "python.vines") == 1

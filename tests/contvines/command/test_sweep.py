@@ -212,34 +212,3 @@ def test_another_machine_beneath_is_refused_with_its_fields(run, tmp_path):
     assert "forcing" not in err and "frequency =" not in err
     path.write_text(path.read_text().replace("frequency = 1.02", "frequency = 1.01"))
     assert run("sweep", path, "--over", "a.vines", "--plot", "a.png", "-q")[0] == 0
-
-
-def test_the_amplitude_of_a_graph_in_frequency_counts(run, tmp_path):
-    """It is no field of the reduced machine: only the branches know it."""
-    text = study(REDUCED, tmp_path / "a.toml", value=0.55).read_text()
-    text = text.replace('parameter = "amplitude"', 'parameter = "frequency"').replace(
-        "within = [0.05, 2.5]", "within = [0.98, 1.02]"
-    )
-    text = text.replace("[start]", "frequency = 1.0\n[start]").replace(
-        "within = [0.2, 1.2]", "within = [0.99, 1.01]"
-    )
-    (tmp_path / "a.toml").write_text(text)
-    (tmp_path / "b.toml").write_text(text.replace("amplitude = 0.55", "amplitude = 0.5"))
-    assert run("trace", "a.toml", "-q", "-o", "a.vines")[0] == 0
-    status, _, err = run("sweep", "b.toml", "--over", "a.vines", "--plot", "b.png")
-    assert status == 1 and "amplitude = 0.55 there and 0.5 in the study" in err
-
-
-def test_a_folder_that_cannot_be_written_names_the_option(run, tmp_path, monkeypatch):
-    path = study(REDUCED, tmp_path / "a.toml")
-    plain = Path.open
-
-    def locked(self, mode="r", *rest, **more):
-        if "w" in mode and self.suffix == ".csv":
-            raise OSError(30, "Read-only file system", str(self))
-        return plain(self, mode, *rest, **more)
-
-    monkeypatch.setattr(Path, "open", locked)
-    status, _, err = run("sweep", path)
-    assert status == 1
-    assert "a-sweep.csv: cannot be written there (Read-only file system); choose another place with -o" in err

@@ -81,27 +81,6 @@ def test_a_machine_without_oscillator_is_refused(run, tmp_path):
     assert "has no oscillator" in run("transient", tmp_path / "s.toml", "--release", "1")[2]
 
 
-def test_start_up_tells_the_first_periods(run, study, tmp_path):
-    done = run("transient", study, "--start-up", "--json", "-o", tmp_path / "start.csv")
-    assert done[0] == 0, done[2]
-    told = json.loads(done[1])
-    rows = np.genfromtxt(tmp_path / "start.csv", delimiter=",", skip_header=1)
-    assert told["peak"] == pytest.approx(np.abs(rows[:, 1]).max())
-    assert told["bare_peak"] == pytest.approx(np.abs(rows[:, 3]).max())
-    assert told["worst_relative"] == pytest.approx(np.abs(rows[:, 2]).max())
-    assert told["bare_settled"] > 0.0
-
-
-def test_energy_taken_in_a_given_time(run, study):
-    """As long as the pumping time it is the absorber's share of nine tenths."""
-    whole = json.loads(run("transient", study, "--release", "12 mm", "--json")[1])
-    told = json.loads(
-        run("transient", study, "--release", "12 mm", "--time", f"{whole['pumping_time']!r} s", "--json")[1]
-    )
-    share = 0.9 * (whole["impact_share"] + whole["friction_share"])
-    assert told["taken_share"] == pytest.approx(share, rel=0.05)  # between two periods
-
-
 def test_transients_of_pages(run, tmp_path):
     (tmp_path / "two.toml").write_text(
         '[model]\nname = "coupled_two"\n[start]\nfrequency = 8.0\n[continue]\nparameter = "frequency"\nwithin = [7.6, 8.4]\n'
@@ -136,23 +115,3 @@ def test_transients_of_pages(run, tmp_path):
         )[1]
     )
     assert free["largest_q"] == pytest.approx(20.0) and 0.0 < free["taken_share"] < 1.0
-
-
-@pytest.mark.parametrize(
-    ("options", "says"),
-    [
-        (["--release", "5 mm"], "is no state with a value"),
-        (["--release", "q = 5"], "q = '5' has no unit; \"1 mm\" would do"),
-        (["--start-up", "--from", "4 Hz"], "go together"),
-        (["--start-up", "--from", "4", "--over", "3 s"], "has no unit"),
-        (["--start-up", "--from", "4 Hz", "--over", "-3 s"], "give a time above 0"),
-        (["--start-up", "--from", "-4 Hz", "--over", "3 s"], "give a frequency of 0 or above"),
-        (["--record", "x.csv"], "part of the equations"),
-    ],
-)
-def test_bad_transients_of_pages(run, tmp_path, options, says):
-    (tmp_path / "two.toml").write_text(
-        '[model]\nname = "coupled_two"\n[start]\nfrequency = 8.0\n[continue]\nparameter = "frequency"\nwithin = [7.6, 8.4]\n'
-    )
-    done = run("transient", tmp_path / "two.toml", *options)
-    assert done[0] and says in done[2], done[2]

@@ -7,8 +7,6 @@ import pytest
 
 import contvines as cv
 from contvines.command.cli import app
-from contvines.continuation.settings import Settings
-from contvines.journal import MemoryJournal
 
 
 def cubic(u, p):
@@ -50,23 +48,6 @@ def test_the_wedge_of_the_cusp_is_a_region_of_its_own(chart):
         assert all(inside) if region.words == ["2 x equilibrium"] else not any(inside)
 
 
-def test_what_no_locus_shows_is_seen_as_a_disagreement():
-    """u' = u (p - u^2) of which only a fold elsewhere has a locus: on one side of p = 0 there is one equilibrium, on the other there are two."""
-    from contvines.loci.charting_run import Charting
-    from contvines.loci.regions import divide
-
-    problem = cv.AlgebraicProblem(
-        lambda u, p: u * (p.p - u**2), [0.0], {"p": -1.0, "q": 0.0}, spectrum="flow"
-    )
-    graph = cv.diagram(problem, within=(-1.0, 0.6), depth=1)
-    run = Charting(graph, "q", (-1.0, 1.0), (-1.0, 0.6), False, Settings.of(None), None, None)
-    run.divide()  # no locus has been traced
-    (region,) = run.chart.regions
-    for place, words in [(region.at, region.words), *region.others]:
-        assert words == (["2 x equilibrium"] if place[0] > 0.0 else ["equilibrium"])
-    assert region.others and len(divide([], run.chart.within)[0].elsewhere) == 4
-
-
 def test_json_is_the_documented_one(chart):
     data = json.loads(json.dumps(chart.to_dict()))
     assert data["parameters"] == ["a", "b"]
@@ -83,50 +64,6 @@ def test_a_chart_is_kept_in_a_file(chart, tmp_path):
     other = cv.load(tmp_path / "cusp.vines")
     assert json.dumps(other.to_dict()) == json.dumps(chart.to_dict())
     assert str(other) == str(chart)
-
-
-@pytest.mark.slow
-def test_a_killed_chart_goes_on_where_it_stopped(graph, chart):
-    class Stop(Exception):
-        pass
-
-    def stop(progress):
-        if progress.loci:
-            raise Stop
-
-    journal = MemoryJournal()
-    with pytest.raises(Stop):
-        cv.chart(graph, over="b", within=(-0.5, 1.5), journal=journal, progress=stop)
-    assert journal.entries
-    recorded = set(journal.entries)
-    again = cv.chart(graph, over="b", within=(-0.5, 1.5), journal=journal)
-    assert recorded <= set(journal.entries)
-    assert np.allclose(
-        next(iter(again.loci.values())).values, next(iter(chart.loci.values())).values, atol=1e-10
-    )
-
-
-@pytest.mark.slow
-def test_regions_and_crossings_are_counted_behind_the_loci(graph):
-    """Each piece is told of once, with its number of so many; from the second one on with the time that those left will take."""
-    told = []
-    made = cv.chart(graph, over="b", within=(-0.5, 1.5), progress=told.append)
-    regions = [p for p in told if p.message.startswith("region ")]
-    assert len(regions) == len(made.regions)
-    assert all(p.done == p.known for p in regions)
-    assert all(p.seconds > 0.0 for p in regions[1:])
-    crossings = [p.message for p in told if p.message.startswith("crossing ")]
-    assert len(crossings) >= len(made.crossings)
-    assert crossings == [f"crossing {i + 1} of {len(crossings)}" for i in range(len(crossings))]
-
-
-def test_a_chart_is_drawn(chart, tmp_path):
-    import matplotlib
-
-    matplotlib.use("Agg")
-    figure = chart.plot()
-    figure.savefig(tmp_path / "cusp.png")
-    assert figure.axes[0].get_xlabel() == "a"
 
 
 @pytest.mark.slow

@@ -11,7 +11,6 @@ import contvines as cv
 from contvines.loci.codimension_two import find
 from contvines.loci.coefficients_at import coefficients
 from tests.contvines.bifurcation.normal_forms.test_critical import Bend, polar
-from tests.contvines.loci.systems import R, generalized_henon
 
 
 def chart_of(problem, over, within, second, span, bounds=None):
@@ -93,76 +92,6 @@ def test_fitzhugh_nagumo():
 
 
 @pytest.mark.slow
-def test_predator_and_prey_in_discrete_time():
-    """x' = r x (1 - x) - x y, y' = d x y (Danca, Codreanu and Bako 1997): trace 2 - r/d, determinant r - 2 r/d at x = 1/d.
-
-    Neimark-Sacker r = d/(d - 2), period doubling r = 3 d/(3 - d), exchange with y = 0 at r = d/(d - 1); resonances 1:4 (5, 5/2), 1:3 (7, 7/3), 1:2 (9, 9/4).
-    """
-    problem = cv.MapProblem(
-        lambda x, p: np.array([p.r * x[0] * (1 - x[0]) - x[0] * x[1], p.d * x[0] * x[1]]),
-        [1 / 2.4, 4 * (1 - 1 / 2.4) - 1],
-        {"r": 4.0, "d": 2.4},
-        parameter="r",
-    )
-    graph = cv.diagram(problem, over="r", within=(1.2, 14.0), depth=0)
-    closed = {
-        "neimark-sacker": lambda d: d / (d - 2),
-        "period-doubling": lambda d: 3 * d / (3 - d),
-        "branch-point": lambda d: d / (d - 1),
-    }
-    found = []
-    for kind, form in closed.items():
-        (point,) = graph.of_kind(kind)
-        locus = cv.locus(point, over="d", within=(2.2, 2.8), bounds=(1.1, 60.0))
-        for r, d in locus.values:
-            assert r == pytest.approx(form(d), rel=1e-11)
-        found += [(kind, p.kind, *p.value) for _, p in find(locus)]
-    pair = sorted(p[1:] for p in found if p[0] == "neimark-sacker")
-    exact = [
-        ("resonance-1-2", 9.0, 9 / 4),
-        ("resonance-1-3", 7.0, 7 / 3),
-        ("resonance-1-4", 5.0, 2.5),
-    ]
-    assert [p[0] for p in pair] == [e[0] for e in exact]
-    for p, e in zip(pair, exact):
-        assert p[1:] == pytest.approx(e[1:], abs=1e-9)
-    assert [p[1] for p in found if p[0] == "period-doubling"] == ["resonance-1-2"]
-    assert not [p for p in found if p[0] == "branch-point"]
-
-
-@pytest.mark.slow
-def test_zero_hopf_of_roessler():
-    """x' = -y - z, y' = x + a y, z' = b x - c z + x z at rest, a = 0.4: l^3 + (c - a) l^2 + (1 + b - a c) l + c - a b.
-
-    Exchange of equilibria c = a b; Hopf (c - a) (1 + b - a c) = c - a b; both at b = 1, c = a.
-    """
-    a = 0.4
-    problem = cv.AlgebraicProblem(
-        lambda u, p: np.array([-u[1] - u[2], u[0] + a * u[1], p.b * u[0] - p.c * u[2] + u[0] * u[2]]),
-        [0.0, 0.0, 0.0],
-        {"b": 0.8, "c": 0.8},
-        parameter="c",
-        spectrum="flow",
-    )
-    graph = cv.diagram(problem, over="c", within=(0.1, 2.2), depth=0)
-    closed = {
-        "hopf": lambda c, b: (c - a) * (1 + b - a * c) - c + a * b,
-        "branch-point": lambda c, b: c - a * b,
-    }
-    for kind, form in closed.items():
-        for point in graph.of_kind(kind):
-            locus = cv.locus(point, over="b", within=(0.5, 1.3), bounds=(0.05, 3.0))
-            assert len(locus) > 4
-            assert [form(c, b) for c, b in locus.values] == pytest.approx([0.0] * len(locus), abs=1e-11)
-            points = [(p.kind, *p.value) for _, p in find(locus)]
-            inside = bool(min(abs(locus.values[:, 0] - a)) < 0.2)
-            assert [p[0] for p in points if p[0] == "zero-hopf"] == ["zero-hopf"] * inside
-            for p in points:
-                if p[0] == "zero-hopf":
-                    assert p[1:] == pytest.approx((a, 1.0), abs=1e-9)
-
-
-@pytest.mark.slow
 def test_double_hopf_of_two_oscillators():
     """Two rotations, sheared: growth p + q - 1 and p - 2 q + 1/2, so both vanish at p = q = 1/2; cubic damping with known ratios."""
     rng = np.random.default_rng(4)
@@ -235,24 +164,6 @@ def test_chenciner_at_a_known_place():
     assert [kind for kind, *_ in found] == ["chenciner"]
     assert found[0][1:3] == pytest.approx((0.0, 0.0), abs=1e-9)
     assert found[0][3]["d2"] == pytest.approx(-4.0, abs=1e-7)
-
-
-def test_fold_flip_and_double_multiplier_of_the_generalized_henon_map():
-    """Trace r x - 2 x, determinant be - r x: flip be = 2 x - 1; multipliers 1 and -1 at x = 0, be = -1, al = 0; -1 twice at x = 2 / (2 - r)."""
-    x = 0.4
-    be = 2 * x - 1
-    problem = generalized_henon([x, x], x + be * x + x * x - R * x * x, be + 0.2)
-    problem = problem.against("al")
-    graph = cv.diagram(problem, over="al", within=(-0.2, 1.5), depth=0)
-    locus = cv.locus(graph.of_kind("period-doubling")[0], over="be", within=(-1.6, 1.2), bounds=(-2.0, 3.0))
-    for (al, be), u in zip(locus.values, locus.branch.points):
-        assert be == pytest.approx(2 * u[0] - 1, abs=1e-11)
-        assert al == pytest.approx(u[0] * (1 + be) + u[0] ** 2 * (1 - R), abs=1e-11)
-    found = {point.kind: point.value for _, point in find(locus)}
-    y = 2 / (2 - R)
-    assert found["fold-flip"] == pytest.approx((0.0, -1.0), abs=1e-9)
-    exact = (y * 2 * y + y * y * (1 - R), 2 * y - 1)
-    assert found["resonance-1-2"] == pytest.approx(exact, abs=1e-9)
 
 
 def mixed(g, n, seed):

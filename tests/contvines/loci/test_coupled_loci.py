@@ -6,7 +6,6 @@ import pytest
 
 import contvines as cv
 from contvines.loci.codimension_two import find
-from contvines.loci.known_motions import KnownMotions, together
 from orbits import Coupled
 
 pytestmark = pytest.mark.slow
@@ -149,39 +148,6 @@ def test_strong_resonance_and_fold_with_a_pair_in_many_digits(modulated):
         assert (float(exact[4]), float(exact[5])) == pytest.approx(point.value, abs=1e-9)
 
 
-def test_a_border_with_singular_equations_is_followed_on_its_other_side(graph):
-    # where the stick of LsRs shrinks to nothing its equations are singular; the motion LR behind it grazes zero speed there
-    sticks = [s for s in graph.of_kind("stick") if str(s.problem.word) == "LsRs" and s.margins < 1e-9]
-    (graze,) = graph.of_kind("velocity-graze")
-    curve = cv.locus(graze, over="forcing", within=(2.2, 3.0), bounds=BOUNDS)
-    met = 0
-    for stick in sticks:
-        locus = cv.locus(stick, over="forcing", within=(2.2, 3.0), bounds=BOUNDS)
-        if locus.kind != "velocity-graze":
-            continue
-        assert (
-            np.abs(curve.at(2.47) - stick.value).min() < 1e-9
-            or np.abs(locus.at(2.47) - stick.value).min() < 1e-9
-        )
-        assert not [point.kind for _, point in find(locus)]
-        met += 1
-    assert met >= 1
-
-
-def test_a_region_names_the_stable_motion_that_simulation_misses(graph):
-    """At high forcing all simulated starts only slide, although the motion with two impacts is stable: it is carried there by continuation."""
-    motions = KnownMotions(graph.branches.values(), [], "forcing", (BOUNDS, (0.5, 6.0)))
-    place = (1.038, 5.3)
-    (found,) = motions.at(place)
-    assert (found["word"], found["periods"], found["kind"]) == ("LR", 1, "periodic")
-    orbit = Coupled(forcing=place[1], **MACHINE).orbit("LR", frequency=place[0])
-    assert orbit.stable and orbit.real and orbit.replay() < 1e-8
-    problem = next(iter(graph.branches.values())).problem.against("frequency", {"forcing": place[1]})
-    both = together(problem.witness(place[0]), [found])
-    assert [m["word"] for m in both].count("LR") == 1
-    assert motions.at((1.055, 1.6)) == []  # outside of its fold there is no such motion
-
-
 def test_touched_borders_open_as_their_coefficients_say(graph):
     (graze,) = graph.of_kind("velocity-graze")
     locus = cv.locus(graze, over="forcing", within=(1.9, 3.0), bounds=BOUNDS)
@@ -216,13 +182,5 @@ def test_the_border_of_the_stuck_absorber_has_a_locus_in_closed_form(slipping):
     assert forcing_that_moves_it(point.value) == pytest.approx(2.47, rel=1e-9)
     locus = cv.locus(point, over="forcing", within=(1.0, 4.0), bounds=(1.02, 1.2))
     assert len(locus) > 5 and locus.real.all()
-    for frequency, forcing in locus.values:
-        assert forcing == pytest.approx(forcing_that_moves_it(frequency), rel=1e-9)
-
-
-def test_a_chart_with_a_border_of_the_stuck_absorber(slipping):
-    chart = cv.chart(slipping, over="forcing", within=(2.4, 2.6), regions=False)
-    (locus,) = (one for one in chart.loci.values() if one.kind == "stick")
-    assert locus.values[:, 1].min() == pytest.approx(2.4) and locus.values[:, 1].max() == pytest.approx(2.6)
     for frequency, forcing in locus.values:
         assert forcing == pytest.approx(forcing_that_moves_it(frequency), rel=1e-9)

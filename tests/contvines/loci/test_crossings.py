@@ -1,12 +1,9 @@
 """Crossings of loci: of polygons, and of two folds of unconnected cells in closed form."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.loci.crossings import crossings
 
 pytestmark = pytest.mark.slow
 
@@ -26,26 +23,3 @@ def test_two_folds_of_two_cells_cross_in_closed_form():
     values = [(c["value"]["a"], c["value"]["b"]) for c in chart.crossings]
     assert any(np.allclose(value, (second, b), atol=1e-9) for value in values), values
     assert chart.to_dict()["crossings"] == chart.crossings
-
-
-@pytest.mark.parametrize(("first", "second", "count"), [(0, 0, 1), (1, 0, 0), (0, 1, 0)])
-def test_crossings_of_real_parts_alone_count(first, second, count):
-    """Two straight loci that cross in the middle of their second segments; on either one the part from there on may be virtual."""
-    real = [np.array([True, True, not virtual]) for virtual in (first, second)]
-    lines = [np.array([[0.0, 0.0], [0.4, 0.4], [0.8, 0.8]]), np.array([[1.2, 0.0], [0.8, 0.4], [0.4, 0.8]])]
-    loci = {
-        name: SimpleNamespace(
-            values=values,
-            real=flags,
-            problem=None,
-            within=(0.0, 1.2),
-            branch=SimpleNamespace(values=values[:, 1]),
-        )
-        for name, values, flags in zip(("A", "B"), lines, real)
-    }
-    chart = SimpleNamespace(within=((0.0, 1.2), (0.0, 1.2)), loci=loci, points={}, parameters=("p", "q"))
-    found = crossings(chart)
-    assert len(found) == count
-    for crossing in found:
-        assert crossing["on"] == ["A", "B"]
-        assert crossing["value"] == pytest.approx({"p": 0.6, "q": 0.6})

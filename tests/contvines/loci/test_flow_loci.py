@@ -109,46 +109,10 @@ def test_homoclinic_orbits_of_a_long_period_come_from_a_bogdanov_takens_point():
         cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2), period=50.0)
 
 
-def test_period_doublings_of_a_reversible_flow_meet_at_no_damping():
-    def lure(x, p):  # no damping: volume is kept, and time can be reversed
-        return [x[1], x[2], -p.alpha * x[2] - p.beta * x[1] - x[0] + x[0] ** 2]
-
-    flow = cv.FlowProblem(lure, [0.0, 0.0, 0.0], {"alpha": 1.5, "beta": 1.0})
-    graph = cv.diagram(flow, over="alpha", within=(0.6, 1.6), depth=1)
-    locus = cv.locus(graph["PD1"], over="beta", within=(0.9, 2.0), bounds=(-0.05, 2.0))
-    (point,) = [point for point in locus.points.values() if point.kind == "resonance-1-2"]
-    assert point.value[0] == pytest.approx(0.0, abs=1e-8)
-    orbit = point.orbit
-    found = orbit.simulated_multipliers()
-    assert np.abs(found + 1.0).min() < 1e-3  # double ones: square roots of the error
-    assert np.prod(found).real == pytest.approx(1.0, abs=1e-7)
-
-
 def spiral(z, growth, turn):
     """z' = (growth + i turn) z - z |z|^2."""
     inward = growth - z[0] ** 2 - z[1] ** 2
     return [inward * z[0] - turn * z[1], turn * z[0] + inward * z[1]]
-
-
-def fold_and_spiral(x, p):
-    """With s = r^2 - 1, r' = r (a - s^2): cycles s = +-sqrt a, beside which a pair of multipliers has modulus one where s = -b."""
-    s = x[0] ** 2 + x[1] ** 2 - 1.0
-    growth = p.a - s * s
-    return [growth * x[0] - x[1], x[0] + growth * x[1], *spiral(x[2:], p.b + s, 0.7)]
-
-
-def test_neimark_sacker_points_touch_the_folds_of_cycles():
-    flow = cv.FlowProblem(fold_and_spiral, [1.0, 0, 0, 0], {"a": 0.25, "b": -0.2})
-    t = np.linspace(0.0, 2.0 * np.pi, 101)
-    circle = np.sqrt(1.5) * np.column_stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t])
-    graph = cv.diagram(flow.cycle(t, circle), over="a", within=(-0.5, 0.5), depth=0)
-    assert graph["NS1"].value == pytest.approx(0.04, abs=1e-10)
-    locus = cv.locus(graph["NS1"], over="b", within=(-0.3, 0.1))
-    p, q = locus.values.T
-    assert np.abs(p - q**2).max() < 1e-10
-    (point,) = locus.points.values()
-    assert point.kind == "fold-neimark-sacker"
-    assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def twisted(x, z, growth, other):

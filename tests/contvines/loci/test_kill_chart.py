@@ -35,22 +35,6 @@ def diagram(tmp_path_factory):
     return path
 
 
-def same(one, other):
-    """The same entries, numbers up to rounding: the borders of the bordered systems are found anew where work goes on."""
-    if isinstance(one, dict):
-        assert one.keys() == other.keys()
-        for key in one:
-            same(one[key], other[key])
-    elif isinstance(one, list):
-        assert len(one) == len(other)
-        for a, b in zip(one, other):
-            same(a, b)
-    elif isinstance(one, float):
-        assert one == pytest.approx(other, abs=1e-11)
-    else:
-        assert one == other
-
-
 @pytest.mark.parametrize(
     "changed, said",
     [

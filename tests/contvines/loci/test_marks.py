@@ -30,14 +30,6 @@ def test_strong_resonances_of_the_henon_map(neimark_sacker):
         assert points[label].on == [neimark_sacker.label]
 
 
-def test_marks_stand_at_their_places(neimark_sacker):
-    values = neimark_sacker.values[:, 1]
-    assert [label for _, label in neimark_sacker.marks] == list(neimark_sacker.points)
-    for index, label in neimark_sacker.marks:
-        ends = values[max(index - 1, 0) : index + 2]
-        assert ends.min() - 1e-6 <= neimark_sacker.points[label].value[1] <= ends.max() + 1e-6
-
-
 def test_a_chart_and_its_loci_hold_the_same_points(tmp_path):
     problem = cv.MapProblem(henon, [0.6, 0.6], {"a": 1.0, "b": 0.5}, parameter="b")
     graph = cv.diagram(problem, over="b", within=(0.5, 1.5), depth=0)
@@ -47,16 +39,6 @@ def test_a_chart_and_its_loci_hold_the_same_points(tmp_path):
         held = {label: point for locus in one.loci.values() for label, point in locus.points.items()}
         assert held and held == one.points
         assert one.points["R31"].value == pytest.approx((1.0, 1.25), abs=1e-8)
-
-
-def test_a_locus_across_the_second_parameter_is_charted_once():
-    # the Neimark-Sacker line b = 1 is met at both of its ends: at (a, b) = (-1, 1) on the fold, at (3, 1) on the doubling
-    problem = cv.MapProblem(henon, [0.2, 0.2], {"a": 0.3, "b": 0.5}, parameter="a")
-    graph = cv.diagram(problem, over="a", within=(-1.5, 3.5), depth=0)
-    chart = cv.chart(graph, over="b", within=(-1.5, 1.5), depth=1, regions=False)
-    (line,) = [locus for locus in chart.loci.values() if locus.kind == "neimark-sacker"]
-    ends = sorted(chart.points[label].value[0] for _, label in line.marks)
-    assert ends == pytest.approx([-1.0, 0.0, 1.25, 3.0], abs=1e-8)
 
 
 def test_branches_that_cross_do_not_fold_there():

@@ -5,7 +5,6 @@ import pytest
 from scipy.optimize import fsolve
 
 import contvines as cv
-from orbits import Absorber
 
 
 def predators(u, p):
@@ -33,23 +32,3 @@ def test_a_zero_trace_on_a_locus_of_folds_is_a_bogdanov_takens_point():
     assert found.points["ZT1"].value == pytest.approx((alpha, delta), rel=1e-10)
     assert found.points["BT1"].value == pytest.approx((alpha, delta), rel=1e-10)
     assert {"ZT1", "BT1"} == set(found.points)
-
-
-def test_of_a_built_in_machine_and_a_test_that_fails():
-    graph = cv.diagram(
-        Absorber(restitution=0.8, friction=0.1, gravity=0.1).orbit("RL", amplitude=0.5),
-        over="amplitude",
-        within=(0.2, 1.0),
-        depth=0,
-    )
-    half = cv.Kind("half", "HA", test=lambda point: point.parameters["restitution"] - 0.75)
-    broken = cv.Kind("broken", "BR", test=lambda point: point.nothing)
-    point = graph["SB1"]
-    found = cv.locus(point, over="restitution", within=(0.7, 0.8), kinds=[*cv.KINDS, half])
-    (own,) = (p for p in found.points.values() if p.kind == "half")
-    assert own.value[1] == pytest.approx(0.75, abs=1e-12)
-    assert own.value[0] == pytest.approx(found.at(0.75)[0], rel=1e-10)
-    with pytest.raises(ValueError, match="a list is asked for"):
-        cv.locus(point, over="restitution", within=(0.7, 0.8), kinds=half)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="kind broken: its test fails at amplitude"):
-        _ = cv.locus(point, over="restitution", within=(0.7, 0.8), kinds=[*cv.KINDS, broken]).points

@@ -1,6 +1,5 @@
 """Maps and flows of the literature in two parameters, against closed forms and solves of their own in many digits."""
 
-import mpmath as mp
 import numpy as np
 import pytest
 
@@ -8,41 +7,6 @@ import contvines as cv
 from contvines.loci.codimension_two import find
 
 pytestmark = pytest.mark.slow
-
-
-def test_adaptive_control_map_is_its_closed_forms():
-    # Golden and Ydstie (Syst. Control Lett. 11 (1988) 413); Frouzakis, Adomaitis and Kevrekidis (Int. J. Bifurc. Chaos 1 (1991) 83)
-    c = 0.1
-
-    def control(x, p):
-        y = p.b * x[0] + p.k + x[1] * x[2]
-        return np.array([x[1], y, x[2] - p.k * x[1] / (c + x[1] ** 2) * (y - 1)])
-
-    # fixed point (1, 1, 1 - b - k); characteristic polynomial m^3 + a2 m^2 + a1 m + a0 there
-    def polynomial(b, k):
-        s, z = k / (1 + c), 1 - b - k
-        J = mp.matrix([[0, 1, 0], [b, z, 1], [-s * b, -s * z, 1 - s]])
-        a2 = -(J[0, 0] + J[1, 1] + J[2, 2])
-        a1 = sum(J[i, i] * J[j, j] - J[i, j] * J[j, i] for i, j in ((0, 1), (0, 2), (1, 2)))
-        return a2, a1, -mp.det(J)
-
-    def flip(b, k):  # det(J + 1) = 4 - 4 b - 2 k - k / (1 + c)
-        return 4 - 4 * b - 2 * k - k / (1 + c)
-
-    def pair(b, k):  # a pair with product one: m^3 + a2 m^2 + a1 m + a0 = (m^2 + t m + 1)(m + a0)
-        a2, a1, a0 = polynomial(b, k)
-        return a1 - 1 - a0 * (a2 - a0)
-
-    b0, k0 = -0.5, 0.1
-    problem = cv.MapProblem(control, [1.0, 1.0, 1 - b0 - k0], {"b": b0, "k": k0}, parameter="b")
-    graph = cv.diagram(problem, over="b", within=(-1.2, 0.98), depth=0)
-    assert graph.of_kind("neimark-sacker") and graph.of_kind("period-doubling")
-    for kind, condition in (("period-doubling", flip), ("neimark-sacker", pair)):
-        locus = cv.locus(graph.of_kind(kind)[0], over="k", within=(0.02, 0.4), bounds=(-1.2, 0.995))
-        assert len(locus) > 5
-        for b, k in locus.values:
-            exact = mp.findroot(lambda x, k=k, condition=condition: condition(x, k), b)
-            assert float(exact) == pytest.approx(b, abs=1e-10)
 
 
 def test_ricker_with_a_delay():

@@ -71,21 +71,6 @@ def test_a_map_in_other_units(plain, U, P, Q):
             assert there[name] * U**power == pytest.approx(own[name], rel=1e-6)
 
 
-@settings(max_examples=1, deadline=None, derandomize=True)
-@given(st.tuples(powers, powers), powers, powers, powers)
-@example((1e-6, 1e-6), 1e6, 1e-6, 1e6)
-@example((1e4, 1e-4), 1e-6, 1e6, 1e-6)
-def test_a_flow_in_other_units(plain, U, P, Q, T):
-    _, (kinds, points) = plain
-    assert [kind for kind, *_ in points].count("bogdanov-takens") == 2
-    there, found = predator(U, P, Q, T)
-    assert there == kinds and [kind for kind, *_ in found] == [kind for kind, *_ in points]
-    for (_, de, al, own), (_, p, q, other) in zip(points, found):
-        assert (p, q) == pytest.approx((de, al), abs=1e-9)
-        # both grow like the length of the unit vector; a like the square of the rates, b like a rate
-        assert other["b"] / other["a"] * T == pytest.approx(own["b"] / own["a"], rel=1e-6)
-
-
 @pytest.mark.parametrize("b", [0.02, 1000.0])
 def test_a_machine_in_millimetres(b):
     """Amplitude against half-width, both in mm; the closed form knows ratios only."""

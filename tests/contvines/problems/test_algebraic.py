@@ -30,15 +30,6 @@ def test_pitchfork():
     assert [(s.point, s.source, s.target) for s in graph.switches] == [("SB1", "B1", "B2")]
 
 
-def test_subcritical_pitchfork():
-    """x' = p x + x^3: subcritical (Strogatz, section 3.4)."""
-    graph = cv.diagram(
-        cv.AlgebraicProblem(lambda x, p: p * x + x**3, [0.0], -0.5, spectrum="flow"), within=(-1.0, 1.0)
-    )
-    assert graph["BP1"].criticality == "subcritical"
-    assert graph["BP1"].coefficient == pytest.approx(1.0, abs=1e-8)
-
-
 @settings(max_examples=15, deadline=None)
 @given(st.floats(1e-4, 0.05), st.sampled_from([-1.0, 1.0]))
 def test_perturbed_twin_of_the_pitchfork(size, sign):
@@ -55,44 +46,6 @@ def test_perturbed_twin_of_the_pitchfork(size, sign):
     assert not of_kind(smooth, "fold") and smooth["B1"].stable.all()
 
 
-def test_pitchfork_met_along_the_side_branch():
-    """The branch x = sqrt(p) ends at the pitchfork; the trivial branch is found from there and owns the point."""
-    for spectrum in ("flow", "none"):
-        problem = cv.AlgebraicProblem(
-            lambda x, p: p * x - x**3, [0.8], 0.64, spectrum=spectrum, mirror=lambda x: -x
-        )
-        graph = cv.diagram(problem, within=(-1.0, 1.0))
-        assert len(graph) == 2 and list(graph.special).count("SB1") == 1
-        assert abs(graph["SB1"].value) < 1e-14
-        assert np.abs(graph["B2"].points).max() < 1e-12
-        assert "SB1" in graph["B1"].ended[0] and graph["SB1"].branch == "B2"
-
-
-def test_cusp():
-    """p + x - x^3 = 0 folds at p = +-2/(3 sqrt 3)."""
-    problem = cv.AlgebraicProblem(lambda x, p: p + x - x**3, [-1.5], -1.0, spectrum="flow")
-    graph = cv.diagram(problem, within=(-1.5, 1.5))
-    exact = 2.0 / (3.0 * np.sqrt(3.0))
-    assert of_kind(graph, "fold") == pytest.approx([-exact, exact], abs=1e-14)
-    assert graph["B1"].stable_intervals() == [
-        (-1.5, pytest.approx(exact)),
-        (pytest.approx(-exact), 1.5),
-    ]
-
-
-def test_transcritical():
-    """x' = p x - x^2: x = 0 and x = p exchange stability at p = 0 (Strogatz, section 3.2)."""
-    for spectrum in ("flow", "none"):
-        problem = cv.AlgebraicProblem(lambda x, p: p * x - x**2, [0.0], -0.5, spectrum=spectrum)
-        graph = cv.diagram(problem, within=(-1.0, 1.0))
-        assert len(graph) == 2 and of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-14)
-        np.testing.assert_allclose(graph["B2"].points[:, 0], graph["B2"].values, atol=1e-13)
-        assert graph["B2"].range == (-1.0, 1.0)
-        if spectrum == "flow":
-            np.testing.assert_allclose(graph["B2"].stable_intervals(), [(0.0, 1.0)], atol=1e-14)
-            np.testing.assert_allclose(graph["B1"].stable_intervals(), [(-1.0, 0.0)], atol=1e-14)
-
-
 @settings(max_examples=15, deadline=None)
 @given(st.floats(0.1, 0.9), st.floats(-0.5, 0.5), st.floats(0.2, 5.0))
 def test_isola(radius, centre, stretch):
@@ -106,21 +59,6 @@ def test_isola(radius, centre, stretch):
     assert branch.values[0] == branch.values[-1]
     assert of_kind(graph, "fold") == pytest.approx([centre - radius, centre + radius], abs=1e-12)
     assert not of_kind(graph, "end")
-
-
-@pytest.mark.parametrize("a", [0.7, 1.0, 1.6])
-def test_brusselator(a):
-    """Hopf at B = 1 + A^2 with frequency A (Strogatz, exercise 8.3.1; Kuznetsov, example 3.1)."""
-
-    def brusselator(u, b):
-        x, y = u
-        return np.array([a - (b + 1) * x + x * x * y, b * x - x * x * y])
-
-    graph = cv.diagram(
-        cv.AlgebraicProblem(brusselator, [a, 1.0 / a], 1.0, parameter="B", spectrum="flow"), within=(0.5, 5.0)
-    )
-    assert of_kind(graph, "hopf") == pytest.approx([1.0 + a * a], abs=1e-12)
-    assert np.abs(graph["HB1"].multipliers.imag) == pytest.approx([a, a], abs=1e-10)
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-7])

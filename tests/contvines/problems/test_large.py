@@ -71,33 +71,6 @@ def test_the_fold_of_bratu_on_a_line():
     assert point.value == pytest.approx(float(exact), rel=1e-11)
 
 
-def test_two_dimensional_bratu():
-    """900 unknowns; the fold again by Newton's method for F = 0, F_u v = 0, v.v = 1, starting 1e-3 away."""
-    n = 30
-    F, jacobian, derivative = bratu_2d(n)
-    N = n * n
-    problem = cv.AlgebraicProblem(F, np.zeros(N), 0.0, jacobian=jacobian, derivative=derivative)
-    graph = cv.diagram(problem, within=(0.0, 8.0), bounds={f"u{N // 2 + n // 2}": (None, 2.0)})
-    (point,) = graph.of_kind("fold")
-    u, p = point.u * 1.001, point.value * 0.999
-    v = splu(jacobian(u, p)).solve(np.ones(N))
-    v /= np.linalg.norm(v)
-    for _ in range(8):
-        J, e = jacobian(u, p), np.exp(u)
-        whole = sp.bmat(
-            [
-                [J, None, e[:, None]],
-                [sp.diags_array(p * e * v), J, (e * v)[:, None]],
-                [None, v[None, :], None],
-            ],
-            format="csc",
-        )
-        step = splu(whole).solve(-np.concatenate([F(u, p), J @ v, [0.5 * (v @ v - 1.0)]]))
-        u, v, p = u + step[:N], v + step[N : 2 * N], p + step[-1]
-    assert point.value == pytest.approx(p, rel=1e-12)
-    assert not graph.of_kind("branch-point")
-
-
 @pytest.mark.parametrize("complex_step", [True, False])
 def test_coloured_differences(complex_step):
     """A chain of 60 without a Jacobian: one call (or six) for each of three colours, and the fold of the dense problem."""
@@ -157,25 +130,6 @@ def matrix_free(matrix_at, n):
         return LinearOperator((n, n), matvec=lambda x: matrix @ np.ravel(x), dtype=float)
 
     return operator
-
-
-def test_branch_points_without_a_matrix():
-    """L u + p u - u^3 = 0 with L a second difference of no values at the walls: p = 4 (n + 1)^2 sin(k pi / 2 (n + 1))^2 / pi^2."""
-    n = 30
-    line = (second_difference(n) * (n + 1) ** 2 / np.pi**2).tocsc()
-    nearly = splu(line)
-    problem = cv.AlgebraicProblem(
-        lambda u, p: line @ u + p * u - u**3,
-        np.zeros(n),
-        0.5,
-        jacobian=matrix_free(lambda u, p: line + sp.diags_array(p - 3.0 * u**2), n),
-        derivative=lambda u, p: np.array(u),
-        preconditioner=lambda u, p: LinearOperator((n, n), matvec=nearly.solve, dtype=float),
-    )
-    graph = cv.diagram(problem, within=(0.5, 5.0), depth=1)
-    exact = [4.0 * (n + 1) ** 2 * np.sin(0.5 * k * np.pi / (n + 1)) ** 2 / np.pi**2 for k in (1, 2)]
-    assert [point.value for point in graph.of_kind("branch-point")] == pytest.approx(exact, rel=1e-10)
-    assert len(graph) == 3
 
 
 @pytest.mark.parametrize("spectrum", ["none", "flow"])

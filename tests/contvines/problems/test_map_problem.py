@@ -43,11 +43,6 @@ def test_logistic_two_cycle_is_the_closed_form(cascade):
     np.testing.assert_allclose(np.sort(branch.points, axis=1)[2:], exact[2:], atol=1e-12)
 
 
-def test_flip_coefficient_of_the_logistic_map(cascade):
-    """c = f_xx^2/4 + f_xxx/6 = 36/4 at r = 3 (Kuznetsov, Elements of Applied Bifurcation Theory, theorem 4.3)."""
-    assert cascade["PD1"].coefficient == pytest.approx(9.0, rel=1e-6)
-
-
 def test_henon_cascade():
     """b = 0.3: fold -(1-b)^2/4, doublings 3(1-b)^2/4 and (1-b)^2 + (1+b)^2/4 exactly; then 1.02585541, 1.05112566
     (Derrida, Gervois, Pomeau, J. Phys. A 12 (1979) 269)."""
@@ -94,15 +89,6 @@ def test_neimark_sacker_of_the_delayed_logistic_map():
     assert np.sort(np.angle(graph["NS1"].multipliers)) == pytest.approx([-np.pi / 3, np.pi / 3], abs=1e-9)
 
 
-def test_two_doublings_at_once():
-    """Two uncoupled logistic maps double at the same r: three ways to double (one, the other, both: in and out of phase)."""
-    problem = cv.MapProblem(lambda x, r: r * x * (1 - x), [0.6, 0.6], 2.5, parameter="r")
-    graph = cv.diagram(problem, within=(2.0, 3.3), depth=1)
-    assert values(graph, "period-doubling")[0] == pytest.approx(3.0, abs=1e-12)
-    assert "two multipliers" in graph["PD1"].note
-    assert len(graph) >= 4
-
-
 def test_doubled_cycle_that_falls_back_is_recognised():
     """Followed from a 2-cycle the branch ends at its birth, and the fixed points are found there."""
     start = [0.5130445, 0.7994555]
@@ -123,16 +109,6 @@ def test_a_repeated_start_is_followed_as_its_root(repeat):
     assert graph["B1"].description["cycle"] == 1 and graph["B1"].points.shape[1] == 1
     (doubling,) = graph.of_kind("period-doubling")
     assert doubling.value == pytest.approx(3.0, abs=1e-12) and not graph.of_kind("branch-point")
-
-
-def test_a_two_cycle_run_through_three_times_is_followed_as_a_two_cycle():
-    """Of the logistic map: its multiplier 4 + 2 r - r^2 passes -1 at r = 1 + sqrt(6)."""
-    r = 3.3
-    cycle = (r + 1 + np.array([1.0, -1.0]) * np.sqrt((r + 1) * (r - 3))) / (2 * r)
-    problem = cv.MapProblem(logistic, np.tile(cycle, 3), r, cycle=6, parameter="r")
-    graph = cv.diagram(problem, within=(3.1, 3.5), depth=0)
-    assert graph["B1"].description["cycle"] == 2
-    assert [p.value for p in graph.of_kind("period-doubling")] == pytest.approx([1 + np.sqrt(6)], abs=1e-12)
 
 
 def test_area_preserving_map_has_no_spurious_events():

@@ -52,21 +52,6 @@ def transcritical_slopes(x, p):
     return np.diag([p - 0.5 - 2.0 * x[0], p - 0.503 + 4.0 * x[1]])
 
 
-def square(x, p):
-    """Two pitchforks at once: the symmetry of a square."""
-    return x * (p - 0.5 - np.array([x[0] ** 2 + 0.4 * x[1] ** 2, x[1] ** 2 + 0.4 * x[0] ** 2]))
-
-
-def square_slopes(x, p):
-    a, b = x
-    return np.array(
-        [
-            [p - 0.5 - 3.0 * a**2 - 0.4 * b**2, -0.8 * a * b],
-            [-0.8 * a * b, p - 0.5 - 3.0 * b**2 - 0.4 * a**2],
-        ]
-    )
-
-
 @pytest.mark.parametrize("make", [hidden, bands])
 def test_two_branch_points_in_one_step(make):
     F, jacobian = make(transcritical, transcritical_slopes, 30)
@@ -75,14 +60,3 @@ def test_two_branch_points_in_one_step(make):
     values = sorted(point.value for point in graph.of_kind("branch-point") if point.branch == "B1")
     assert values == pytest.approx([0.5, 0.503], abs=1e-10)
     assert len(graph) == 3
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("make", [hidden, bands])
-def test_two_null_vectors_at_once(make):
-    """Eight half-branches leave: x = 0, y = 0, x = y, x = -y."""
-    F, jacobian = make(square, square_slopes, 30)
-    problem = cv.AlgebraicProblem(F, np.zeros(30), 0.0, jacobian=jacobian, scale=1.0)
-    graph = cv.diagram(problem, within=(0.0, 1.0), depth=1)
-    assert [point.value for point in graph.of_kind("branch-point")] == pytest.approx([0.5], abs=1e-8)
-    assert len(graph) == 5

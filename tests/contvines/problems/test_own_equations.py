@@ -15,16 +15,6 @@ def of_kind(graph, kind):
     return sorted(point.value for point in graph.of_kind(kind))
 
 
-@pytest.mark.parametrize(("s", "t"), [(1e3, 1.0), (1e-6, 1.0), (1e-9, 1e-9), (1e9, 1e9), (1e-9, 1e9)])
-def test_scales_of_unknowns_parameter_and_rows(s, t):
-    """p/t + u/s - (u/s)^3 folds at p = +-2 t/(3 sqrt 3), whatever the units."""
-    problem = cv.AlgebraicProblem(lambda u, p: s * (p / t + u / s - (u / s) ** 3), [-1.5 * s], -2.0 * t)
-    graph = cv.diagram(problem, within=(-2.0 * t, 2.0 * t))
-    exact = 2.0 * t / (3.0 * math.sqrt(3.0))
-    assert of_kind(graph, "fold") == pytest.approx([-exact, exact], rel=1e-13)
-    assert len(graph) == 1 and not graph.of_kind("branch-point")
-
-
 def ab(u, p):
     reaction = p * (1.0 - u[0]) * np.exp(u[1])
     return np.array([-u[0] + reaction, -3.0 * u[1] + 14.0 * reaction])
@@ -69,19 +59,6 @@ def test_steep_functions():
     # real numbers only, so differences; p + v - exp(v) with v = u/1e-3 folds at p = 1
     real = cv.AlgebraicProblem(lambda u, p: [p + u[0] / 1e-3 - math.exp(u[0] / 1e-3)], [0.0], 2.0)
     assert of_kind(cv.diagram(real, within=(0.0, 3.0)), "fold") == pytest.approx([1.0], abs=1e-12)
-
-
-def four_ways(u, p):
-    x, y = u
-    return [p * x - x**3 - 0.5 * x * y * y, p * y - y**3 - 0.5 * x * x * y]
-
-
-def test_an_even_number_of_branch_points():
-    """The symmetry of a square: two kernels at once, four branches; two of them where the symmetries are told."""
-    graph = cv.diagram(cv.AlgebraicProblem(four_ways, [0.0, 0.0], -0.5), within=(-1.0, 0.5), depth=1)
-    assert of_kind(graph, "branch-point") == pytest.approx([0.0], abs=1e-12) and len(graph) == 5
-    told = cv.AlgebraicProblem(four_ways, [0.0, 0.0], -0.5, symmetries=[np.diag([-1.0, 1.0]), [1, 0]])
-    assert len(cv.diagram(told, within=(-1.0, 0.5), depth=1)) == 3
 
 
 def test_a_continuous_symmetry_is_named_and_a_condition_helps():

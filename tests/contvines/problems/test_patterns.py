@@ -8,7 +8,6 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 import contvines as cv
-from tools.brusselator import brusselator
 
 pytestmark = pytest.mark.slow
 
@@ -91,26 +90,3 @@ def test_localised_states_snake():
     assert np.ptp(inside) > 0.02
     for end in (inside[inside < inside.mean()], inside[inside > inside.mean()]):
         assert np.ptp(end) < 0.01
-
-
-def test_oscillations_of_a_brusselator_on_a_line():
-    """The homogeneous state (A, B/A) of 600 unknowns: oscillations with k half waves begin at B = 1 + A^2 + (D + E) l_k.
-
-    There the trace of the 2 by 2 block of the k-th wave vanishes, and omega^2 is its determinant; l_k = 4 m^2 sin(k pi/2 m)^2.
-    Alike diffusion, so that no stationary pattern comes first.
-    """
-    m, A, D = 300, 2.0, 0.02
-    F, jacobian, derivative = brusselator(m, A, D, D)
-    problem = cv.AlgebraicProblem(
-        F, np.tile([A, 2.25], m), 4.5, "B", jacobian=jacobian, derivative=derivative, spectrum="flow"
-    )
-    graph = cv.diagram(problem, within=(4.5, 5.6), depth=0)
-    waves = 4.0 * m**2 * np.sin(np.arange(2) * np.pi / (2 * m)) ** 2
-    exact = 1.0 + A**2 + 2.0 * D * waves
-    points = graph.of_kind("hopf")
-    assert [point.value for point in points] == pytest.approx(exact, rel=1e-10)
-    for point, wave, b in zip(points, waves, exact):
-        assert abs(point.value - b) <= point.location_error < 1e-10
-        square = (b - 1.0 - D * wave) * (-(A**2) - D * wave) + A**2 * b
-        assert point.frequency == pytest.approx(np.sqrt(square), rel=1e-8)
-    assert not graph.of_kind("branch-point")

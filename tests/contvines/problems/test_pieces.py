@@ -57,19 +57,3 @@ def test_a_cycle_of_two_points_that_leaves_the_border():
     assert 0.4 * low + p == pytest.approx(high) and -2.0 * high + p == pytest.approx(low)
     assert low < 0.0 < high and p == 1.0
     assert pair.multipliers[len(pair) // 2, 0] == pytest.approx(-0.8)
-
-
-def test_what_goes_on_costs_no_depth():
-    graph = cv.diagram(problem(0.5, 0.3), within=(-1.0, 1.0), depth=0)
-    assert len(graph.branches) == 2
-    assert (
-        len(cv.diagram(problem(0.5, 2.0), within=(-1.0, 1.0), depth=0).branches) == 1
-    )  # what turns back does
-
-
-def test_the_same_from_the_other_side():
-    graph = cv.diagram(problem(0.5, 0.3, start=0.5), within=(-1.0, 1.0), depth=1)
-    assert {s.note for s in leading(graph)} == {"persistence"}
-    left = next(b for b in graph.branches.values() if b.points.min() < -0.1)
-    np.testing.assert_allclose(left.points[:, 0], left.values / 0.5, atol=1e-10)
-    assert left.values.min() == -1.0

@@ -1,15 +1,12 @@
 """Units do not matter: the same graph for unknowns, parameter and rows in units from 1e-9 to 1e9, each unknown in its own."""
 
-import json
-
 import numpy as np
 import pytest
 
 import contvines as cv
 from tools.demos import equilibria as eq
-from tools.demos import listed, maps
+from tools.demos import maps
 from tools.demos.demo import NUMBERS
-from tools.demos.make_table import TABLE
 
 CASES = {
     "bazykin": (eq.bazykin, [1.5, 1.2], 0.2, (0.05, 1.2)),
@@ -74,36 +71,6 @@ def test_cycles_of_maps(unit, value):
     graph = cv.diagram(problem, within=(2.0 * value, 3.5 * value), depth=2)
     flips = [s.value / value for s in graph.of_kind("period-doubling")]
     assert flips == pytest.approx([3.0, 1.0 + np.sqrt(6.0)], rel=1e-12)
-
-
-STARTS_AT_ZERO = [
-    ("chu", "flow"),
-    ("hamiltonian", "flow"),
-    ("lrz", "flow"),
-    ("burgers", "map"),
-    ("gauss", "map"),
-]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("unit", "value"), [(1e9, 1e-9)])
-@pytest.mark.parametrize(("name", "kind"), STARTS_AT_ZERO)
-def test_starts_at_zero_tell_their_scale(name, kind, unit, value):
-    """Of unknowns that are zero, and in which the equations may be linear there, the equations have to tell what is large."""
-    (demo,) = (demo for demo in [*listed.DEMOS, *maps.DEMOS] if demo.name == name)
-    make = cv.AlgebraicProblem if kind == "flow" else cv.MapProblem
-    options = {"spectrum": "flow", **demo.options} if kind == "flow" else demo.options
-    problem = make(
-        lambda v, q: unit * np.array(demo.equations(v / unit, q / value, NUMBERS)),
-        unit * np.array(demo.u),
-        value * demo.p,
-        **options,
-    )
-    graph = cv.diagram(problem, within=tuple(value * np.array(demo.within)), depth=demo.depth)
-    found = sorted((s.kind, s.value / value) for s in graph.special.values() if s.kind != "end")
-    expected = sorted((row["kind"], row["value"]) for row in json.loads(TABLE.read_text())[name])
-    assert [kind for kind, _ in found] == [kind for kind, _ in expected]
-    assert [p for _, p in found] == pytest.approx([p for _, p in expected], rel=1e-10, abs=1e-12)
 
 
 def test_where_nothing_can_tell_a_sentence_says_so():

@@ -66,22 +66,6 @@ def polar(x, y, factor):
     return factor[0] * x - factor[1] * y, factor[0] * y + factor[1] * x
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_chenciner(seed):
-    angle, c1, c2 = 0.9, (0.0, 0.8), (-0.6, 0.3)
-
-    def N(w):
-        r = w[0] ** 2 + w[1] ** 2
-        m = (1 + r * c1[0] + r * r * c2[0], r * c1[1] + r * r * c2[1])
-        x, y = polar(w[0], w[1], m)
-        return polar(x, y, (np.cos(angle), np.sin(angle)))
-
-    found = normal_form("chenciner", bent_map(N, 2, seed), [np.exp(1j * angle)])
-    # coordinates of unit length: z = sqrt(2) times the unit vector's amplitude, so |z|^2 counts twice
-    assert found["d"] == pytest.approx(0.0, abs=1e-9)
-    assert found["d2"] == pytest.approx(4 * (c2[0] + 0.5 * c1[1] ** 2), abs=1e-8)
-
-
 def test_generalized_hopf():
     omega, c1, c2 = 1.3, (0.0, -0.7), (0.45, 0.2)
 
