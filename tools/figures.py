@@ -83,13 +83,14 @@ def any_types(path: Path) -> int:
 def executed_files() -> int:
     """Files of the two packages in which a function or a module's body runs during one diagram, from TOML to picture."""
     script = """
-import sys, tempfile, shutil, pathlib
+import os, sys, tempfile, shutil, pathlib
 seen = set()
 def note(frame, event, argument):
     seen.add(frame.f_code.co_filename)
 top = sys.argv[1]
 folder = pathlib.Path(tempfile.mkdtemp())
 shutil.copy(pathlib.Path(top) / "examples" / "friction.toml", folder / "study.toml")
+os.chdir(folder)  # where nothing is finished yet
 sys.setprofile(note)
 from contvines.command.entry import main
 sys.argv = ["contvines", "diagram", str(folder / "study.toml"), "--plot", str(folder / "study.png")]

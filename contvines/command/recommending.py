@@ -369,8 +369,8 @@ class _Work:
         """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value where it
         is next to the largest); of simulations up and down, if these meet more. The responses."""
         from contvines.command.survey_study import options_of
+        from contvines.graph.stretches import highest, inside, stretches
         from contvines.survey.outcomes import peak
-        from contvines.survey.stretches import highest, inside, stretches
         from contvines.survey.work import Job, work
         from orbits.attractors.search import beginning_with
         from orbits.attractors.sweep import sweep

@@ -204,7 +204,7 @@ def _run(
 
 def _tell(graph: Any, target: Path, summarised: bool, details: bool) -> None:
     """The stable motions first; then the whole graph where it is small, or is asked for."""
-    from contvines.survey.summary import summary
+    from contvines.graph.summary import summary
 
     if summarised and any(branch.stable is not None for branch in graph.branches.values()):
         typer.echo(summary(graph) + "\n")

@@ -19,8 +19,8 @@ from ..graph.graph import Graph
 from ..graph.limits import Limits
 from ..graph.measures import default_measure
 from ..graph.run import Run
+from ..graph.stretches import LEAST, gaps, spread, stretches, unseen
 from ..journal import NullJournal
-from .stretches import LEAST, gaps, spread, stretches, unseen
 
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap

@@ -16,8 +16,8 @@ from contvines.shared.modulation import BAND, is_strong, modulation_of
 
 from ..coexistence.places import UNBRANCHED
 from ..graph.measures import default_measure
+from ..graph.stretches import LEAST, gaps, highest, stretches, unseen
 from ..shared.number_text import figures_in
-from .stretches import LEAST, gaps, highest, stretches, unseen
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph

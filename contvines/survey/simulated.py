@@ -11,8 +11,8 @@ from contvines.shared.modulation import BAND, modulation_of
 from ..coexistence.population import Population
 from ..graph.graph import Graph
 from ..graph.measures import default_measure
+from ..graph.stretches import gaps, spread
 from .completion import FEW, ON_ITS_WAY
-from .stretches import gaps, spread
 
 VALUES = 5  # in the gaps, at least
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..graph.stretches import gaps, spread
 from .completion import complete
 from .outcomes import Findings, covered, unknown
-from .stretches import gaps, spread
 
 if TYPE_CHECKING:
     from ..coexistence.population import Population

@@ -11,7 +11,6 @@ from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.parameters import ParameterError
-from orbits.machines.reference.machine import reference
 from orbits.machines.stepping import Machine
 
 if TYPE_CHECKING:
@@ -64,11 +63,13 @@ def usual(name: str) -> tuple[Model, dict[str, float]]:
 @cache
 def stepper(name: str) -> Machine:
     """The stepper of the model called `name`; see :mod:`orbits.machines.stepping`."""
-    return _machine(name, stepper_functions(name, reference(name)))
+    return _machine(name, stepper_functions(name))
 
 
 def reference_stepper(name: str) -> Machine:
     """The same in plain Python, which the native core is compared with."""
+    from orbits.machines.reference.machine import reference
+
     return _machine(name, reference(name))
 
 

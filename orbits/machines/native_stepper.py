@@ -119,6 +119,10 @@ class NativeStepper:
         work(self.number, len(states), address(states), address(params), address(ahead), written(out))
 
 
-def stepper_functions(name: str, reference: Reference) -> NativeStepper | Reference:
+def stepper_functions(name: str) -> NativeStepper | Reference:
     """The functions of the contract for the machine called `name`: the native core's, or those of its reference in plain Python."""
-    return NativeStepper(name) if native() else reference
+    if native():
+        return NativeStepper(name)
+    from orbits.machines.reference.machine import reference
+
+    return reference(name)

@@ -19,9 +19,9 @@ import numpy as np
 import contvines as cv
 from contvines.coexistence.population import population_of
 from contvines.command.study import read_study
+from contvines.graph.stretches import highest, inside, stretches
 from contvines.survey import survey
 from contvines.survey.completion import complete
-from contvines.survey.stretches import highest, inside, stretches
 from orbits.attractors.search import beginning_with
 from orbits.attractors.sweep import sweep
 from orbits.design import Family

@@ -1,54 +1,32 @@
-"""The kinds of special points: one file each. Labels, marks in pictures, tables, legends, detection and switching follow from them."""
+"""The kinds of special points. Labels, marks in pictures, tables, legends, detection and switching follow from them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
 from ..kind import Kind
-from . import (
-    branch_point,
-    corner,
-    end,
-    event,
-    fold,
-    homoclinic,
-    hopf,
-    neimark_sacker,
-    period_doubling,
-    stick,
-    switch,
-    switch_graze,
-    symmetry_breaking,
-    user,
-    vanishing_event,
-    velocity_graze,
-    wall_graze,
-)
+from . import borders, branch_point, fold, multipliers
 from .codimension_two import CODIMENSION_TWO as CODIMENSION_TWO
 
-#: The built-in kinds along a branch, in the order in which they are asked. Borders that are met at once take the first of these names.
-KINDS: tuple[Kind, ...] = tuple(
-    file.KIND
-    for file in (
-        fold,
-        symmetry_breaking,
-        period_doubling,
-        neimark_sacker,
-        hopf,
-        branch_point,
-        stick,
-        velocity_graze,
-        wall_graze,
-        vanishing_event,
-        switch_graze,
-        corner,
-        switch,
-        homoclinic,
-        event,
-        user,
-        end,
-    )
+USER = Kind("user", "US", text="user function", nothing="nothing leaves the zero of a user function")
+"""A number that the user has named passes a value: see :func:`contvines.bifurcation.user_functions.kind_of_function`."""
+END = Kind(
+    "end",
+    "EP",
+    text="end of the interval",
+    marker="|",
+    filled=False,
+    nothing="the interval ends here; no branch leaves",
 )
+KINDS: tuple[Kind, ...] = (
+    fold.KIND,
+    *multipliers.KINDS,
+    branch_point.KIND,
+    *borders.KINDS,
+    USER,
+    END,
+)
+"""The built-in kinds along a branch, in the order in which they are asked."""
 BY_NAME: dict[str, Kind] = {kind.name: kind for kind in KINDS}
 LABELS: dict[str, str] = {kind.name: kind.label for kind in KINDS}
 BORDERS: tuple[str, ...] = tuple(kind.name for kind in KINDS if kind.border)

@@ -20,8 +20,8 @@ from ..locate import Root, locate, locate_singular
 from ..located import Located, Role
 from ..location_error import blurred
 from ..multiplier_counts import balance, counts, sizes_by_sort
-from ..multiplier_tests import passing
 from ..segment import Segment
+from .multipliers import passing
 
 
 def find(segment: Segment, found: Sequence[Located]) -> list[Located]:

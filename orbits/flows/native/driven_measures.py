@@ -11,7 +11,6 @@ from contvines.core.library import NOTHING, POINTER, WHOLE, address, function, n
 from orbits.machines.base import Model
 from orbits.machines.events import event_table
 from orbits.machines.native_stepper import floats, stepper_functions, written
-from orbits.machines.reference.machine import reference
 from orbits.machines.rest import share_of_the_base
 from orbits.words import Word
 
@@ -46,7 +45,7 @@ def own_measures(
     result = {name: np.empty(count) for name in wanted}
     shape = np.empty((length, 4))
     work = np.empty((length, 3))
-    functions = stepper_functions(model.name, reference(model.name))
+    functions = stepper_functions(model.name)
     power = any(name in POWERS for name in wanted)
     for i in range(count):
         _shapes(states[i], params[i], spans[i], shape)
@@ -60,7 +59,7 @@ def own_measures(
         if power:
             functions.works(states[i], params[i], spans[i], work)
             force, ground = work[:, 0].sum() / params[i, 3], work[:, 1].sum() / params[i, 3]
-            more = share_of_the_base(reference(model.name).law(params[i]), periods, shape[:, 3].sum())
+            more = share_of_the_base(model.rest.law(params[i]), periods, shape[:, 3].sum())
             values |= {
                 "force_work": force,
                 "grounded_damping_loss": ground,
@@ -75,6 +74,8 @@ def own_measures(
 def _shapes(states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
     """`orbits.machines.reference.driven_motion.shapes`, by the native core where there is one."""
     if not native():
+        from orbits.machines.reference.machine import reference
+
         reference("coupled").shapes(states, params, lengths, out)
         return
     states, params, lengths = floats(states), floats(params), floats(lengths)

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
-from orbits.flows.native.driven_measures import own_measures
 from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table
@@ -78,13 +77,12 @@ def dimensionless(
         whole = dimensionless(model, word, periods, nodes, params, [MEANS[name] for name in means])
         result |= {name: whole[MEANS[name]] / periods for name in means}
     own = [name for name in wanted if name not in MEANS and (name not in COMMON or name == "C2")]
-    if own:
-        driven = model.moving_cavity
-        result |= (
-            own_measures(own, model, word, periods, nodes, params)
-            if driven
-            else {"C2": model.column(params, model.driven_by) ** 2}
-        )
+    if own and model.moving_cavity:
+        from orbits.flows.native.driven_measures import own_measures
+
+        result |= own_measures(own, model, word, periods, nodes, params)
+    elif own:
+        result["C2"] = model.column(params, model.driven_by) ** 2
     for name in wanted:
         if name in result:
             continue

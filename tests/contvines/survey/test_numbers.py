@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.graph.stretches import highest, inside, stretches
 from contvines.survey import outcomes
-from contvines.survey.stretches import highest, inside, stretches
 
 
 def branch(word, values, heights, real=True):

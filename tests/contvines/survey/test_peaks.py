@@ -6,8 +6,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve, minimize_scalar
 
 import contvines as cv
+from contvines.graph.stretches import spread, unseen
 from contvines.survey import PlanError, survey
-from contvines.survey.stretches import spread, unseen
 from orbits import coupled_two
 from orbits.attractors.sweep import sweep
 from orbits.design import Family

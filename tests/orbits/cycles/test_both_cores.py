@@ -9,7 +9,8 @@ from contvines.core.library import native
 from contvines.core.table import native_table
 from orbits import arguments
 from orbits.flows.native.cycle_equations import Equations
-from orbits.flows.native.kernels import TABLES, NativeKernels, ReferenceKernels
+from orbits.flows.native.kernels import TABLES, NativeKernels
+from orbits.flows.native.reference_kernels import ReferenceKernels
 from orbits.machines.catalogue import usual
 from orbits.machines.reference.machine import reference
 from orbits.words import Word

@@ -6,7 +6,7 @@ import pytest
 
 from orbits import Coupled
 from orbits.arguments import cycle_data, workspace
-from orbits.flows.native.kernels import ReferenceKernels
+from orbits.flows.native.reference_kernels import ReferenceKernels
 from orbits.machines.path import single
 from orbits.machines.reference.machine import reference
 from orbits.machines.reference.oscillation import Oscillation, first_zero

@@ -3,7 +3,7 @@
 import numpy as np
 
 import contvines as cv
-from contvines.survey.summary import summary
+from contvines.graph.summary import summary
 
 
 def test_a_logistic_map_is_summarised():

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ..graph.graph import Graph
-from ..graph.measures import default_measure
-from ..graph.shortening import motion_name
-from ..graph.table import with_unit
 from ..shared.number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
+from .graph import Graph
+from .measures import default_measure
+from .shortening import motion_name
 from .stretches import at_points, gaps, stretches
+from .table import with_unit
 
 MOST = 8  # motions that are listed
 LEAST = 1e-3  # of the interval: motions that are stable on less are counted only

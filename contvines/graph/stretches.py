@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..graph.measures import default_measure
+from .measures import default_measure
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
-    from ..graph.graph import Graph
+    from .graph import Graph
 
 SHARP = 1e-5  # of a step between two points: so closely a peak between them is located
 MEETING = 1e-9  # of the interval: stretches that end nearer to one another meet

@@ -1,0 +1,117 @@
+"""Multipliers that pass the unit circle (eigenvalues the imaginary axis): period doubling, symmetry breaking, Neimark-Sacker, Hopf.
+
+Each test function is the k-th largest multiplier of a sort, so that two that cross at once are two special points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from ...continuation.aims import SORTS, aim_at_multiplier
+from ..kind import Classified, Kind, Test
+from ..located import Located
+from ..normal_forms.criticality import pair_form, strong_resonance
+from ..point_on_branch import PointOnBranch
+from ..segment import Segment
+
+JUMP = 0.05  # change of a multiplier's logarithm over a small part of a segment: it has come from elsewhere
+
+
+def passing(segment: Segment, sort: str) -> list[Test]:
+    """One test for each multiplier of a sort ("plus", "minus", "pair") that is past the circle at one end only."""
+    engine, place = segment.engine, tuple(SORTS).index(sort)
+    one, other = segment.counts[0][place], segment.counts[1][place]
+    return [
+        Test(aim_at_multiplier(engine.m, engine.detection, sort, k), k, JUMP)
+        for k in range(min(one, other) + 1, max(one, other) + 1)
+    ]
+
+
+def flips(segment: Segment, found: Sequence[Located], kind: str) -> list[Test]:
+    """Multipliers that pass -1, where the problem says that this is what they mean."""
+    return passing(segment, "minus") if segment.engine.problem.flip_kind == kind else []
+
+
+def pairs(segment: Segment, found: Sequence[Located], spectrum: str) -> list[Test]:
+    """Complex pairs that pass the circle (the imaginary axis)."""
+    return passing(segment, "pair") if segment.engine.detection == spectrum else []
+
+
+def classify_pair(point: PointOnBranch) -> Classified:
+    """The first Lyapunov coefficient, from derivatives of the equations; of cycles on a mesh, whose unknowns are more than the states of
+    a map, from the problem's own form.
+    """
+    problem = point.problem
+    if point.engine.adaptive and problem.spectrum == "map":
+        return _of_cycle(point)
+    if problem.spectrum not in ("map", "flow"):
+        return Classified()
+    form = pair_form(problem, point.u, point.value, point.engine.spectrum(point.solved.row))
+    return Classified(form.criticality, form.coefficient, (form.note,) if form.note else ())
+
+
+def _of_cycle(point: PointOnBranch) -> Classified:
+    upper = point.multipliers[np.imag(point.multipliers) > 0.0]
+    if not len(upper):
+        return Classified()
+    multiplier = complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))])
+    form = point.problem.normal_form("neimark-sacker", point.u, point.value, multiplier)
+    resonance = strong_resonance(multiplier)
+    remarks = (f"near the strong resonance {resonance}",) if resonance else ()
+    if form is None:
+        return Classified(None, None, remarks)
+    return Classified("supercritical" if form[0] < 0.0 else "subcritical", form[0], remarks)
+
+
+#: in the order in which they are asked
+KINDS = (
+    Kind(
+        "symmetry-breaking",
+        "SB",
+        text="symmetry breaking",
+        marker="D",
+        filled=False,
+        tests=partial(flips, kind="symmetry-breaking"),
+        locus="flip",
+        leaves="doubled",
+        without="a pair of solutions of less symmetry leaves here; this problem has no equations for it",
+    ),
+    Kind(
+        "period-doubling",
+        "PD",
+        text="period doubling",
+        marker="^",
+        filled=False,
+        tests=partial(flips, kind="period-doubling"),
+        locus="flip",
+        leaves="doubled",
+        without="a solution of twice the period leaves here; this problem has no equations for it",
+    ),
+    Kind(
+        "neimark-sacker",
+        "NS",
+        text="Neimark-Sacker",
+        marker="p",
+        filled=False,
+        tests=partial(pairs, spectrum="map"),
+        classify=classify_pair,
+        locus="pair",
+        leaves="circle",
+        nothing="an invariant circle leaves a Neimark-Sacker point, no branch of cycles; its circles() follow it",
+    ),
+    Kind(
+        "hopf",
+        "HB",
+        text="Hopf",
+        marker="h",
+        filled=False,
+        tests=partial(pairs, spectrum="flow"),
+        classify=classify_pair,
+        locus="pair",
+        leaves="cycles",
+        nothing="a branch of limit cycles leaves a Hopf point; this problem has equations for equilibria only",
+    ),
+)

@@ -1,0 +1,93 @@
+"""The kernels of the built-in machines' cycles in plain Python and numpy: what the native core is compared with."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contvines.core.multipliers.periodic_schur import reference as multipliers
+from orbits.elimination import rearranged
+from orbits.elimination.block_cyclic import bordered
+from orbits.flows.plain_kernels import PlainKernels
+from orbits.machines import path
+from orbits.machines.reference.machine import Reference
+from orbits.words.alphabet import CODES
+
+if TYPE_CHECKING:
+    from orbits.arguments import CycleData, Workspace
+
+STICK, SLIP = CODES["s"], CODES["u"]
+
+
+class ReferenceKernels(PlainKernels):
+    """Cycles of one model, in plain Python and numpy: what the native core is compared with.
+
+    Parameters
+    ----------
+    maps : Reference
+        `linearise`, `margins` and `unpin` of the model.
+    """
+
+    natural = True
+    column = 3
+    matrix = staticmethod(rearranged.matrix)
+    assign = staticmethod(path.assign)
+    transpose = staticmethod(rearranged.transpose)
+
+    def __init__(self, maps: Reference) -> None:
+        self.maps = maps
+
+    def linearise(self, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:
+        """Residual and derivatives into `work`; returns the largest residual, infinity where it cannot be evaluated."""
+        with np.errstate(all="ignore"):
+            try:
+                return float(self.maps.linearise(data, u, p, work))
+            except (ArithmeticError, ValueError):  # of functions in `math`, which have no infinity
+                return math.inf
+
+    def bordered(
+        self,
+        data: CycleData,
+        work: Workspace,
+        border: np.ndarray,
+        target: float,
+        step: np.ndarray,
+        tangent: np.ndarray,
+    ) -> float:
+        """Block-cyclic elimination; see `orbits.elimination.block_cyclic`."""
+        return bordered(data, work, border, target, step, tangent)
+
+    def flip(self, data: CycleData, work: Workspace, sign: float) -> None:
+        """Turn the linearisation's closure round."""
+        self.maps.unpin(data, work)
+        rearranged.flip(data, work, sign)
+
+    def inspect(self, data: CycleData, u: np.ndarray, p: float, work: Workspace, row: np.ndarray) -> None:
+        """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
+        self.maps.unpin(data, work)
+        A, D = work.A, work.D
+        length, n = A.shape[0], A.shape[1]
+        # Nothing later depends on when a stick begins or ends: w' = 0 there and v'' is the same before and after, at a slip
+        # w'' = 0, too. Those phases move with 1/w'' and one over the rate at which friction gives way, which grow without
+        # bound where the stick vanishes, so they are held instead.
+        for i in range(length):
+            if data.events[(i + 1) % length] in (STICK, SLIP):
+                A[i, 0, :], D[i, 0, :] = 0.0, 0.0
+                D[i, 0, 0] = 1.0
+        re, im = np.empty(n), np.empty(n)
+        multipliers(A, D, data.twist, re, im)
+        if (
+            data.pinned
+        ):  # an impact-free motion may be moved as a whole: drop that multiplier, nearest to the twist
+            away = np.hypot(re - data.twist, im)
+            trivial = int(np.argmin(away)) if np.isfinite(away).all() else 0
+            re, im = np.delete(re, trivial), np.delete(im, trivial)
+        count = len(re)
+        row[0 : 2 * count : 2], row[1 : 2 * count : 2] = re, im
+        with np.errstate(all="ignore"):
+            try:
+                self.maps.margins(data, u, p, work, row[2 * count :])
+            except (ArithmeticError, ValueError):
+                row[2 * count :] = math.nan
