@@ -9,48 +9,11 @@ True
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from contvines.shared.on_demand import on_demand
 
 __version__ = "0.2.0"
-
-_HOME = {
-    "AlgebraicProblem": ".problems.algebraic",
-    "Branch": ".branches.branch",
-    "Embedding": ".problems.protocol",
-    "FlowProblem": ".flows",
-    "Graph": ".graph.graph",
-    "Interrupted": ".interrupts",
-    "KINDS": ".bifurcation.kinds",
-    "Kernels": ".problems.kernels",
-    "Kind": ".bifurcation.kind",
-    "MapProblem": ".problems.maps",
-    "MemoryJournal": ".journal",
-    "NullJournal": ".journal",
-    "ProblemDefaults": ".problems.protocol",
-    "Seed": ".problems.protocol",
-    "Settings": ".continuation.settings",
-    "SpecialPoint": ".branches.special_point",
-    "StepRule": ".continuation.step_rule",
-    "Switch": ".graph.graph",
-    "Symmetry": ".problems.protocol",
-    "Attractor": ".graph.attractor",
-    "atlas": ".coexistence.build",
-    "basins": ".coexistence.basins",
-    "erosion": ".coexistence.erosion",
-    "robustness": ".coexistence.robustness",
-    "Chart": ".loci.chart",
-    "Locus": ".loci.locus",
-    "chart": ".loci.charting",
-    "diagram": ".graph.automatic",
-    "load": ".store",
-    "locus": ".loci.tracing",
-    "register": ".problems.registry",
-    "resume": ".store",
-    "save": ".store",
-    "switch": ".graph.automatic",
-    "trace": ".continuation.trace",
-}
 
 __all__ = [
     "KINDS",
@@ -89,19 +52,47 @@ __all__ = [
     "trace",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        value = getattr(import_module(_HOME[name], __name__), name)
-        globals()[name] = value
-        return value
-    if name == "flows":  # the sub-package with read_ode and CompiledRates
-        return import_module(".flows", __name__)
-    from contvines.shared.near_names import did_you_mean
-
-    raise AttributeError(
-        f"contvines has no {name!r}{did_you_mean(name, __all__)}; it has {', '.join(__all__)}"
-    )
+__getattr__ = on_demand(
+    __name__,
+    {
+        "AlgebraicProblem": "contvines.problems.algebraic",
+        "Branch": "contvines.branches.branch",
+        "Embedding": "contvines.problems.protocol",
+        "FlowProblem": "contvines.flows",
+        "Graph": "contvines.graph.graph",
+        "Interrupted": "contvines.interrupts",
+        "KINDS": "contvines.bifurcation.kinds",
+        "Kernels": "contvines.problems.protocol",
+        "Kind": "contvines.bifurcation.kind",
+        "MapProblem": "contvines.problems.maps",
+        "MemoryJournal": "contvines.journal",
+        "NullJournal": "contvines.journal",
+        "ProblemDefaults": "contvines.problems.protocol",
+        "Seed": "contvines.problems.protocol",
+        "Settings": "contvines.continuation.settings",
+        "SpecialPoint": "contvines.branches.special_point",
+        "StepRule": "contvines.continuation.step_rule",
+        "Switch": "contvines.graph.graph",
+        "Symmetry": "contvines.problems.protocol",
+        "Attractor": "contvines.graph.attractor",
+        "atlas": "contvines.coexistence.build",
+        "basins": "contvines.coexistence.basins",
+        "erosion": "contvines.coexistence.erosion",
+        "robustness": "contvines.coexistence.robustness",
+        "Chart": "contvines.loci.chart",
+        "Locus": "contvines.loci.locus",
+        "chart": "contvines.loci.charting",
+        "diagram": "contvines.graph.automatic",
+        "load": "contvines.store",
+        "locus": "contvines.loci.tracing",
+        "register": "contvines.problems.registry",
+        "resume": "contvines.store",
+        "save": "contvines.store",
+        "switch": "contvines.graph.automatic",
+        "trace": "contvines.continuation.trace",
+        "flows": "contvines.flows",  # the sub-package with read_ode and CompiledRates
+    },
+)
 
 
 def __dir__() -> list[str]:
@@ -113,10 +104,15 @@ if TYPE_CHECKING:
     from .bifurcation.kinds import KINDS
     from .branches.branch import Branch
     from .branches.special_point import SpecialPoint
+    from .coexistence.basins import basins
+    from .coexistence.build import atlas
+    from .coexistence.erosion import erosion
+    from .coexistence.robustness import robustness
     from .continuation.settings import Settings
     from .continuation.step_rule import StepRule
     from .continuation.trace import trace
     from .flows import FlowProblem
+    from .graph.attractor import Attractor as Attractor
     from .graph.automatic import diagram, switch
     from .graph.graph import Graph, Switch
     from .interrupts import Interrupted
@@ -126,8 +122,7 @@ if TYPE_CHECKING:
     from .loci.locus import Locus
     from .loci.tracing import locus
     from .problems.algebraic import AlgebraicProblem
-    from .problems.kernels import Kernels
     from .problems.maps import MapProblem
-    from .problems.protocol import Embedding, ProblemDefaults, Seed, Symmetry
+    from .problems.protocol import Embedding, Kernels, ProblemDefaults, Seed, Symmetry
     from .problems.registry import register
     from .store import load, resume, save

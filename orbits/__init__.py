@@ -2,38 +2,75 @@
 
 from __future__ import annotations
 
-import importlib
-from typing import Any
+from typing import TYPE_CHECKING
 
-_PLACES = {
-    "Absorber": "orbits.machines.absorber",
-    "Cavity": "orbits.machines.cavity",
-    "Coupled": "orbits.machines.coupled",
-    "DryFriction": "orbits.contacts.dry_friction",
-    "Machine": "orbits.machines.page.machine",
-    "Scales": "orbits.design.scales",
-    "Orbit": "orbits.orbit",
-    "OrbitProblem": "orbits.problem",
-    "ParameterError": "orbits.machines.parameters",
-    "Switch": "orbits.contacts.switch",
-    "Wall": "orbits.contacts.wall",
-    "Word": "orbits.words",
-    "coupled_two": "orbits.machines.coupled_two",
-    "structure": "orbits.machines.structure.structure",
-    "WordError": "orbits.words",
-}
+from contvines.shared.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from orbits import attractors, design, machines, multiple_scales, simulation, symbols, theory, words
+    from orbits.contacts.dry_friction import DryFriction
+    from orbits.contacts.switch import Switch
+    from orbits.contacts.wall import Wall
+    from orbits.design.scales import Scales
+    from orbits.machines.absorber import Absorber
+    from orbits.machines.cavity import Cavity
+    from orbits.machines.coupled import Coupled
+    from orbits.machines.coupled_two import coupled_two
+    from orbits.machines.page.machine import Machine
+    from orbits.machines.parameters import ParameterError
+    from orbits.machines.structure.structure import structure
+    from orbits.orbit import Orbit
+    from orbits.problem import OrbitProblem
+    from orbits.words import Word, WordError
+
+__all__ = [
+    "Absorber",
+    "Cavity",
+    "Coupled",
+    "DryFriction",
+    "Machine",
+    "Orbit",
+    "OrbitProblem",
+    "ParameterError",
+    "Scales",
+    "Switch",
+    "Wall",
+    "Word",
+    "WordError",
+    "attractors",
+    "coupled_two",
+    "design",
+    "machines",
+    "multiple_scales",
+    "simulation",
+    "structure",
+    "symbols",
+    "theory",
+    "words",
+]
+
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
-__all__ = sorted([*_PLACES, *_ROOMS])
-
-
-def __getattr__(name: str) -> Any:
-    if name in _PLACES:
-        return getattr(importlib.import_module(_PLACES[name]), name)
-    if name in _ROOMS:
-        return importlib.import_module(f"orbits.{name}")
-    from contvines.shared.near_names import did_you_mean
-
-    raise AttributeError(f"orbits has no {name!r}{did_you_mean(name, __all__)}; it has {', '.join(__all__)}")
+__getattr__ = on_demand(
+    __name__,
+    {
+        "Absorber": "orbits.machines.absorber",
+        "Cavity": "orbits.machines.cavity",
+        "Coupled": "orbits.machines.coupled",
+        "DryFriction": "orbits.contacts.dry_friction",
+        "Machine": "orbits.machines.page.machine",
+        "Orbit": "orbits.orbit",
+        "OrbitProblem": "orbits.problem",
+        "ParameterError": "orbits.machines.parameters",
+        "Scales": "orbits.design.scales",
+        "Switch": "orbits.contacts.switch",
+        "Wall": "orbits.contacts.wall",
+        "Word": "orbits.words.word",
+        "WordError": "orbits.words.reading",
+        "coupled_two": "orbits.machines.coupled_two",
+        "structure": "orbits.machines.structure.structure",
+        **{room: f"orbits.{room}" for room in _ROOMS},
+    },
+)
 
 
 def __dir__() -> list[str]:

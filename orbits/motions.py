@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contvines.shared.modulation import BAND
-from orbits.attractors import find_attractor
-from orbits.attractors.search import described, modulated
 from orbits.flows.protocol import Equations, Flow, SimulationError
-from orbits.simulation.runs import simulator_of
-from orbits.simulation.section import Section
 from orbits.words import Word
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
     from orbits.orbit import Orbit
+    from orbits.simulation.section import Section
 
 
 class Simulated:
@@ -46,6 +43,8 @@ class Simulated:
             "word" (None where there is none), "periods" and "kind" of each motion and "share" of the starts that lead to it, sorted; of
             one that does not recur "modulation" and its band, too (see `contvines.shared.modulation`), where it has one.
         """
+        from orbits.attractors.search import described, find_attractor, modulated
+
         params, generator = self.values(p), np.random.default_rng(7)
         named: dict[str, Any] = dict(zip(self.model.parameter_names, map(float, params)))
         found: dict[tuple[str, int, str], dict[str, Any]] = {}
@@ -92,6 +91,9 @@ class Simulated:
             return section_of(
                 self.model, params, self.word, self.periods, self.model.place_of(self.parameter)
             )
+        from orbits.simulation.runs import simulator_of
+        from orbits.simulation.section import Section
+
         return Section(simulator_of(self.model, params), self.word, self.periods, self.equations.unit[0])
 
 

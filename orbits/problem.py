@@ -16,7 +16,7 @@ from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import INSTANTS, distance
 from orbits.cycles.identity import canonical, size_of_one
 from orbits.flows.catalogue import flow_of
-from orbits.flows.plain_kernels import PLAIN
+from orbits.flows.protocol import PLAIN
 from orbits.machines.building import build
 from orbits.machines.path import along
 from orbits.motions import Simulated

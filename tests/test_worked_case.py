@@ -11,7 +11,7 @@ from contvines.command.cli import main
 from contvines.command.compose import machine
 from contvines.command.study import read_study
 from contvines.command.survey_study import plan_and_machine
-from orbits.attractors.sweep import sweep
+from orbits.attractors.sweeping import sweep
 
 pytestmark = pytest.mark.slow
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from ..continuation.status import Status
 from .branch_jumps import inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicious, turns_twice

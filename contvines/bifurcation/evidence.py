@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..continuation.engine import Engine
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from .multiplier_counts import balance
 from .scan import Scan, Spectra
 

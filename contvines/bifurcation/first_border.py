@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..continuation.aims import MARGINS, Aim
 from ..continuation.engine import Engine, Solved
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from .kinds import BORDERS
 from .locate import Root, locate
 from .segment import Segment

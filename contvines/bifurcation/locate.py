@@ -10,7 +10,6 @@ import numpy as np
 
 from ..continuation.aims import Aim
 from ..continuation.engine import Solved
-from .roots import bracketed_root, chebyshev_fit, chebyshev_nodes, chebyshev_value
 from .segment import Segment
 
 NODES = 8
@@ -82,6 +81,8 @@ def locate(
         solved[s] = point
         return float(test(point))
 
+    from .roots import bracketed_root
+
     fa, fb = value(0.0), value(1.0)
     if not (np.isfinite(fa) and np.isfinite(fb)):
         return None
@@ -138,6 +139,8 @@ def locate_singular(
 def _interpolated(
     segment: Segment, test: Callable[[Solved], float], rough: float, width: float
 ) -> tuple[Root, float] | None:
+    from .roots import bracketed_root, chebyshev_fit, chebyshev_nodes, chebyshev_value
+
     engine = segment.engine
     nodes = chebyshev_nodes(NODES)
     points, values = [], []

@@ -14,7 +14,7 @@ import numpy as np
 from ..continuation.aims import KINDS
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 from .multiplier_counts import PAST, sizes_by_sort

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from ..continuation.aims import Aim
-from ..continuation.corrector import Found
 from ..continuation.engine import Engine, Hit, Solved
+from ..continuation.layout import Found
 from ..continuation.solved import solved_point, solved_points
 from .multiplier_counts import counts
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from .consistency import unaccounted, unresolved
 from .determinant import singular
 from .evidence import Evidence, evidence, parabola_dips

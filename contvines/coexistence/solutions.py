@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..branches.branch import Branch
 from ..continuation.engine import Engine, Solved
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from ..continuation.settings import Settings
 
 

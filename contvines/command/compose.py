@@ -137,9 +137,11 @@ def _settled(study: Study):
 
 def _asked(study: Study) -> dict[str, Any]:
     """Options of diagrams and atlases that a study says."""
-    from contvines.command.own_code import load_kinds
+    kinds = None
+    if study.kinds is not None:
+        from contvines.command.own_code import load_kinds
 
-    kinds = None if study.kinds is None else load_kinds(study.path, study.kinds)[0]
+        kinds = load_kinds(study.path, study.kinds)[0]
     return {"depth": study.depth, "virtual": study.virtual, "settings": study.settings, "kinds": kinds}
 
 

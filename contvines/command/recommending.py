@@ -373,7 +373,7 @@ class _Work:
         from contvines.survey.outcomes import peak
         from contvines.survey.work import Job, work
         from orbits.attractors.search import beginning_with
-        from orbits.attractors.sweep import sweep
+        from orbits.attractors.sweeping import sweep
 
         over, (low, high) = self.study.parameter, self.study.within
         seen: list[Curve] = []

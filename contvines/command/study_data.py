@@ -7,10 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contvines.command.schema import AtlasSection, ChartSection, RandomSection, SurveySection, SweepSection
-from orbits.machines.conditions import Table
+
+if TYPE_CHECKING:
+    from orbits.machines.conditions import Table
 
 SHOWN = 60  # letters of a word that a refusal repeats
 
@@ -75,7 +77,7 @@ class Study:
     random: RandomSection | None = None
     text: str = ""
     conditions: dict[str, float] = field(default_factory=dict)
-    tables: tuple[Table, ...] = ()
+    tables: "tuple[Table, ...]" = ()
 
     @classmethod
     def of(

@@ -81,7 +81,7 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
     from contvines.command.compose import machine
     from contvines.command.sweep_rows import Rows, kept, measured_names
     from contvines.progress import counted
-    from orbits.attractors.sweep import sweep as simulate
+    from orbits.attractors.sweeping import sweep as simulate
 
     model = machine(study)
     low, high = study.sweep.within or study.within

@@ -6,24 +6,11 @@ The native core (native/march.hpp) has the same with loops, for unknowns that al
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from ..problems.blas import dot, position
-
-
-class Metric(NamedTuple):
-    """How lengths are measured: <a, b> = sum of weights_j a_j b_j over unknowns and parameter.
-
-    ``weights`` and ``scale`` (typical sizes) have shape (N + 1,); ``of_unknowns`` and ``of_parameter`` are the weights of
-    unknowns whose scale is 1, and of the parameter.
-    """
-
-    weights: np.ndarray
-    scale: np.ndarray
-    of_unknowns: float
-    of_parameter: float
+from .layout import Metric
 
 
 def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -> float:

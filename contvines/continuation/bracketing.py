@@ -9,34 +9,32 @@ What is known is kept in a list of numbers, or an array: see the names below. na
 
 import math
 
+from .layout import (
+    AGAIN,
+    AIMED,
+    BEYOND,
+    COUNT,
+    F1,
+    F2,
+    F3,
+    JUMP,
+    ON_A_SIDE,
+    P1,
+    P2,
+    PRECISION,
+    SIDES,
+    SIZE,
+    WAIT,
+    WIDTH,
+    X1,
+    X2,
+    X3,
+)
+
 BISECTIONS = 2  # before a function is taken for one with a jump or a kink at its zero
 ENOUGH = 0.25  # part of a function's value that a secant may leave
 SHORT = 0.02  # part of the way back that is gone where a secant has gone too far
 MOST = 100  # evaluations
-
-# where the numbers stand: the bracket (its last end first), a third point, and what belongs to each; the first width; tolerance and jump as
-# `begin` is given them; evaluations so far; whether the last one was not finite; what the secants need
-(
-    X1,
-    F1,
-    P1,
-    X2,
-    F2,
-    P2,
-    X3,
-    F3,
-    WIDTH,
-    TOLERANCE,
-    JUMP,
-    COUNT,
-    AGAIN,
-    WAIT,
-    AIMED,
-    BEYOND,
-) = range(16)
-SIDES = 16  # then for either side of zero: how many points have been there, the last but one, the last one (x and f)
-ON_A_SIDE = 5
-SIZE = SIDES + 2 * ON_A_SIDE
 
 
 def begin(known, a, b, fa, fb, pa, pb, tolerance, jump):
@@ -60,7 +58,7 @@ def begin(known, a, b, fa, fb, pa, pb, tolerance, jump):
     known[X1], known[F1], known[P1] = b, fb, pb
     known[X2], known[F2], known[P2] = a, fa, pa
     known[X3], known[F3] = b, fb
-    known[WIDTH], known[TOLERANCE], known[JUMP] = abs(b - a), tolerance, jump
+    known[WIDTH], known[PRECISION], known[JUMP] = abs(b - a), tolerance, jump
     known[WAIT], known[AIMED] = BISECTIONS, -1.0
     if fa == 0.0 or fb == 0.0:
         end = X2 if fa == 0.0 else X1
@@ -95,7 +93,7 @@ def follow(known, x, fx, px):
     if f1 == 0.0:
         known[X2], known[F2], known[P2] = x1, f1, px
         return math.nan
-    width, tolerance = known[WIDTH], known[TOLERANCE]
+    width, tolerance = known[WIDTH], known[PRECISION]
     limit = 0.5 * tolerance * width / max(abs(x2 - x1), 1e-300)
     if abs(f1 - f2) > known[JUMP] and abs(x2 - x1) < 1e-5 * width:
         return math.nan

@@ -4,19 +4,13 @@ For problems in Python; native/march.hpp has the same for compiled ones.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from .aims import NOTHING, probe
 from .arrays import add, correction_size, distance, hermite, orient, put, remainder
-from .bracketing import JUMP, TOLERANCE, X1, begin, best, follow
-
-# what `points` does
-LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
-
-# what it finds when it looks for something
-NOWHERE, PASSED, AT_END = 0, 1, 2
+from .bracketing import begin, best, follow
+from .layout import AT_END, ELIMINATE, EVERYTHING, JUMP, LINEARISE, NOWHERE, PASSED, PRECISION, X1
 
 TIGHT = 1e-12  # tolerance of single points
 SMALL = 1e-11  # corrections below this, and the tolerance, end the iteration however they came about
@@ -24,29 +18,6 @@ ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative t
 STRAY = 0.3  # part of a chord by which a point may lie off the interpolation between its ends
 STALLED = 1e-6  # corrections below this that do not shrink any more are roundoff
 HUGE = 1e6  # larger corrections are a divergence
-
-
-class Scratch(NamedTuple):
-    """Work space of the loop: unknowns (N,), then a row of the bordered system, its solutions and a guess (N + 1,)."""
-
-    u: np.ndarray
-    border: np.ndarray
-    step: np.ndarray
-    tangent: np.ndarray
-    guess: np.ndarray
-
-
-class Found(NamedTuple):
-    """What is found of k points: shapes (k, N), (k, N + 1), (k, row), (k, 5).
-
-    ``numbers`` are p; the number of sweeps (-1: no convergence; -2: not evaluable; -3: the tangent is not finite; -4: the point
-    belongs to another branch); the residual; the sign of the bordered determinant for the tangent; the size of the last correction.
-    """
-
-    u: np.ndarray
-    tangents: np.ndarray
-    rows: np.ndarray
-    numbers: np.ndarray
 
 
 def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
@@ -253,7 +224,7 @@ def points(
                 stage, s = 3, 0.0
                 continue
             stage, outcome = 2, PASSED
-            ahead = begin(known, 0.0, 1.0, first_value, value, first_p, p, known[TOLERANCE], known[JUMP])
+            ahead = begin(known, 0.0, 1.0, first_value, value, first_p, p, known[PRECISION], known[JUMP])
         else:
             ahead = follow(known, s, value, p)
         if ahead == ahead:

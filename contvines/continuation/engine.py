@@ -9,13 +9,10 @@ import numpy as np
 
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Adaptive, Nearing, Rough
-from ..problems.approach import approach
 from ..problems.protocol import Problem
-from . import bracketing, corrector
-from . import loop as source
+from . import layout
 from .aims import NO_COLUMNS, NOTHING, Aim
-from .arrays import Metric
-from .interpreted import InterpretedLoop
+from .layout import Found, Metric, Scratch
 from .rows import Rows
 from .settings import Settings
 from .solved import Hit as Hit
@@ -76,24 +73,24 @@ class Engine(Rows):
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.metric = Metric(self.weights, self.scale, 1.0 / n, float(self.weights[n]))
-        self.scratch = corrector.Scratch(np.zeros(n), *np.zeros((4, n + 1)))
-        control = np.zeros(source.CONTROL_SIZE)
-        control[source.ANGLE] = settings.angle
-        control[source.MIN_STEP], control[source.MAX_STEP] = settings.min_step, settings.max_step
+        self.scratch = Scratch(np.zeros(n), *np.zeros((4, n + 1)))
+        control = np.zeros(layout.CONTROL_SIZE)
+        control[layout.ANGLE] = settings.angle
+        control[layout.MIN_STEP], control[layout.MAX_STEP] = settings.min_step, settings.max_step
         # a tolerance below what the noise of the equations allows is none
-        control[source.TOLERANCE] = max(settings.tolerance, NOISY * self.noise)
-        control[source.SWEEPS] = settings.max_iterations
-        control[source.LOWER], control[source.UPPER] = self.lower, self.upper
-        control[source.ROW_MARGINS] = 2 * self.m
-        control[source.NOISE] = self.noise
+        control[layout.TOLERANCE] = max(settings.tolerance, NOISY * self.noise)
+        control[layout.SWEEPS] = settings.max_iterations
+        control[layout.LOWER], control[layout.UPPER] = self.lower, self.upper
+        control[layout.ROW_MARGINS] = 2 * self.m
+        control[layout.NOISE] = self.noise
         self.control = control
         self._rows = np.zeros((0, self.row_size))
         self.guess = np.zeros((4, n + 1))  # a chord of which the first end alone is used
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
-        self.known = np.zeros(bracketing.SIZE)
+        self.known = np.zeros(layout.SIZE)
         self.loop = self._loop(kernels)
-        self.part = corrector.Found(
+        self.part = Found(
             np.empty((1, n)), np.empty((1, n + 1)), np.zeros((1, self.row_size)), np.empty((1, 5))
         )
 
@@ -101,6 +98,8 @@ class Engine(Rows):
         """March and single points, in the native core for compiled problems."""
         rest = self.metric, self.noise, self.known, self.scratch, self.settings.step_rule
         if not self.compiled:
+            from .interpreted import InterpretedLoop
+
             return InterpretedLoop(kernels, self.data, self.work, *rest)
         from .native import NativeLoop
 
@@ -194,7 +193,7 @@ class Engine(Rows):
         length: float,
         border: np.ndarray,
         along: np.ndarray,
-    ) -> corrector.Found:
+    ) -> Found:
         """The points of a branch at places along a chord; see :func:`contvines.continuation.corrector.points`."""
         return self._run(chord, (start, length), places, border, along, 40)[0]
 
@@ -220,13 +219,13 @@ class Engine(Rows):
             See :func:`contvines.continuation.bracketing.begin`.
         """
         known = self.known
-        known[bracketing.TOLERANCE], known[bracketing.JUMP] = tolerance, jump
+        known[layout.PRECISION], known[layout.JUMP] = tolerance, jump
         found, outcome = self._run(chord, (start, length), ONE, border, along, 40, aim)
-        if outcome == corrector.NOWHERE:
+        if outcome == layout.NOWHERE:
             return None
         point = solved_point(found, 0)
         one, f_one, p_one, other, f_other, p_other = known[:6].tolist()
-        if outcome == corrector.AT_END or point is None:
+        if outcome == layout.AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
         place = one if abs(f_one) < abs(f_other) else other
         width = abs(p_one - p_other) + 4e-16 * abs(point.p)
@@ -241,14 +240,12 @@ class Engine(Rows):
         along: np.ndarray | None,
         sweeps: int,
         aim: Aim = NO_AIM,
-    ) -> tuple[corrector.Found, int]:
+    ) -> tuple[Found, int]:
         k, n = len(places), self.n
-        found = corrector.Found(
-            np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5))
-        )
+        found = Found(np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5)))
         with self.section:
             outcome = self.loop.points(
-                corrector.EVERYTHING,
+                layout.EVERYTHING,
                 chord,
                 stretch,
                 places,
@@ -274,6 +271,8 @@ class Engine(Rows):
                 return found
         found, p = None, min(max(p, self.lower), self.upper)
         if tangent is None and not self.compiled and isinstance(self.problem, Rough):
+            from ..problems.approach import approach
+
             near = approach(self.problem, np.asarray(u, dtype=float), p)
             found = None if near is None else self.at_value(near, p)
         if found is None:
@@ -291,13 +290,13 @@ class Engine(Rows):
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual."""
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        self._part(corrector.LINEARISE, self.nothing, 0.0)
+        self._part(layout.LINEARISE, self.nothing, 0.0)
         return float(self.part.numbers[0, 2])
 
     def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
         """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
         self.work[0].reshape(-1)[:] = -side[: self.n]
-        self._part(corrector.ELIMINATE, border, float(side[self.n]))
+        self._part(layout.ELIMINATE, border, float(side[self.n]))
         return self.scratch.step.copy()
 
     def _part(self, what: int, border: np.ndarray, target: float) -> None:

@@ -8,13 +8,11 @@ import numpy as np
 
 from . import corrector, loop
 from .aims import Aim
-from .arrays import Metric
-from .corrector import Found, Scratch
-from .loop import Points
+from .layout import Found, Metric, Points, Scratch
 from .step_rule import StepRule
 
 if TYPE_CHECKING:
-    from ..problems.kernels import Kernels
+    from ..problems.protocol import Kernels
 
 
 class InterpretedLoop:

@@ -8,45 +8,27 @@ scales s: then a_u.b_u is the sum of a_j b_j / s_j^2 (the array ``weights``).
 """
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from .arrays import compare, extrapolate, fix_parameter, plane, put
 from .corrector import correct
-
-# entries of the control vector
-(
+from .layout import (
     ANGLE,
-    MIN_STEP,
-    MAX_STEP,
-    TOLERANCE,
+    BORDER,
+    LEFT_INTERVAL,
     LOWER,
-    UPPER,
+    MARGIN,
+    MAX_STEP,
+    MIN_STEP,
+    NOISE,
+    NOT_EVALUABLE,
+    ROW_MARGINS,
+    RUNNING,
+    STEP_TOO_SMALL,
     STOP_AT_BORDER,
     SWEEPS,
-    ROW_MARGINS,
-    NOISE,
-) = range(10)
-CONTROL_SIZE = 10
-
-# status codes (contvines.continuation.status)
-RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
-
-MARGIN = (
-    -1e-12
-)  # margins below this are negative; above it they are zero to rounding, at a border or all along a branch
-
-
-class Points(NamedTuple):
-    """Arrays of a chunk of M points: shapes (M, N), (M,), (M, N + 1), (M, row), (M,), (M,)."""
-
-    points: np.ndarray
-    values: np.ndarray
-    tangents: np.ndarray
-    rows: np.ndarray
-    signs: np.ndarray
-    corrections: np.ndarray
+    TOLERANCE,
+    UPPER,
+)
 
 
 def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch):

@@ -13,9 +13,7 @@ from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 from ..interrupts import wanted
 from .aims import Aim
-from .arrays import Metric
-from .corrector import Found, Scratch
-from .loop import RUNNING, Points
+from .layout import RUNNING, Found, Metric, Points, Scratch
 from .step_rule import BY_ANGLE, StepRule
 
 if TYPE_CHECKING:

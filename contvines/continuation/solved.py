@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .corrector import Found
+from .layout import Found
 
 
 class Solved(NamedTuple):

@@ -12,7 +12,7 @@ import numpy as np
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem
-from . import loop as source
+from . import layout
 from .chunk import Chunk
 from .closing import Closing
 from .engine import Engine, Solved
@@ -89,7 +89,7 @@ def _chunks(
     retrace: Retrace | None = None
     problem: Any = engine.problem
     adaptive = engine.adaptive
-    engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
+    engine.control[layout.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0
     ):
@@ -107,7 +107,7 @@ def _chunks(
         known = journal.recall(name) if journal is not None else None
         if known is not None:
             chunk = Chunk(
-                *(np.asarray(known[part]) for part in source.Points._fields),
+                *(np.asarray(known[part]) for part in layout.Points._fields),
                 status=Status(int(known["status"])),
             )
             h = float(known["h"])
@@ -138,7 +138,7 @@ def _chunks(
                 chunk.status = Status.MAX_POINTS
             # a step that failed at once is nothing to keep: a start that is refused leaves no journal
             if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
-                values: dict[str, Any] = {part: getattr(chunk, part) for part in source.Points._fields}
+                values: dict[str, Any] = {part: getattr(chunk, part) for part in layout.Points._fields}
                 for part in (
                     "points",
                     "tangents",
@@ -192,7 +192,7 @@ def _march(
 ) -> tuple[Chunk, float]:
     first, n = len(history), engine.n
     size = first + capacity
-    arrays = source.Points(
+    arrays = layout.Points(
         np.empty((size, n)),
         np.empty(size),
         np.empty((size, n + 1)),
@@ -205,8 +205,8 @@ def _march(
             arrays, (point.u, point.p, point.tangent, point.row, point.sign, point.correction)
         ):
             array[i] = known
-    engine.control[source.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
-    engine.control[source.MAX_STEP] = longest
+    engine.control[layout.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
+    engine.control[layout.MAX_STEP] = longest
     with engine.section:
         filled, h, status = engine.loop.march(arrays, first, float(h), engine.control)
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)

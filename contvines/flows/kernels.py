@@ -9,7 +9,7 @@ import numpy as np
 
 from ..core.library import native
 from ..problems.functions import NotEvaluable
-from ..problems.kernels import Kernels
+from ..problems.protocol import Kernels
 from .core import CoreCycle, across
 from .elimination import condense, multipliers_of, solve_collocation
 from .mesh import closed

@@ -11,13 +11,12 @@ import numpy as np
 from ..bifurcation.detect import Detector
 from ..bifurcation.kinds import BORDERS
 from ..branches.assembly import filled, make_branch
-from ..branches.beginning import from_border
 from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
-from ..branches.opening import on_this_side
+from ..branches.opening import from_border, on_this_side
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from ..continuation.starts import solve_start, told_start
 from ..continuation.status import Status
 from ..interrupts import listening, take

@@ -12,7 +12,6 @@ from ..bifurcation.kind import Classified
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.located import Located, Role
 from ..bifurcation.location_error import missed, singular_within
-from ..bifurcation.mesh_error import mesh_error
 from ..bifurcation.multiplier_counts import counts
 from ..bifurcation.point_on_branch import PointOnBranch
 from ..bifurcation.switching import null_vectors
@@ -22,7 +21,7 @@ from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
-from ..continuation.loop import MARGIN
+from ..continuation.layout import MARGIN
 from ..interrupts import OPEN
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
@@ -276,6 +275,8 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
         special.location_error, problem.uncertainty() * engine.parameter_unit(special.value)
     )
     if isinstance(problem, Adaptive):
+        from ..bifurcation.mesh_error import mesh_error
+
         own = mesh_error(engine, special)
         if own is None:
             own = problem.accuracy(special.u, special.value) * engine.parameter_unit(special.value)

@@ -11,8 +11,7 @@ from ..core.library import address
 from ..core.records import pack
 from ..core.table import TableKernels, native_table
 from ..problems.abilities import notation_of
-from ..problems.kernels import Kernels
-from ..problems.protocol import Problem, ProblemDefaults
+from ..problems.protocol import Kernels, Problem, ProblemDefaults
 from .borders import fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition

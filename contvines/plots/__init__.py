@@ -1,26 +1,52 @@
 """Pictures of branches, orbits, multipliers and the graph; matplotlib is imported only when one is drawn."""
 
-from importlib import import_module
+from typing import TYPE_CHECKING
 
-_HOMES = {
-    "plot_atlas": "contvines.plots.atlas",
-    "plot_basins": "contvines.plots.basins",
-    "plot_chart": "contvines.plots.chart",
-    "plot_circles": "contvines.plots.circles",
-    "plot_diagram": "contvines.plots.diagram",
-    "plot_erosion": "contvines.plots.erosion",
-    "plot_multipliers": "contvines.plots.multipliers",
-    "plot_network": "contvines.plots.network",
-    "plot_portrait": "contvines.plots.portrait",
-    "plot_survey": "contvines.plots.survey",
-    "plot_sweep": "contvines.plots.sweep",
-    "save_figure": "contvines.plots.figures",
-}
+from contvines.shared.on_demand import on_demand
 
-__all__ = [*_HOMES]
+if TYPE_CHECKING:
+    from contvines.plots.atlas import plot_atlas
+    from contvines.plots.basins import plot_basins
+    from contvines.plots.chart import plot_chart
+    from contvines.plots.circles import plot_circles
+    from contvines.plots.diagram import plot_diagram
+    from contvines.plots.erosion import plot_erosion
+    from contvines.plots.figures import save_figure
+    from contvines.plots.multipliers import plot_multipliers
+    from contvines.plots.network import plot_network
+    from contvines.plots.portrait import plot_portrait
+    from contvines.plots.survey import plot_survey
+    from contvines.plots.sweep import plot_sweep
 
+__all__ = [
+    "plot_atlas",
+    "plot_basins",
+    "plot_chart",
+    "plot_circles",
+    "plot_diagram",
+    "plot_erosion",
+    "plot_multipliers",
+    "plot_network",
+    "plot_portrait",
+    "plot_survey",
+    "plot_sweep",
+    "save_figure",
+]
 
-def __getattr__(name: str):
-    if name not in _HOMES:
-        raise AttributeError(f"module 'contvines.plots' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+__getattr__ = on_demand(
+    __name__,
+    {
+        "plot_atlas": "contvines.plots.atlas",
+        "plot_basins": "contvines.plots.basins",
+        "plot_chart": "contvines.plots.chart",
+        "plot_circles": "contvines.plots.circles",
+        "plot_diagram": "contvines.plots.diagram",
+        "plot_erosion": "contvines.plots.erosion",
+        "plot_multipliers": "contvines.plots.multipliers",
+        "plot_network": "contvines.plots.network",
+        "plot_portrait": "contvines.plots.portrait",
+        "plot_survey": "contvines.plots.survey",
+        "plot_sweep": "contvines.plots.sweep",
+        "save_figure": "contvines.plots.figures",
+    },
+)

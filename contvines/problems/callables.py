@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from .dense import DenseWork
-    from .kernels import Kernels
     from .large.sparse_work import SparseWork
+    from .protocol import Kernels
 
 NOTICED = 1e-13  # noise of the unknowns below this is roundoff
 # relative accuracy of a value that is found to roundoff, for each unknown: brackets may be narrower than that

@@ -12,8 +12,8 @@ from .abilities import Nearing
 from .blas import dot, position
 from .functions import NotEvaluable
 from .interpreted import assign, inspect, not_finite
-from .kernels import Kernels
 from .nearness import distance, nearest
+from .protocol import Kernels
 from .spectra import reference_of, watched
 
 if TYPE_CHECKING:

@@ -59,12 +59,38 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from .kernels import Kernels as Kernels
-from .scales import Scales
+if TYPE_CHECKING:
+    from .scales import Scales
+
+
+@dataclass(frozen=True)
+class Kernels:
+    """The functions of a problem (see the contract at the top).
+
+    Parameters
+    ----------
+    linearise, bordered, inspect : callable
+        In Python. A compiled problem has a `contvines.core.table.TableKernels` in the place of this.
+    compiled : bool
+        False.
+    assign, flip, transpose, matrix : callable, optional
+    column : int
+        For loci against a second parameter; see the contract.
+    """
+
+    linearise: Callable[..., float]
+    bordered: Callable[..., float]
+    inspect: Callable[..., None]
+    compiled: bool = False
+    assign: Callable[..., None] | None = None
+    flip: Callable[..., None] | None = None
+    transpose: Callable[..., None] | None = None
+    column: int = -1
+    matrix: Callable[..., np.ndarray] | None = None
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,18 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any
 
-#: Modules that list factories, as ``FACTORIES``: name in a file -> "module:function" of (description, trust).
-PROVIDERS = ("contvines.problems.factories", "orbits.factories")
+#: Factories of this package's own problems: name in a file -> "module:function" of (description, trust). Names of earlier versions stay,
+#: for their files.
+FACTORIES = {
+    "contvines.flows.files:from_description": "contvines.flows.files:from_description",
+    "contvines.loci.problem:from_description": "contvines.loci.problem:from_description",
+    "contvines.problems.algebraic:from_description": "contvines.problems.algebraic:from_description",
+    "contvines.problems.maps:from_description": "contvines.problems.maps:from_description",
+    "contvines.algebraic:from_description": "contvines.problems.algebraic:from_description",
+    "contvines.map_problem:from_description": "contvines.problems.maps:from_description",
+}
+#: Module of another package that lists its own, as ``FACTORIES``.
+PROVIDER = "orbits.factories"
 
 _added: dict[str, Callable[..., Any]] = {}
 _callables: dict[str, Callable] = {}
@@ -46,21 +56,24 @@ def factory(name: object) -> Callable[..., Any]:
     if isinstance(name, str):
         if name in _added:
             return _added[name]
-        for provider in PROVIDERS:
-            try:
-                listed: Mapping[str, str] = import_module(provider).FACTORIES
-            except ModuleNotFoundError as error:
-                if error.name and provider.startswith(error.name):
-                    continue  # this half is not installed
-                raise
-            if name in listed:
-                module, _, function = listed[name].partition(":")
-                return getattr(import_module(module), function)
+        listed: Mapping[str, str] = FACTORIES if name in FACTORIES else _provided()
+        if name in listed:
+            module, _, function = listed[name].partition(":")
+            return getattr(import_module(module), function)
     shown = repr(name) if len(repr(name)) <= 80 else repr(name)[:77] + "..."
     raise UnknownFactory(
         f"the file names the factory {shown}, which is not one that rebuilds problems; it was not called "
         "(contvines.register(name, function) adds one of your own)"
     )
+
+
+def _provided() -> Mapping[str, str]:
+    try:
+        return import_module(PROVIDER).FACTORIES
+    except ModuleNotFoundError as error:
+        if error.name and PROVIDER.startswith(error.name):
+            return {}  # that half is not installed
+        raise
 
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> Any:

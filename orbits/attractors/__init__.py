@@ -1,16 +1,14 @@
-"""What a motion settles on: recognised by recurrence, at one value or along a sweep.
+"""What a motion settles on: recognised by recurrence, at one value or along a sweep."""
 
-The function `sweep` hides the module of the same name; ``from orbits.attractors.sweep import ...`` reaches into it.
-"""
+from typing import TYPE_CHECKING
 
-from typing import TYPE_CHECKING, Any
-
-from orbits.attractors.attractor import Attractor
-from orbits.attractors.search import different_attractors, find_attractor
-from orbits.attractors.sweep import SweepRow, find_attractors, sweep, sweeps
+from contvines.shared.on_demand import on_demand
 
 if TYPE_CHECKING:
+    from orbits.attractors.attractor import Attractor
     from orbits.attractors.page import PageAttractor
+    from orbits.attractors.search import different_attractors, find_attractor
+    from orbits.attractors.sweeping import SweepRow, find_attractors, sweep, sweeps
 
 __all__ = [
     "Attractor",
@@ -23,10 +21,13 @@ __all__ = [
     "sweeps",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name == "PageAttractor":  # with the machines on a page
-        from orbits.attractors.page import PageAttractor
-
-        return PageAttractor
-    raise AttributeError(f"orbits.attractors has no {name!r}")
+__getattr__ = on_demand(
+    __name__,
+    {
+        "Attractor": "orbits.attractors.attractor",
+        "PageAttractor": "orbits.attractors.page",
+        "different_attractors": "orbits.attractors.search",
+        "find_attractor": "orbits.attractors.search",
+        **dict.fromkeys(("SweepRow", "find_attractors", "sweep", "sweeps"), "orbits.attractors.sweeping"),
+    },
+)

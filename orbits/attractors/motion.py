@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
 SOLVED = 1000.0  # forcing periods whose simulation takes about as long as Newton's method for a cycle
+SAME = 1e-5  # difference of two canonical forms that are one
 RARE = 32  # forcing periods of the longest recurrence looked for where neighbours come together
 
 
@@ -53,3 +55,22 @@ def wandering(exponent: float, error: float, roomy: bool) -> str:
     if exponent > SIGMAS * error:
         return "chaotic"
     return "quasi-periodic" if roomy and exponent > -SIGMAS * error else "slow"
+
+
+def distinct(cycles: Iterable[Any], parameter: str, p: float) -> list[tuple[Any, np.ndarray]]:
+    """Problems and unknowns of orbits at a value of a parameter, each motion once."""
+    found: list[tuple[Any, np.ndarray]] = []
+    forms: list[tuple[Any, np.ndarray]] = []
+    for orbit in cycles:
+        problem = orbit.problem(parameter)
+        u = orbit.seed(problem)[0]
+        form = problem.canonical(u, p)
+        if not any(alike(form, known) for known in forms):
+            forms.append(form)
+            found.append((problem, u))
+    return found
+
+
+def alike(one: tuple[Any, np.ndarray], other: tuple[Any, np.ndarray]) -> bool:
+    """Whether two canonical forms are those of one motion."""
+    return one[0] == other[0] and np.allclose(one[1], other[1], atol=SAME)

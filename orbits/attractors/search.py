@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors import observation, recurrence
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.simulation.runs import simulator_of
 
@@ -18,20 +17,25 @@ if TYPE_CHECKING:
 
 
 def recognising(model: Varying) -> ModuleType:
-    """The module that recognises what motions of a machine recur to."""
+    """The module by which attractors of a machine are recognised."""
     if model.flow == "page":
         from orbits.attractors import page
 
         return page
+    from orbits.attractors import recurrence
+
     return recurrence
 
 
 def observing(model: Varying) -> ModuleType:
-    """The module that tells of them in a sweep."""
-    return recognising(model) if model.flow == "page" else observation
+    """The module that says what is observed on them."""
+    if model.flow == "page":
+        return recognising(model)
+    from orbits.attractors import observation
+
+    return observation
 
 
-"""How an attractor is recognised, and what is observed on it, by the flow of its machine."""
 TOLERANCE = 1e-6  # largest difference of two nodes that may count as a return
 SAME = 1e-4  # difference of the nodes of one motion met twice
 DRAWS = 200  # starts drawn at most to find one that can be simulated

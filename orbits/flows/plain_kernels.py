@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 
-PLAIN = (1.0, 1.0)
-"""Length and rate of unknowns that are counted in the machine's own units."""
 SMALL = 1e-7
 """Length of a step that is taken whatever it does to the residual."""
 FLAT = 2

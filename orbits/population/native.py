@@ -13,7 +13,6 @@ from orbits.attractors.attractor import Attractor
 from orbits.attractors.batches import AT_REST, LOST, SETTLED, WANDERING, lyapunov, settle_all
 from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
 from orbits.attractors.recurrence import recurring, settle
-from orbits.attractors.search import described
 from orbits.flows.protocol import Record, SimulationError
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.notation import STARTS
@@ -22,7 +21,6 @@ from orbits.orbit import Orbit
 from orbits.population.sorting import Sorting
 from orbits.simulation.driver import skip
 from orbits.simulation.native import NativeSimulator
-from orbits.starts.closed import closed_orbits
 
 if TYPE_CHECKING:
     from orbits.machines.base import Model
@@ -110,10 +108,14 @@ class NativeStarts:
 
     def closed(self, params: np.ndarray) -> Iterable[Any]:
         """The orbits known in closed form."""
+        from orbits.starts.closed import closed_orbits
+
         return closed_orbits(self.model, params, Orbit)
 
     def observed(self, state: np.ndarray, p: float) -> dict[str, float]:
         """Measures of the motion through a state."""
+        from orbits.attractors.search import described
+
         params = self.vector(p)
         found = settle(self.model, self.engine, params, state.copy(), 0.0, LONGEST, patience=0)
         return described(found)[1]

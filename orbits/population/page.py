@@ -11,7 +11,7 @@ import numpy as np
 
 from orbits.attractors.motion import RARE, Motion, wandering
 from orbits.attractors.page import RETURNED, look, of_record, returning, skip, still
-from orbits.attractors.sweep import sweep
+from orbits.attractors.sweeping import sweep
 from orbits.contacts.letters import RELEASE
 from orbits.contacts.wall import Wall
 from orbits.flows.page.growth import growth

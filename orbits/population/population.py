@@ -7,11 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors.distinct import distinct
-from orbits.attractors.embedded import embedded_cycles
 from orbits.attractors.low_discrepancy import low_discrepancy
-from orbits.attractors.motion import SOLVED, Motion
-from orbits.attractors.returning import returning_cycles
+from orbits.attractors.motion import SOLVED, Motion, distinct
 from orbits.population.native import NativeStarts
 from orbits.population.sorting import Sorting
 from orbits.problem import rebuild
@@ -146,6 +143,8 @@ class Population:
             `Motion.state` of a chaotic motion.
         p : float
         """
+        from orbits.attractors.embedded import embedded_cycles
+
         params = self.vector(p)
         simulator = self._sort.simulator(params, state)
         cycles = list(embedded_cycles(simulator, self._sort.longest, self._sort.solver(params, wide=True)))
@@ -163,6 +162,8 @@ class Population:
         starts : float array (m, n)
         p : float
         """
+        from orbits.attractors.returning import returning_cycles
+
         params = self.vector(p)
         simulator = self._sort.simulator(params)
         if not simulator.forced:

@@ -6,8 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from orbits.attractors.distinct import alike
-from orbits.attractors.motion import Motion
+from orbits.attractors.motion import Motion, alike
 
 
 class Fleet(Protocol):

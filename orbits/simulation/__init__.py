@@ -2,15 +2,17 @@
 
 Every machine brings its own compiled stepper; the contract that they share is written down in
 :mod:`orbits.machines.stepping`. Everything else here knows no machine.
-
-Importing this package is cheap: compiled code is loaded by the first simulation. The function `replay` hides the
-module of the same name; ``from orbits.simulation.replay import ...`` reaches into it.
 """
 
-from orbits.flows.protocol import SimulationError
-from orbits.simulation.replay import Replay, replay, replay_nodes
-from orbits.simulation.runs import simulate
-from orbits.simulation.trajectory import Balance, Samples, Trajectory
+from typing import TYPE_CHECKING
+
+from contvines.shared.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from orbits.flows.protocol import SimulationError
+    from orbits.simulation.replaying import Replay, replay, replay_nodes
+    from orbits.simulation.runs import simulate
+    from orbits.simulation.trajectory import Balance, Samples, Trajectory
 
 __all__ = [
     "Balance",
@@ -22,3 +24,13 @@ __all__ = [
     "replay_nodes",
     "simulate",
 ]
+
+__getattr__ = on_demand(
+    __name__,
+    {
+        "SimulationError": "orbits.flows.protocol",
+        "simulate": "orbits.simulation.runs",
+        **dict.fromkeys(("Replay", "replay", "replay_nodes"), "orbits.simulation.replaying"),
+        **dict.fromkeys(("Balance", "Samples", "Trajectory"), "orbits.simulation.trajectory"),
+    },
+)

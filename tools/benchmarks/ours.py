@@ -6,9 +6,7 @@ import contvines as cv
 from contvines.command.compose import first_orbit, run_diagram
 from contvines.command.study import read_study
 from contvines.continuation import loop as source
-from contvines.continuation.arrays import Metric
-from contvines.continuation.bracketing import SIZE
-from contvines.continuation.corrector import Scratch
+from contvines.continuation.layout import SIZE, Metric, Scratch
 from contvines.continuation.native import NativeLoop
 from contvines.continuation.step_rule import BY_ANGLE
 from orbits import Absorber

@@ -23,7 +23,7 @@ from contvines.graph.stretches import highest, inside, stretches
 from contvines.survey import survey
 from contvines.survey.completion import complete
 from orbits.attractors.search import beginning_with
-from orbits.attractors.sweep import sweep
+from orbits.attractors.sweeping import sweep
 from orbits.design import Family
 from orbits.machines.physical import physical
 

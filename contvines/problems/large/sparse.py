@@ -19,8 +19,8 @@ from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator
 
 from ..functions import NotEvaluable
 from ..interpreted import assign, inspect
-from ..kernels import Kernels
 from ..nearness import distance
+from ..protocol import Kernels
 from . import matrix_free
 from .nearest_eigenvalues import nearest_sparse
 from .sparse_factors import SuperLUFactors

@@ -7,20 +7,21 @@ A symmetric cycle is solved for on half its word, closed by the mirror. The empt
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from orbits.arguments import Workspace, cycle_data, workspace
 from orbits.flows.native.kernels import assemble
-from orbits.flows.native.rest_equations import RestEquations
-from orbits.flows.plain_kernels import PLAIN
-from orbits.flows.protocol import Approach
+from orbits.flows.protocol import PLAIN, Approach
 from orbits.machines.base import Model
 from orbits.machines.path import along
 from orbits.words import Word
 from orbits.words.alphabet import LEFT, Watch
 from orbits.words.margins import index_of, margin_name
+
+if TYPE_CHECKING:
+    from orbits.flows.native.rest_equations import RestEquations
 
 _shared = lru_cache(maxsize=64)(workspace)
 
@@ -253,5 +254,7 @@ def equations(
 ) -> Equations | RestEquations:
     """The equations of the cycles with this word."""
     if not len(word):
+        from orbits.flows.native.rest_equations import RestEquations
+
         return RestEquations(model, parameter, params)
     return Equations(model, word, int(periods), parameter, params, symmetric, units)

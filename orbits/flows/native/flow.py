@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from orbits.contacts.changes import Change
 from orbits.flows.native import cycle_equations, measures, sampling, vanishing
 from orbits.flows.native.cycle_equations import Equations
-from orbits.flows.native.rest_equations import RestEquations
 from orbits.flows.protocol import Motion, Vanishing
 from orbits.machines.base import Model
 from orbits.machines.events import events_of
 from orbits.words import Word
+
+if TYPE_CHECKING:
+    from orbits.flows.native.rest_equations import RestEquations
 
 
 class NativeFlow:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.flows.plain_kernels import PLAIN, PlainKernels
-from orbits.flows.protocol import Approach
+from orbits.flows.plain_kernels import PlainKernels
+from orbits.flows.protocol import PLAIN, Approach
 from orbits.machines.base import Model
 from orbits.machines.path import along, assign
 

@@ -12,8 +12,8 @@ from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.flows.page import flights, loci, sampling
 from orbits.flows.page.margins import fill_margins, owned
-from orbits.flows.plain_kernels import PLAIN, PlainKernels
-from orbits.flows.protocol import Approach
+from orbits.flows.plain_kernels import PlainKernels
+from orbits.flows.protocol import PLAIN, Approach
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
 from orbits.machines.path import along

@@ -10,8 +10,8 @@ from hypothesis.extra.numpy import arrays
 
 from contvines.bifurcation.scan import NativeScan, with_arrays
 from contvines.bifurcation.symmetry_test import SymmetryTest
-from contvines.continuation.arrays import Metric
 from contvines.continuation.chunk import Chunk
+from contvines.continuation.layout import Metric
 from contvines.continuation.rows import Rows
 from contvines.continuation.status import Status
 from contvines.core.library import native

@@ -9,7 +9,7 @@ import contvines as cv
 from contvines.graph.stretches import spread, unseen
 from contvines.survey import PlanError, survey
 from orbits import coupled_two
-from orbits.attractors.sweep import sweep
+from orbits.attractors.sweeping import sweep
 from orbits.design import Family
 from orbits.machines.physical import physical
 from tests.contvines.survey.circles import Circles

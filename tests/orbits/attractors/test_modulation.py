@@ -7,7 +7,7 @@ from contvines.loci.regions import Region
 from orbits import Coupled, Machine
 from orbits.attractors import find_attractor
 from orbits.attractors.modulation import modulation
-from orbits.attractors.sweep import sweep
+from orbits.attractors.sweeping import sweep
 from orbits.machines.catalogue import stepper
 from orbits.simulation import simulate
 from orbits.symbols import cos

@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractor
-from orbits.simulation.replay import replay
+from orbits.simulation.replaying import replay
 from orbits.starts.find import polish
 from tests.machines import ABSORBER
 

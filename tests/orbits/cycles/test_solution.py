@@ -7,7 +7,7 @@ import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.cycles.deviation import by_events, by_positions
 from orbits.cycles.identity import is_symmetric
-from orbits.simulation.replay import replay
+from orbits.simulation.replaying import replay
 from orbits.words import Word
 from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact

@@ -8,7 +8,7 @@ from orbits import Absorber, Coupled
 from orbits.machines.catalogue import stepper as stepped
 from orbits.orbit import Orbit
 from orbits.simulation import replay
-from orbits.simulation.replay import _Cycle, _returns
+from orbits.simulation.replaying import _Cycle, _returns
 from orbits.simulation.return_map import go_round
 from orbits.words import Word
 from tools.fuzz.many_digits import exact
