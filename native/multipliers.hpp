@@ -400,7 +400,8 @@ struct Rotation { double c; Complex s; };  // [[c, s], [-conj s, c]]
 inline Rotation rotation(Complex f, Complex g) {  // maps (f, g) to (r, 0)
     double size = size_of(g), other = size_of(f);
     if (size == 0.0) return {1.0, {0.0, 0.0}};
-    if (other == 0.0) return {0.0, (1.0 / size) * ~g};
+    if (fmax(size, other) < 0x1p-500) return rotation(0x1p400 * f, 0x1p400 * g);  // numbers below 2^-1022 have few bits
+    if (other < 0x1p-560) return {0.0, (1.0 / size) * ~g};
     double norm = hypotenuse(other, size);
     return {other / norm, ((1.0 / other) * f) * ((1.0 / norm) * ~g)};
 }

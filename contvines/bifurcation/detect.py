@@ -201,13 +201,14 @@ class Detector(SegmentSearch):
         return len({way > 0.0 for way, least in ways if abs(way) > least}) > 1 or self._passed(origin, start)
 
     def _passed(self, origin: Solved, start: Solved) -> bool:
-        """Whether multipliers have passed the circle away from +1 since a branch point: there only the critical ones, at +1, do not tell."""
-        engine = self.engine
-        if engine.detection != "map" or engine.adaptive:
+        """Whether multipliers (eigenvalues) have passed the circle (the axis) since a branch point, other than the critical ones at +1 (zero), which do not tell."""
+        engine, critical = self.engine, {"map": 1.0, "flow": 0.0}.get(self.engine.detection)
+        if critical is None:
             return False
-        spectrum = engine.spectrum(origin.row)
-        others = spectrum[np.abs(spectrum - 1.0) > engine.settings.together]
-        if np.any(np.abs(np.abs(others) - 1.0) <= engine.settings.together):
+        spectrum, near = engine.spectrum(origin.row), engine.settings.together * engine.rate
+        others = spectrum[np.abs(spectrum - critical) > near]
+        apart = np.abs(np.abs(others) - 1.0) if critical else np.abs(others.real)
+        if np.any(apart <= near):
             return False
         (_, *before), (_, *after) = counts(engine, np.array([origin.row, start.row])).tolist()
         return before != after

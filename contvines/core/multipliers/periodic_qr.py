@@ -28,7 +28,9 @@ def _rotation(f, g):
     if size == 0.0:
         return 1.0, 0j
     other = abs(f)
-    if other == 0.0:
+    if max(size, other) < 2.0**-500:  # numbers below 2^-1022 have few bits
+        return _rotation(2.0**400 * f, 2.0**400 * g)
+    if other < 2.0**-560:
         return 0.0, g.conjugate() / size
     norm = math.hypot(other, size)
     return other / norm, (f / other) * (g.conjugate() / norm)

@@ -49,3 +49,41 @@ def test_cycles_that_grow_to_a_hundred_times_where_they_began_go_on():
     # AUTO-07p prints 0.921972 and 0.928528
     assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([0.921972, 0.928528], abs=6e-7)
     assert np.ptp(graph["B2"].values) == pytest.approx(0.037563, abs=1e-6)
+
+
+def beside(power, gain, at):
+    """r' = r (1 - r^2), turning once in 2 pi; z' = z (a - z^power); w' = (gain (z^power - at) + 0.3 i) w - w |w|^2.
+
+    A branch leaves z = 0 at a = 0, and has z^power = a: a pair passes the circle at a = at, with w = 0 all along.
+    """
+
+    def f(x, p):
+        (c, s, z, v, w), inward = x, 1.0 - x[0] ** 2 - x[1] ** 2
+        size = z if power == 1 else z**2
+        growth = gain * (size - at) - v**2 - w**2
+        return [inward * c - s, inward * s + c, z * (p.a - size), growth * v - 0.3 * w, 0.3 * v + growth * w]
+
+    t = np.linspace(0.0, 2.0 * np.pi, 101)
+    states = np.stack([np.cos(t), np.sin(t), 0.0 * t, 0.0 * t, 0.0 * t], axis=1)
+    return cv.FlowProblem(f, states[0], {"a": -0.2}).cycle(t, states)
+
+
+def test_a_pair_passes_the_circle_while_its_states_are_zero():
+    """Derivatives by them are below the least normal number, and of few bits."""
+    graph = cv.diagram(beside(2, 1.0, 0.05), over="a", within=(-0.3, 0.2), depth=1)
+    assert [p.value for p in graph.of_kind("neimark-sacker")] == pytest.approx([0.05, 0.05], abs=1e-8)
+
+
+def test_a_pair_passes_the_circle_within_a_part_of_the_first_step_behind_a_branch_point():
+    graph = cv.diagram(beside(1, 3e3, 1e-7), over="a", within=(-0.3, 0.2), depth=1)
+    assert [p.value for p in graph.of_kind("neimark-sacker")] == pytest.approx([1e-7], abs=1e-11)
+
+
+def test_a_hopf_point_within_a_part_of_the_first_step_behind_a_branch_point():
+    def f(x, p):
+        (z, v, w), growth = x, 3e4 * (x[0] - 1e-7) - x[1] ** 2 - x[2] ** 2
+        return [z * (p.a - z), growth * v - w, v + growth * w]
+
+    flow = cv.FlowProblem(f, [0.0, 0.0, 0.0], {"a": -0.2})
+    graph = cv.diagram(flow, over="a", within=(-0.3, 0.4), depth=1)
+    assert [p.value for p in graph.of_kind("hopf")] == pytest.approx([1e-7], abs=1e-11)

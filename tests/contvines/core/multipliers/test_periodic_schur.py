@@ -220,3 +220,15 @@ def test_multipliers_of_very_different_size_where_the_product_is_useless():
                 found = compute(method, A, None, twist)
                 assert abs(mpmath.mpc(found[0]) / expected[0] - 1) < 1e-8
                 assert method is periodic_multipliers or abs(mpmath.mpc(found[1]) / expected[1] - 1) < 1e-8
+
+
+@BOTH
+def test_entries_below_the_least_normal_number(method):
+    """Blocks coupled by entries with a few bits only, as those of a state that has decayed to nothing: their multipliers are those of the blocks."""
+    turn = np.array([[math.cos(0.1), -math.sin(0.1)], [math.sin(0.1), math.cos(0.1)]])
+    A = np.zeros((40, 4, 4))
+    A[:, :2, :2], A[:, 2:, 2:] = np.diag([-0.73, 0.88]), 1.05 * turn
+    A[:, :2, 2:], A[:, 2:, :2] = 5e-324 * np.random.default_rng(0).integers(-2000, 2000, (2, 40, 2, 2))
+    found = compute(method, A)
+    pair = 1.05**40 * np.exp(4j)
+    assert distance(found, [pair, pair.conjugate(), 0.73**40, 0.88**40]) < 1e-12
