@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from contvines.command.frame import beside, check_plot, draw, held, interruptible, refuse_source, say, tell
-from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption
+from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption, SizeOption
 from contvines.command.recommendation import Recommendation
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ def recommend(
         ),
     ] = None,
     plot: PlotOption = None,
+    size: SizeOption = None,
     fresh: FreshOption = False,
     json_: JsonOption = False,
     quiet: QuietOption = False,
@@ -63,7 +64,7 @@ def recommend(
     read = read_study(study)
     place = output or beside(study, "-recommend.json")
     refuse_source(place, study)
-    check_plot(plot)
+    check_plot(plot, size)
     goal = None if target is None else _target(target, read)
     with held(place, quiet, fresh):
         found = recommended(read, place, cost / 100.0, goal, workers, quiet)
@@ -72,7 +73,7 @@ def recommend(
     if plot is not None:
         from contvines.command.recommend_picture import choice_picture
 
-        draw(plot, lambda: choice_picture(found), quiet)
+        draw(plot, lambda: choice_picture(found, size), quiet)
 
 
 def recommended(

@@ -21,12 +21,15 @@ ROOM = 1.3  # of the vertical axis beside the largest number: for the legend
 
 
 def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:
-    """Both panels; where nothing was chosen the first alone."""
+    """Both panels, one above the other in a narrow picture; where nothing was chosen the first alone."""
     from contvines.plots.figures import new_figure, settle, styled, thin_ticks
+    from contvines.plots.legends import NARROW
 
     with styled():
         figure = new_figure(figsize=size or SIZE)
-        panels = figure.subplots(1, 2 if found.curves else 1, squeeze=False)[0]
+        count = 2 if found.curves else 1
+        across = 1 if figure.get_figwidth() < NARROW else count
+        panels = figure.subplots(count // across, across, squeeze=False).ravel()
         draw_places(panels[0], found)
         if found.curves:
             draw_responses(panels[1], found)
@@ -104,7 +107,7 @@ def draw_responses(axes: Axes, found: Recommendation) -> None:
         ylim=(0.0, ROOM * max(max(curve.y) for curve in found.curves)),
         xlim=found.within,
     )
-    axes.legend(loc="upper center", ncols=2, fontsize="x-small")
+    axes.legend(loc="upper center", ncols=2, fontsize="x-small", handlelength=2.1, columnspacing=0.5)
 
 
 def draw_start_up(axes: Axes, found: Recommendation) -> None:

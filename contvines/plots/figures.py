@@ -152,24 +152,9 @@ def save_figure(figure: Figure, path: str | Path) -> None:
 
 
 def check_style(style: str | None) -> None:
-    """Refuse, before any work, a style that neither we nor matplotlib know.
-
-    Raises
-    ------
-    ValueError
-        With the valid names.
-    """
-    if style is None:
-        return
-    import matplotlib.style
-
-    known = [*sorted(STYLES), "default", *matplotlib.style.available]
-    for name in style.split(","):
-        if name not in known and not Path(name).is_file():
-            shown = ", ".join(each for each in known if not each.startswith("_"))
-            raise ValueError(
-                f"--style {style}: there is no such style and no such file{' ' + name if name != style else ''}; there are {shown}."
-            )
+    """Refuse, before any work, a style that neither we nor matplotlib know."""
+    with styled(style):
+        pass
 
 
 def check_size(size: tuple[float, float] | None) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -45,18 +45,17 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     settings: Any = mpl.rcParams
     names = [name for name in settings if not name.startswith("backend") and name in default]
     own = {name: settings[name] for name in names if settings[name] != default[name]}
-    chosen: list[Any] = ["default", HOUSE, own]
-    if isinstance(style, str):
-        for name in map(str.strip, style.split(",")):
-            if not (name in STYLES or name in library or name == "default" or set(name) & set("./")):
+    chosen: list[Any] = list(map(str.strip, style.split(","))) if isinstance(style, str) else [dict(style or {})]
+    with ExitStack() as stack:
+        stack.enter_context(context(["default", HOUSE, own]))
+        for name in chosen:
+            try:
+                stack.enter_context(context(STYLES.get(name, name) if isinstance(name, str) else name))
+            except OSError:
                 raise ValueError(
-                    f"style = {name!r}: there is no such style{did_you_mean(name, [*STYLES, *library])}; "
+                    f"style {name!r}: there is no such style or file{did_you_mean(name, [*STYLES, *library])}; "
                     f"choose from {', '.join(sorted(STYLES))}, a style of matplotlib's, or the path of a style sheet."
-                )
-            chosen.append(STYLES.get(name, name))
-    elif style is not None:
-        chosen.append(dict(style))
-    with context(chosen):
+                ) from None
         yield
 
 
