@@ -23,11 +23,10 @@ def refuse_ending(path: Path, ending: str) -> None:
     """
     if path.name == "-":
         raise ValueError(
-            f"{path}: results are kept in files, not written to the standard output; "
-            f"-o result.{ending} would do."
+            f"{path}: results are kept in files, not written to the standard output; use -o result.{ending}."
         )
     own = path.suffix.lower().removeprefix(".")
     if own in KNOWN and own != ending and own not in ALSO.get(ending, ()):
         raise ValueError(
-            f"{path}: this is not a .{ending} file by its name; -o {path.with_suffix('.' + ending)} would do."
+            f"{path}: this is not a .{ending} file by its name; use -o {path.with_suffix('.' + ending)}."
         )

@@ -28,6 +28,7 @@ copybutton_prompt_text = r"\$ |>>> "
 copybutton_prompt_is_regexp = True
 
 myst_heading_anchors = 3
+myst_enable_extensions = ["html_image"]  # pictures of a stated width
 
 # notebooks are pages of Markdown whose cells the build runs; a cell that fails, fails the build
 os.environ["PATH"] = os.pathsep.join(

@@ -323,7 +323,7 @@ REFUSED = {
     "diagram has no argument 'dept' (did you mean 'depth'?); it has seed, over": lambda: cv.diagram(
         algebraic(), within=UNIT, dept=3
     ),
-    "settings={'max_step': 0.01} would do": lambda: cv.diagram(algebraic(), within=UNIT, max_step=0.01),
+    "use settings={'max_step': 0.01}": lambda: cv.diagram(algebraic(), within=UNIT, max_step=0.01),
     "chart needs within (Its interval)": lambda: cv.chart(line(), over="q"),
     "Absorber needs friction (Coulomb coefficient) and gravity": lambda: Absorber(restitution=0.76),
     "Absorber takes its parameters by name, as restitution=0.76, not 0.5 alone": lambda: Absorber(0.5),

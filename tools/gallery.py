@@ -19,6 +19,7 @@ TOP = Path(__file__).parents[1]
 EXAMPLES, PICTURES = TOP / "examples", TOP / "docs" / "gallery"
 sys.path.insert(0, str(TOP / "docs"))  # gallery_pages
 WIDTH = 760  # pixels
+COLUMN = 3.4  # inches, of the figures of the paper: panels stand one above another
 SIZE = (5.2, 3.4)  # inches, of pictures that have no size of their own
 
 PLAIN = {
@@ -53,7 +54,7 @@ def draw(path: Path) -> None:
     elif path.parent.name == "machines":
         _script(path.with_name("draw.py"), ".", path.stem)
     elif path.parent.name == "gallery":
-        _script(path, ".")
+        _script(path, ".", "--width", str(COLUMN))
     elif path.stem in PLAIN and path.parent == EXAMPLES:
         PLAIN[path.stem](runpy.run_path(str(path))).savefig("a.png")
     else:

@@ -114,7 +114,7 @@ class Kind:
             )
         if not (isinstance(self.label, str) and LABEL.fullmatch(self.label)):
             raise ValueError(
-                f"kind {self.name}: label = {self.label!r}; capital letters would do, for example 'NSD'"
+                f"kind {self.name}: label = {self.label!r}; expected capital letters, for example 'NSD'"
             )
         for role in ("test", "verify", "classify"):
             given = getattr(self, role)

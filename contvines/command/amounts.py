@@ -31,7 +31,7 @@ def amount(option: str, text: str, name: str, units: Mapping[str, str]) -> float
         unit = units.get(name, "")
         if not unit:
             raise ValueError(
-                f"{option} {text}: {name} is a plain number here; {option} 0.5 would do."
+                f"{option} {text}: {name} is a plain number here; for example {option} 0.5."
             ) from None
         from orbits.machines.physical.units import counted
 

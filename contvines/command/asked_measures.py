@@ -33,7 +33,7 @@ def check_bounds(study: Study, command: str) -> None:
         if not low < high:
             raise ValueError(
                 f"[continue] bounds: {name} = [{low:g}, {high:g}] is no interval; "
-                f"low < high would do, -inf or inf where there is no bound."
+                f"expected low < high, -inf or inf where there is no bound."
             )
 
 

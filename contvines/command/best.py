@@ -25,7 +25,7 @@ LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
 WORST = ("worst-case", "worst", "robust")
 PEAKS = ("peak", "lower_peak")  # outcomes that the oscillator alone, and a tuned absorber, have too
 ALONE = ("bare", "tuned")  # what is told beside them
-FORM = '"lowest worst-case peak", "largest stable_LR" or "lowest 95 % peak" would do'
+FORM = 'for example "lowest worst-case peak", "largest stable_LR" or "lowest 95 % peak"'
 
 
 def read_wish(text: str) -> tuple[bool, float | None, str]:
@@ -47,7 +47,7 @@ def read_wish(text: str) -> tuple[bool, float | None, str]:
             quantile = float(rest[0]) / 100.0
             if not 0.0 < quantile <= 1.0:
                 raise ValueError(
-                    f"--best {text!r}: {rest[0]} % is no quantile; a number above 0 and at most 100 would do."
+                    f"--best {text!r}: {rest[0]} % is no quantile; expected a number above 0 and at most 100."
                 )
         rest = rest[1:]
     if len(rest) != 1:

@@ -207,7 +207,7 @@ def _limits(said: list[str], names: list[str], model: Model) -> dict[str, tuple[
             raise ValueError(f"--limits {text}: write it as {name}=LOW,HIGH, two values.")
         low, high = (_limit(text, name, part.strip(), model) for part in parts)
         if not low < high:
-            raise ValueError(f"--limits {text}: low < high would do.")
+            raise ValueError(f"--limits {text}: expected low < high.")
         found[name] = (low, high)
     return found
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from contvines.command.schema import UnknownModel, catalogue_model, given, number, would_do
+from contvines.command.schema import UnknownModel, catalogue_model, expected_value, given, number
 from contvines.command.study_data import Sort, Study, without_word, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
 from contvines.shared.near_names import did_you_mean
@@ -37,7 +37,7 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
         try:
             TypeAdapter(number(entries[parameter])).validate_python(value)
         except ValidationError:
-            return f" leaves the range of {parameter} at {value!r}; {would_do(entries[parameter])} would do at both ends."
+            return f" leaves the range of {parameter} at {value!r}; expected {expected_value(entries[parameter])} at both ends."
         return ""
 
     go = file.continue_
@@ -47,11 +47,11 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
     if go.parameter not in parameters and not wrong:
         low, high = go.within
         wrong.append(
-            f"[start] {go.parameter} is missing: it is the continuation parameter's first value; a number from {low!r} to {high!r} would do."
+            f"[start] {go.parameter} is missing: it is the continuation parameter's first value; expected a number from {low!r} to {high!r}."
         )
     elif machine.driven_by not in parameters and machine.driven_by != go.parameter:
         wrong.append(
-            f"[start] {machine.driven_by} is missing; {would_do(entries[machine.driven_by])} would do."
+            f"[start] {machine.driven_by} is missing; expected {expected_value(entries[machine.driven_by])}."
         )
     refuse([*wrong, *wrong_guess(file.start.guess, machine)])
     loose = {key: value for key, value in parameters.items() if key not in machine.field_names()}
@@ -68,9 +68,9 @@ def _without_machine(data: dict[str, Any], model: Any, name: Any) -> list[str]:
     names = " or ".join(repr(known) for known in NAMES)
     if name is not None:
         hint = did_you_mean(name, NAMES) if isinstance(name, str) else ""
-        wrong = f"[model] name = {repr(name)[:60]}: no such model{hint}; {names} would do."
+        wrong = f"[model] name = {repr(name)[:60]}: no such model{hint}; expected {names}."
     elif isinstance(model, dict):
-        wrong = f"[model] name is missing; {names} would do."
+        wrong = f"[model] name is missing; expected {names}."
     elif model is None:
         wrong = 'the section [model] is missing; it holds name = "absorber" and its parameters.'
     else:

@@ -164,7 +164,7 @@ def _diagram(
         refuse_unfinished(graph, file)
         if over is None or within is None:
             missing = "--over" if over is None else "--within"
-            raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8 would do.")
+            raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8.")
         return graph, file, over, interval("--within", within, over, graph.units)
     from contvines.command.frame import beside
     from contvines.command.run import diagram

@@ -36,7 +36,7 @@ def check_compared(kinds: list[str] | None, drawn: bool) -> None:
 
     for kind in kinds:
         if kind not in KINDS:
-            raise ValueError(f"--compare {kind}: there is no such response; {', '.join(KINDS)} would do.")
+            raise ValueError(f"--compare {kind}: there is no such response; expected {', '.join(KINDS)}.")
         if not drawn:
             raise ValueError(
                 f"--compare {kind}: there is no picture to show it in; give --plot FILE.png, too."

@@ -46,7 +46,7 @@ def check_shaken(study: Study, vary: Iterable[str] = ()) -> None:
     if unshaken is not None and not any(map(study.model.shakes, (study.parameter, *vary))):
         zero, would = unshaken
         raise ValueError(
-            f"{study.path}: {zero}: nothing shakes the machine, whatever {study.parameter} is; {would} would do."
+            f"{study.path}: {zero}: nothing shakes the machine, whatever {study.parameter} is; for example {would}."
         )
 
 

@@ -42,7 +42,7 @@ def without_tables(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, floa
             if table.condition not in conditions:
                 raise StudyError(
                     f"[{section}] {name} depends on {table.condition}, which has no value{did_you_mean(table.condition, conditions)}: "
-                    f"[conditions] {table.condition} = {table.places[0]:g} would do."
+                    f"for example [conditions] {table.condition} = {table.places[0]:g}."
                 )
             try:
                 value = table(conditions[table.condition])
@@ -67,7 +67,7 @@ def _conditions(given: Any) -> dict[str, float]:
         )
     for name, value in given.items():
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise StudyError(f"[conditions] {name} = {value!r} is no finite number; {name} = 45 would do.")
+            raise StudyError(f"[conditions] {name} = {value!r} is no finite number; for example {name} = 45.")
     return {name: float(value) for name, value in given.items()}
 
 
@@ -77,7 +77,7 @@ def _table(place: str, name: str, said: Mapping[str, Any]) -> tuple[Table, str]:
     pairs = isinstance(rows, list) and all(isinstance(row, list) and len(row) == 2 for row in rows)
     if len(said) != 1 or not pairs:
         raise StudyError(
-            f"{place} = {said!r}: a number would do, or a table over one condition, {name} = {EXAMPLE}."
+            f"{place} = {said!r}: expected a number, or a table over one condition, {name} = {EXAMPLE}."
         )
     from orbits.machines.conditions import Table
     from orbits.machines.physical.quantities import QuantityError

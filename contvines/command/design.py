@@ -54,7 +54,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     )
     if slope:
         raise StudyError(
-            f"{study.path}: slope = {slope:g} rad: design figures are closed forms of level cavities; slope = 0 would do, and contvines survey "
+            f"{study.path}: slope = {slope:g} rad: design figures are closed forms of level cavities; use slope = 0, and contvines survey "
             "or transient for the inclined one."
         )
     if study.sort is Sort.PHYSICAL:
@@ -66,8 +66,8 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     for name, value, unit, usual in asked:
         if value is not None and not SCALE[0] <= value <= SCALE[1]:
             raise StudyError(
-                f"--{name} = {value!r} is out of range; a positive number from {SCALE[0]:g} to {SCALE[1]:g} {unit} "
-                f"would do, for example {usual}."
+                f"--{name} = {value!r} is out of range; expected a number from {SCALE[0]:g} to {SCALE[1]:g} {unit}, "
+                f"for example {usual}."
             )
     if values["gravity"] == 0:
         if cavity is None or natural_frequency is None:

@@ -68,7 +68,7 @@ def _factor(path: Path, number: int, head: str, column: Column) -> float:
     factor = units.size(said, column.unit)
     if factor is None:
         raise ValueError(
-            f"{place} says {said!r}, which is no unit of this {column.what}; {column.unit} would do."
+            f"{place} says {said!r}, which is no unit of this {column.what}; expected {column.unit}."
         )
     return factor
 
@@ -89,19 +89,19 @@ def length_on_line(text: str, option: str, unit: str) -> float:
     match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
     if match is None or match[2].startswith(","):
         comma = " (decimals stand behind a point)" if match else ""
-        raise ValueError(f'{option} {text!r}: this is no {what}{comma}; "{example}" would do.')
+        raise ValueError(f'{option} {text!r}: this is no {what}{comma}; for example "{example}".')
     number, said = float(match[1]), match[2]
     if not unit:
         if said:
             raise ValueError(
-                f'{option} {text!r}: the study has no units; a plain number would do, or give the study units = "si".'
+                f'{option} {text!r}: the study has no units; expected a plain number, or give the study units = "si".'
             )
         return number
     if not said:
-        raise ValueError(f'{option} {text!r} has no unit; "{example}" would do.')
+        raise ValueError(f'{option} {text!r} has no unit; for example "{example}".')
     factor = units.size(said, unit)
     if factor is None:
-        raise ValueError(f'{option} {text!r}: {said!r} is no unit of a {what}; "{example}" would do.')
+        raise ValueError(f'{option} {text!r}: {said!r} is no unit of a {what}; for example "{example}".')
     return number * factor
 
 

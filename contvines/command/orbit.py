@@ -80,7 +80,7 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
     last = len(thing) - 1
     if place and not (place.isdigit() and int(place) <= last):
         raise ValueError(
-            f"{label}: the points of {name} are numbered from 0 to {last}; {name}:{last // 2} would do."
+            f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}."
         )
     return thing.orbit(int(place or 0))
 

@@ -30,7 +30,7 @@ def own_code(study: Path, file: str, place: str) -> Path:
     if name.is_absolute() or ".." in name.parts:
         raise ValueError(
             f"{place}: a study runs Python files of its own folder (or of folders in it) only; put {name.name}, or a link to it, "
-            f'beside {study.name}; "{name.name}" would do'
+            f'beside {study.name}; for example "{name.name}"'
         )
     return study.parent / name
 

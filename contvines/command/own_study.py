@@ -35,7 +35,7 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
     page, _, name = said.partition(":")
     if not name:
         raise StudyError(
-            f'[model] name = {said!r} names a file but no machine in it; "{page}:machine" would do.'
+            f'[model] name = {said!r} names a file but no machine in it; for example "{page}:machine".'
         )
     file = own_code(path, page, f"[model] name = {said!r}")
     flow = load_flow(file, name) if file.is_file() else None
@@ -60,7 +60,7 @@ def _structure(data: dict[str, Any], path: Path) -> tuple[Any, dict[str, Any]]:
     for name in MATRICES:
         if name not in model:
             raise StudyError(
-                f'[model] {name} is missing; {name} = [[2, -1], [-1, 2]], "{name}.csv" or "model.mat:{name[0].upper()}" would do.'
+                f'[model] {name} is missing; for example {name} = [[2, -1], [-1, 2]], "{name}.csv" or "model.mat:{name[0].upper()}".'
             )
     spec = {name: model[name] for name in (*MATRICES, *GIVEN) if name in model}
     within = go.get("within")

@@ -62,7 +62,7 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     plain["start"] = {key: value for key, value in start.items() if key in SAID}
     said, name = data.get("units", model.get("units")), str(model.get("name"))
     if said != "si":
-        return None, _without_texts(plain), [f'units = {said!r} is unknown; "si" would do, or leave it out.']
+        return None, _without_texts(plain), [f'units = {said!r} is unknown; use "si", or leave it out.']
     try:
         known = tables(model_class(name)).QUANTITIES
     except ValueError as error:

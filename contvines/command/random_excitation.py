@@ -134,7 +134,7 @@ def _computed(study: Study, seed: int | None) -> Found:
 
     said = study.random
     if said is None:
-        raise ValueError(f"{study.path}: the section [random] is missing; {EXAMPLE} would do.")
+        raise ValueError(f"{study.path}: the section [random] is missing; for example {EXAMPLE}.")
     import numpy as np
 
     model, params = study.model, study.model.vector(study.loose)

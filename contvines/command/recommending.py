@@ -233,7 +233,7 @@ class _Work:
             if self.theory is None:
                 raise ValueError(
                     f"{self.study.path}: [survey] gives no range of {self.name}, and theory none for this machine; for example "
-                    f'vary.{self.name} = {{ within = ["5 mm", "50 mm"], count = {PLACES} }} would do.'
+                    f'for example vary.{self.name} = {{ within = ["5 mm", "50 mm"], count = {PLACES} }}.'
                 )
             low, high = (share * self.theory.widest for share in SPREAD)
             values = np.geomspace(low, high, PLACES).tolist()

@@ -1,4 +1,4 @@
-"""What a TOML study may hold: its sections, their fields with what would do, and models of whole studies made from tables of parameters."""
+"""Sections and fields of a TOML study with the values that they expect, and models of whole studies made from tables of parameters."""
 
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal
@@ -23,9 +23,9 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-def text(would_do: str, **limits: Any) -> Any:
+def text(expected: str, **limits: Any) -> Any:
     """A field with limits and a way out, for refusals and for editors."""
-    return Field(description=would_do, **limits)
+    return Field(description=expected, **limits)
 
 
 Interval = Annotated[
@@ -215,7 +215,7 @@ class UnknownModel(_MachineSections):
     start: _AnyStart = _AnyStart()
 
 
-def would_do(entry: Parameter) -> str:
+def expected_value(entry: Parameter) -> str:
     """What a parameter may be, as a sentence ends with it."""
     limits = entry.limits.in_studies
     if limits.open:
@@ -236,7 +236,7 @@ def number(entry: Parameter) -> Any:
     limits = entry.limits.in_studies
     ends = {"gt" if limits.open else "ge": limits.low, "le": limits.high}
     about = {"description": f"{entry.meaning}; for example {entry.example:g}"}
-    kind = Annotated[float, Field(description=would_do(entry), json_schema_extra=about, **ends)]  # type: ignore[arg-type]
+    kind = Annotated[float, Field(description=expected_value(entry), json_schema_extra=about, **ends)]  # type: ignore[arg-type]
     if not entry.words:
         return kind
 

@@ -173,9 +173,9 @@ def wrong_ends(section: str, within: list[float]) -> list[str]:
     """What is wrong with an interval by itself."""
     low, high = within
     if low == high:
-        return [f"[{section}] within = {within!r} is empty; low < high would do."]
+        return [f"[{section}] within = {within!r} is empty; expected low < high."]
     if low > high:
-        return [f"[{section}] within = {within!r} is reversed; within = [{high!r}, {low!r}] would do."]
+        return [f"[{section}] within = {within!r} is reversed; use within = [{high!r}, {low!r}]."]
     return []
 
 

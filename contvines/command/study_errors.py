@@ -100,7 +100,7 @@ def _sentence(model: type[Section], kind: str, loc: list[Any], error: Any) -> st
         known = re.findall(r"'([^']*)'", str(error["ctx"]["expected"]))
         what = "parameter" if key == "parameter" else "choice"
         return f"{place} = {value}: there is no such {what}{did_you_mean(str(error['input']), known)}; choose one of {', '.join(known)}."
-    would = f"; expected {_would_do(fields[loc[1]])}."
+    would = f"; expected {_expected(fields[loc[1]])}."
     if kind == "missing":
         return f"{place} is missing{would}"
     if kind == "finite_number":
@@ -119,8 +119,8 @@ def _fields(section: FieldInfo) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in kind_of(section).model_fields.items()}
 
 
-def _would_do(field: FieldInfo) -> str:
-    """What would do for a field: its description, or that of its type."""
+def _expected(field: FieldInfo) -> str:
+    """The value that a field expects: its description, or that of its type."""
     parts = (part for kind in get_args(field.annotation) for part in getattr(kind, "__metadata__", ()))
     return field.description or next(
         (part.description for part in parts if getattr(part, "description", None)), "another value"

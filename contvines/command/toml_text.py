@@ -72,11 +72,11 @@ def _hint(text: str) -> str:
 
 def _habit(value: str) -> str:
     if _COMMA.fullmatch(value):
-        return f"decimals are written with a point; {value.replace(',', '.')} would do"
+        return f"decimals are written with a point: write {value.replace(',', '.')}"
     if value in _YES_NO:
-        return f"{_YES_NO[value]} would do"
+        return f"write {_YES_NO[value]}"
     if _WORD.fullmatch(value) and value not in ("true", "false", "inf", "nan"):
-        return f'text stands in quotes; "{value[:60]}" would do'
+        return f'text stands in quotes: write "{value[:60]}"'
     return "" if value else "the value is missing"
 
 

@@ -107,7 +107,7 @@ def transient(
     if read.sort is Sort.PAGE:
         if record is not None:
             raise ValueError(
-                f"{study}: --record: the base is part of the equations of a declared machine; --start-up or --release would do."
+                f"{study}: --record: the base is part of the equations of a declared machine; use --start-up or --release."
             )
         found = of_page(read, release, begin, over, time)
     elif start_up:
@@ -134,7 +134,7 @@ def _released(study: Study, text: str, within: str | None) -> Told:
     metres = displacement * (units.size(unit, "m") or 1.0) if unit else 0.0
     if abs(metres) > FARTHEST and not model.unusual:
         raise ValueError(
-            f"--release {text} is implausible for an oscillator: at most {FARTHEST:g} m would do; if it is meant, say unusual = true in "
+            f"--release {text} is implausible for an oscillator: expected at most {FARTHEST:g} m; if it is meant, say unusual = true in "
             "[model]."
         )
     try:
@@ -243,8 +243,8 @@ def _recorded(study: Study, path: Path, tail: str | None) -> Told:
         )
     if unit and not model.unusual and np.abs(acceleration).max(initial=0.0) > HARDEST:
         raise ValueError(
-            f"{path}: the largest acceleration is {np.abs(acceleration).max():.3g} m/s^2, which is implausible for a base: at most "
-            f"{HARDEST:g} m/s^2 would do; name the unit in the head of its column, or, if it is meant, say unusual = true in [model]."
+            f"{path}: the largest acceleration is {np.abs(acceleration).max():.3g} m/s^2, which is implausible for a base: expected "
+            f"at most {HARDEST:g} m/s^2; name the unit in the head of its column, or, if it is meant, say unusual = true in [model]."
         )
     try:
         seen = recorded(model, params, times / seconds, acceleration / one, after)

@@ -31,4 +31,4 @@ def hinted(thing: type[T]) -> type[T]:
 def _setting(name: str, value: object, known: Sequence[str]) -> str:
     if "settings" not in known or name not in [field.name for field in fields(Settings)]:
         return ""
-    return f"it is a setting: settings={{{name!r}: {value!r}}} would do"
+    return f"it is a setting: use settings={{{name!r}: {value!r}}}"

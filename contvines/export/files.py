@@ -86,10 +86,10 @@ def check_target(path: Path, ending: str) -> None:
     other = path.with_suffix(f".{ending}")
     if own in (".vines", ".toml"):
         kind = "graphs" if own == ".vines" else "studies"
-        raise ValueError(f"{path}: names in {own} are kept for {kind}; -o {other} would do.")
+        raise ValueError(f"{path}: names in {own} are kept for {kind}; use -o {other}.")
     if path.is_file() and (own != f".{ending}" or _is_database(path)):
         raise ValueError(
-            f"{path}: this file exists and is no .{ending} file, it is left untouched; -o {other} would do."
+            f"{path}: this file exists and is no .{ending} file, it is left untouched; use -o {other}."
             if own != f".{ending}"
             else f"{path}: this file is a database, it is left untouched; choose another name with -o."
         )

@@ -28,7 +28,7 @@ def subject(graph: Graph, label: str) -> Any:
         raise ValueError(
             f"{label}: {name} is a single point; leave out :{place}"
             if last < 0
-            else f"{label}: the points of {name} are numbered from 0 to {last}; {name}:{last // 2} would do"
+            else f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}"
         )
     return thing.orbit(int(place))
 

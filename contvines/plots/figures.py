@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.figures import STYLES, new_figure, styled, windows
+from contvines.shared.figures import new_figure, styled, windows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -179,9 +179,7 @@ def check_picture(path: str | Path) -> None:
     """
     path = Path(path)
     if path.suffix.lower().lstrip(".") not in FORMATS:
-        raise ValueError(
-            f"{path}: a picture's name must end in .{', .'.join(FORMATS)}; {path.stem}.png would do."
-        )
+        raise ValueError(f"{path}: a picture's name must end in .{', .'.join(FORMATS)}; use {path.stem}.png.")
     if not path.parent.is_dir():
         raise ValueError(
             f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."

@@ -101,12 +101,10 @@ def check_page(place: Path, plotly: bool = True) -> None:
     Raises
     ------
     ValueError
-        With the name or the installation that would do.
+        With a name that is accepted, or the installation that is missing.
     """
     if place.suffix.lower() not in (".html", ".htm"):
-        raise ValueError(
-            f"{place}: a report is a page, its name must end in .html; {place.stem}.html would do."
-        )
+        raise ValueError(f"{place}: a report is a page, its name must end in .html; use {place.stem}.html.")
     if place.is_dir() or not place.parent.is_dir():
         raise ValueError(
             f"{place}: there is no folder {str(place.parent)!r}; make it first, or choose another place."

@@ -28,7 +28,7 @@ def check_animation(path: str | Path) -> Path:
     ending = place.suffix.lstrip(".").lower()
     if ending not in ENDINGS:
         raise ValueError(
-            f"{place}: an animation ends in .{', .'.join(ENDINGS)}; {place.with_suffix('.gif')} would do."
+            f"{place}: an animation ends in .{', .'.join(ENDINGS)}; use {place.with_suffix('.gif')}."
         )
     if place.is_dir() or not place.parent.is_dir():
         what = "this is a folder" if place.is_dir() else f"there is no folder {str(place.parent)!r}"

@@ -45,7 +45,9 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     settings: Any = mpl.rcParams
     names = [name for name in settings if not name.startswith("backend") and name in default]
     own = {name: settings[name] for name in names if settings[name] != default[name]}
-    chosen: list[Any] = list(map(str.strip, style.split(","))) if isinstance(style, str) else [dict(style or {})]
+    chosen: list[Any] = (
+        list(map(str.strip, style.split(","))) if isinstance(style, str) else [dict(style or {})]
+    )
     with ExitStack() as stack:
         stack.enter_context(context(["default", HOUSE, own]))
         for name in chosen:

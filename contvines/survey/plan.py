@@ -102,10 +102,10 @@ def planned(vary: Mapping[str, Any], sampling: str = "latin", samples: int = 32,
         )
     if sampling not in SAMPLINGS:
         raise PlanError(
-            f"[survey] sampling = {sampling!r} is unknown; {', '.join(map(repr, SAMPLINGS))} would do"
+            f"[survey] sampling = {sampling!r} is unknown; expected {', '.join(map(repr, SAMPLINGS))}"
         )
     if isinstance(samples, bool) or not isinstance(samples, int) or not 1 <= samples <= MOST:
-        raise PlanError(f"[survey] samples = {samples!r}: a whole number from 1 to {MOST} would do")
+        raise PlanError(f"[survey] samples = {samples!r}: expected a whole number from 1 to {MOST}")
     axes: dict[str, np.ndarray] = {}
     uncertain: dict[str, Any] = {}
     for name, said in vary.items():
@@ -117,7 +117,7 @@ def planned(vary: Mapping[str, Any], sampling: str = "latin", samples: int = 32,
     drawn = _drawn(uncertain, sampling, samples, seed) if uncertain else {}
     plan = Plan(axes, drawn)
     if len(plan) > MOST:
-        raise PlanError(f"[survey] vary means {len(plan)} systems; at most {MOST} would do")
+        raise PlanError(f"[survey] vary means {len(plan)} systems; at most {MOST} are allowed")
     return plan
 
 
@@ -134,15 +134,15 @@ def _axis(name: str, said: object) -> np.ndarray | None:
             low, high = _two(f"{place}.within", said.get("within"))
             count = said["count"]
             if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
-                raise PlanError(f"{place}.count = {count!r}: a whole number from 1 to {MOST} would do")
+                raise PlanError(f"{place}.count = {count!r}: expected a whole number from 1 to {MOST}")
             if not low < high:
-                raise PlanError(f"{place}.within = [{low:g}, {high:g}]: low < high would do")
+                raise PlanError(f"{place}.within = [{low:g}, {high:g}]: expected low < high")
             return np.linspace(low, high, count)
         else:
             return None
     if not isinstance(said, list | tuple | np.ndarray) or not len(said):
         raise PlanError(
-            f"{place} = {said!r}: a list of values, or within and count, would do; what is uncertain has uniform = [from, to] or normal = [mean, deviation]"
+            f"{place} = {said!r}: expected a list of values, or within and count; what is uncertain has uniform = [from, to] or normal = [mean, deviation]"
         )
     return np.array([_number(f"{place}[{i}]", value) for i, value in enumerate(said)])
 
@@ -155,7 +155,7 @@ def _distribution(name: str, said: Mapping[str, Any]) -> Any:
         mean, deviation = _two(f"{place}.normal", said["normal"])
         if not deviation > 0.0:
             raise PlanError(
-                f"{place}.normal = [{mean:g}, {deviation:g}]: [mean, deviation], the second above 0, would do"
+                f"{place}.normal = [{mean:g}, {deviation:g}]: expected [mean, deviation], the second above 0"
             )
         if "within" not in said:
             return stats.norm(mean, deviation)
@@ -169,7 +169,7 @@ def _distribution(name: str, said: Mapping[str, Any]) -> Any:
 def _ends(place: str, key: str, said: Mapping[str, Any]) -> tuple[float, float]:
     low, high = _two(f"{place}.{key}", said.get(key))
     if not low < high:
-        raise PlanError(f"{place}.{key} = [{low:g}, {high:g}]: low < high would do")
+        raise PlanError(f"{place}.{key} = [{low:g}, {high:g}]: expected low < high")
     return low, high
 
 
@@ -191,7 +191,7 @@ def _drawn(uncertain: dict[str, Any], sampling: str, samples: int, seed: int) ->
 
 def _two(place: str, value: object) -> tuple[float, float]:
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise PlanError(f"{place} = {value!r}: two numbers would do")
+        raise PlanError(f"{place} = {value!r}: expected two numbers")
     return _number(f"{place}[0]", value[0]), _number(f"{place}[1]", value[1])
 
 

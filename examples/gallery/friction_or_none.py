@@ -27,7 +27,7 @@ def main():
     for flow, color, name in ((rubbing, paper.BLUE, "mu = 0.5"), (smooth, paper.RED, "mu = 0")):
         for curve in ms.frequency_response(flow, points=3000):
             left.plot(curve.detuning, curve.amplitude, color=color, lw=0.9, alpha=0.45)
-            left.plot(curve.detuning, np.where(curve.seen, curve.amplitude, np.nan), color=color, lw=2.2,
+            left.plot(curve.detuning, np.where(curve.seen, curve.amplitude, np.nan), color=color, lw=1.7,
                       ls="-" if flow is rubbing else paper.DASHED, label=rf"${name}$".replace("mu", r"\mu"))  # fmt: skip
             seen = curve.detuning[curve.seen]
             ranges[name] = (seen[seen < 0].min(), seen[seen > 0].max())

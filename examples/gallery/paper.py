@@ -196,7 +196,7 @@ def run(
         width = wanted
         picture, numbers = main()
         _fit(picture)
-        picture.savefig(folder / f"{name}.png", dpi=130 if not narrow() else 200)
+        picture.savefig(folder / f"{name}.png", dpi=130 if not narrow() else 225)
     print(f"{name}: {folder / f'{name}.png'}")
     for what, value in numbers.items():
         shown = f"{value:.6g}" if isinstance(value, float) else value

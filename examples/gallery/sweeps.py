@@ -58,7 +58,8 @@ def main():
                 label=None if known else label,
             )
         axes.set(ylim=(0, 2.4), ylabel="$|q_1|_{\\max}/b$", title=f"sweep {name}")
-        paper.legend(axes, loc="upper left")
+        if name == "up":  # the sweep down meets the same motions
+            paper.legend(axes, loc="upper left")
         kinds = Counter(
             "LR symmetric" if r.word == "LR" and r.detail.symmetric else r.word if r.periods else r.attractor
             for r in rows

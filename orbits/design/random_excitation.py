@@ -78,7 +78,7 @@ class Density:
         centre = float(np.trapezoid(self.values * self.frequencies, self.frequencies)) / self.variance
         count = 2 * math.ceil(0.5 * periods * TWO_PI / centre / self.step)
         if not 16 <= count <= LONGEST:
-            raise ParameterError(f"periods = {periods:g} means {count} instants; 16 to {LONGEST} would do")
+            raise ParameterError(f"periods = {periods:g} means {count} instants; expected 16 to {LONGEST}")
         return count, np.arange(count // 2 + 1) * TWO_PI / (count * self.step)
 
     def harmonics(self, omega: np.ndarray, generator: np.random.Generator) -> np.ndarray:
@@ -297,7 +297,7 @@ def _follow(
 
 def _check(records: int, rate: float) -> None:
     if not 2 <= records <= 10_000:
-        raise ParameterError(f"records = {records}: 2 to 10000 would do; error bars need two or more")
+        raise ParameterError(f"records = {records}: expected 2 to 10000; error bars need two or more")
     if not rate > 0.0:
         raise ParameterError(
             "an oscillator without damping does not settle under random excitation; give a damping above 0"

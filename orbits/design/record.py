@@ -106,7 +106,7 @@ def recorded(
         raise ParameterError(f"the machine {model.name!r} has no oscillator")
     if numbers.get("slope", 0.0) != 0.0:
         raise ParameterError(
-            "a recorded motion of the base is followed for level cavities only: slope = 0 would do"
+            "a recorded motion of the base is followed for level cavities only: use slope = 0"
         )
     if tail > 0.0:
         times = np.append(times, [times[-1] + 1e-9, times[-1] + tail])

@@ -204,7 +204,7 @@ class Coupled(Model):
         slope = float(parameters.get("slope", self.slope))
         if slope:
             raise ParameterError(
-                f"slope = {slope:g}: the slow flow is that of level cavities; slope = 0 would do, or an attractor of the inclined machine"
+                f"slope = {slope:g}: the slow flow is that of level cavities; use slope = 0, or an attractor of the inclined machine"
             )
         eps = float(parameters.get("mass_ratio", self.mass_ratio))
         values = {"frequency": 1.0 + eps * equilibrium.detuning} | parameters

@@ -54,7 +54,7 @@ class Mechanics(Varying):
         return name == self.driven_by
 
     def unshaken(self, params: np.ndarray) -> tuple[str, str] | None:
-        """Where nothing shakes the machine: the parameter that says so with its value, and one that would do; else None."""
+        """Where nothing shakes the machine: the parameter at fault with its value, and a value that shakes it; else None."""
         if self.column(params, self.driven_by) != 0.0:
             return None
         return f"{self.driven_by} = 0", f"{self.driven_by} = {self.parameter(self.driven_by).example:g}"

@@ -156,7 +156,7 @@ def find(
     if unshaken is not None:
         zero, would = unshaken
         raise StartError(
-            f"{zero}: nothing shakes the machine, so no motion with the word {reading.text!r} lasts; {would} would do"
+            f"{zero}: nothing shakes the machine, so no motion with the word {reading.text!r} lasts; for example {would}"
         )
     found = (
         f"the nearest motion that the simulator finds is {nearest}"

@@ -48,14 +48,12 @@ def checked(kinds: Iterable[Kind] | None) -> tuple[Kind, ...]:
         If they are no list, one is no :class:`~contvines.Kind`, has no test function, or two share a name or a label.
     """
     if not (kinds is None or isinstance(kinds, Iterable)):
-        raise ValueError(f"kinds = {kinds!r}: a list is asked for; kinds=[*contvines.KINDS, yours] would do")
+        raise ValueError(f"kinds = {kinds!r}: a list is asked for; use kinds=[*contvines.KINDS, yours]")
     chosen = KINDS if kinds is None else tuple(kinds)
     names: dict[str, Kind] = {}
     for kind in chosen:
         if not isinstance(kind, Kind):
-            raise ValueError(
-                f"kinds: {kind!r} is no contvines.Kind; kinds=[*contvines.KINDS, yours] would do"
-            )
+            raise ValueError(f"kinds: {kind!r} is no contvines.Kind; use kinds=[*contvines.KINDS, yours]")
         if BY_NAME.get(kind.name) is not kind:
             if kind.test is None:
                 raise ValueError(

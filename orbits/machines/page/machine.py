@@ -327,7 +327,7 @@ class Machine(Varying):
 
         if self.forced:
             raise PageError(
-                f"{self.name!r} is forced: its motions without events are orbits with the word ''; machine.orbit('') would do"
+                f"{self.name!r} is forced: its motions without events are orbits with the word ''; use machine.orbit('')"
             )
         return beside(self, state, **parameters)
 

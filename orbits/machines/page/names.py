@@ -150,9 +150,9 @@ def check_response(response: str | None, states: Sequence[str], contacts: Sequen
     Raises
     ------
     PageError
-        If it is none of the names that would do.
+        If it is none of the known names.
     """
     walls = any(isinstance(contact, Wall) for contact in contacts)
     known = [f"max_{states[0]}", f"min_{states[0]}", *(["approach_speed"] if walls else [])]
     if response is not None and response not in known:
-        raise PageError(f"response = {response!r}: {', '.join(known)} would do")
+        raise PageError(f"response = {response!r}: expected {', '.join(known)}")

@@ -42,7 +42,7 @@ def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> M
         raise PageError(f"{machine.name!r} is not forced: it has no frequency that could run up")
     if not (time > 0.0 and np.isfinite(time) and begin >= 0.0):
         raise PageError(
-            f"a run-up from {begin:g} in {time:g}: a frequency of 0 or above and a time above 0 would do"
+            f"a run-up from {begin:g} in {time:g}: expected a frequency of 0 or above and a time above 0"
         )
     last = float(machine.phase_speed(params))
     first = begin * machine.equations.factors.get(name, 1.0)

@@ -109,7 +109,7 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
             others = [q.name for q in known.values() if q.choice == quantity.choice and q is not quantity]
             said = f" (or {', '.join(others)} instead)" if others else ""
             would = f'"{quantity.example}"' if quantity.unit else quantity.example
-            raise QuantityError(f"{section}{quantity.name} is missing{said}: {would} would do")
+            raise QuantityError(f"{section}{quantity.name} is missing{said}: for example {would}")
         counted[quantity.name] = units.read(quantity, quantity.default)
     return _assembled(base, table, chosen, counted, unusual, contact_time)
 

@@ -31,7 +31,7 @@ class Quantity:
     unit : str
         SI unit as pint reads it; "" for a plain number.
     example : str
-        A value that would do, in the unit in which people speak of it.
+        A typical value, in the usual unit.
     powers : mapping
         Exponent of each number of the state in it.
     usual : (float, float)

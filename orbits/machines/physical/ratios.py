@@ -33,20 +33,20 @@ def check_ratios(numbers: Mapping[str, float], told: Mapping[str, str], wide: bo
         rule = f"at most {HEAVY}" if ratio > HEAVY else f"at least {LIGHT:g}"
         raise QuantityError(
             f"absorber_mass{_given(told, 'absorber_mass')} is {ratio:.3g} times oscillator_mass{_given(told, 'oscillator_mass')}, "
-            f"which is implausible for an absorber: {rule} times would do; if it is meant, say unusual = true in [model]"
+            f"which is implausible for an absorber: expected {rule} times; if it is meant, say unusual = true in [model]"
         )
     pace = numbers.get("frequency", 1.0)
     fast = FASTEST if wide else FAST
     if "natural_frequency" in told and not 1.0 / fast <= pace <= fast:
         raise QuantityError(
             f"frequency{_given(told, 'frequency')} is {pace:.3g} times natural_frequency{_given(told, 'natural_frequency')}, which is "
-            f"implausible: {1.0 / fast:g} to {fast:g} times would do; if it is meant, say unusual = true in [model]"
+            f"implausible: expected {1.0 / fast:g} to {fast:g} times; if it is meant, say unusual = true in [model]"
         )
     moved = numbers.get("forcing", 0.0) * ratio  # of the base, in half-widths
     if "base_amplitude" in told and moved > STRONG:
         raise QuantityError(
             f"base_amplitude{_given(told, 'base_amplitude')} is {moved:.3g} times half_width{_given(told, 'half_width')}, which is "
-            f"implausible: at most {STRONG:g} times would do; if it is meant, say unusual = true in [model]"
+            f"implausible: expected at most {STRONG:g} times; if it is meant, say unusual = true in [model]"
         )
 
 

@@ -92,7 +92,7 @@ def in_si(unit: str) -> float:
     try:
         return float(units.Quantity(1.0, units.parse_units(unit)).to_base_units().magnitude)
     except Exception:  # pint refuses in many ways; which one does not matter
-        raise QuantityError(f"{unit!r} is no unit that is known; 'mm' or 'N s/m' would do") from None
+        raise QuantityError(f"{unit!r} is no unit that is known; for example 'mm' or 'N s/m'") from None
 
 
 def read(quantity: Quantity, value: object, section: str = "") -> tuple[float, str]:
@@ -112,7 +112,7 @@ def read(quantity: Quantity, value: object, section: str = "") -> tuple[float, s
         If it is no number with a unit of this kind.
     """
     shown = f"{section}{quantity.name} = {value!r}"
-    would = f'"{quantity.example}" would do' if quantity.unit else f"{quantity.example} would do"
+    would = f'for example "{quantity.example}"' if quantity.unit else f"for example {quantity.example}"
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise QuantityError(f"{shown} is no quantity; {would}{_many(quantity, value)}")
     if not isinstance(value, str):
@@ -176,7 +176,7 @@ def counted(name: str, value: str, own: str) -> float:
     QuantityError
         If it is no number with a unit of this kind.
     """
-    would = f'"1 {own}" would do' if own else "a plain number would do"
+    would = f'for example "1 {own}"' if own else "expected a plain number"
     match = _NUMBER.fullmatch(value)
     if match is None:
         raise QuantityError(f"{name} = {value!r} is not a number with a unit; {would}")
@@ -243,7 +243,7 @@ def check_usual(quantity: Quantity, value: float, shown: str) -> None:
     factor = si(quantity, 1.0, unit)
     ends = f"{low / factor:.6g} to {high / factor:.6g}{' ' + unit if unit else ''}"
     raise QuantityError(
-        f"{shown} is implausible for {quantity.meaning}: {ends} would do; if it is meant, say unusual = true in [model]"
+        f"{shown} is implausible for {quantity.meaning}: expected {ends}; if it is meant, say unusual = true in [model]"
     )
 
 
@@ -254,5 +254,5 @@ def _finite(quantity: Quantity, value: float, shown: str, would: str) -> float:
         return value
     if value < 0.0 or (value == 0.0 and not quantity.zero):
         rule = "0 or above" if quantity.zero else "above 0"
-        raise QuantityError(f"{shown} is out of range; give a value {rule}: {would}")
+        raise QuantityError(f"{shown} is out of range; give a value {rule}, {would}")
     return value

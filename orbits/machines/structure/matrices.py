@@ -40,10 +40,10 @@ def matrix(name: str, given: Any, folder: Path | None = None) -> np.ndarray:
     except OSError as error:
         raise ParameterError(f"{where}: cannot be read ({error.strerror or error})") from None
     if found.ndim != 2 or found.shape[0] != found.shape[1] or not found.size:
-        raise ParameterError(f"{where}: its shape is {found.shape}; a square matrix would do")
+        raise ParameterError(f"{where}: its shape is {found.shape}; expected a square matrix")
     if len(found) > MOST:
         raise ParameterError(
-            f"{where}: {len(found)} degrees of freedom; at most {MOST} would do: reduce it beforehand"
+            f"{where}: {len(found)} degrees of freedom; at most {MOST} are allowed: reduce it beforehand"
         )
     if not np.isfinite(found).all():
         raise ParameterError(f"{where}: it has entries that are not finite")

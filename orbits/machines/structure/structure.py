@@ -137,7 +137,7 @@ def structure(
         )
     if not (0.0 < accuracy < 1.0 and frequency > 0.0):
         raise ParameterError(
-            f"frequency = {frequency:g}, accuracy = {accuracy:g}: a frequency above 0 and an accuracy from 0 to 1 would do"
+            f"frequency = {frequency:g}, accuracy = {accuracy:g}: expected a frequency above 0 and an accuracy from 0 to 1"
         )
     return _made(
         reduced(matrices[0], matrices[1], matrices[2], kept, highest or MEANT * frequency, accuracy),
@@ -159,7 +159,7 @@ def _element(kind: str, place: int, given: Any, size: int) -> dict[str, float]:
     """An element with all its fields."""
     where, known = f"{kind}s[{place}]", FIELDS[kind]
     if not isinstance(given, Mapping):
-        raise ParameterError(f"{where} = {given!r}: fields would do, {dict.fromkeys(known, 1.0)}")
+        raise ParameterError(f"{where} = {given!r}: expected fields such as {dict.fromkeys(known, 1.0)}")
     for name, value in given.items():
         if name not in known:
             raise ParameterError(
@@ -175,14 +175,14 @@ def _element(kind: str, place: int, given: Any, size: int) -> dict[str, float]:
         low = 1 if end == "at" else 0
         if end in found and not (found[end] == int(found[end]) and low <= found[end] <= size):
             raise ParameterError(
-                f"{where}: {end} = {found[end]:g} is no degree of freedom; {low} to {size} would do"
+                f"{where}: {end} = {found[end]:g} is no degree of freedom; expected {low} to {size}"
             )
     if found.get("to") == found["at"]:
         raise ParameterError(f"{where}: at and to are both {found['at']:g}; to = 0 is the ground")
     if kind == "wall" and math.isnan(found["restitution"]) == math.isnan(found["stiffness"]):
         raise ParameterError(f"{where}: give restitution, of a rigid wall, or stiffness, of an elastic one")
     if kind == "wall" and abs(found["side"]) != 1.0:
-        raise ParameterError(f"{where}: side = {found['side']:g}; 1 or -1 would do")
+        raise ParameterError(f"{where}: side = {found['side']:g}; expected 1 or -1")
     for name in ("mass", "stiffness", "clearance", "harmonic"):
         if not (found.get(name, 1.0) > 0.0 or math.isnan(found[name])):
             raise ParameterError(f"{where}: {name} = {found[name]:g} is out of range; give a number above 0")

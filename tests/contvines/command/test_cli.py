@@ -180,7 +180,7 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
             "notes.txt: this file exists and is no .mat",
         ),
         (("export", "g.vines", "--to", "csv", "-o", "d.csv"), "d.csv: this file is a database"),
-        (("sweep", EXAMPLE, "-o", "keep.toml"), "-o keep.csv would do"),
+        (("sweep", EXAMPLE, "-o", "keep.toml"), "use -o keep.csv"),
         (("switch", "g.vines", "B1"), "B1 is a branch"),
         (("sweep", EXAMPLE, "--over", "g.vines", "--plot", "a.png"), "g.vines continues in p"),
         (("shw", "g.vines"), "contvines: shw: there is no such command; did you mean show?"),
@@ -214,7 +214,7 @@ def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, comman
             "--plot a.png and --no-plot exclude each other",
         ),
         (("export", "g.vines", "--to", "csv", "-o", "x.json"), "x.json: this is not a .csv file by its name"),
-        (("diagram", EXAMPLE, "-o", "x.txt"), "x.txt: this is not a .vines file by its name; -o x.vines"),
+        (("diagram", EXAMPLE, "-o", "x.txt"), "x.txt: this is not a .vines file by its name; use -o x.vines"),
         (("diagram", EXAMPLE, "-o", "-"), "-: results are kept in files"),
     ],
 )

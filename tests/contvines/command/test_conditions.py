@@ -92,7 +92,7 @@ def test_a_survey_over_it_is_one_over_what_follows(run, tmp_path):
         ("temperature = 40", "temprature = 40", "which has no value .did you mean 'temprature'"),
         ("temperature = 40", "temperature = 40\nhumidity = 1", "nothing depends on it"),
         ("temperature = 40", 'temperature = "warm"', "is no finite number"),
-        ("[conditions]\ntemperature = 40\n", "", r"\[conditions\] temperature = 20 would do"),
+        ("[conditions]\ntemperature = 40\n", "", r"for example \[conditions\] temperature = 20"),
         ("[60, 0.7]", "[10, 0.7]", "ascending"),
         ("[60, 0.7]", "[60]", "a table over one condition"),
         ("[60, 0.7]", "[60, 1.7]", None),

@@ -63,12 +63,12 @@ def test_a_page_from_study_to_file(study):
 
 
 REFUSED = {
-    'name = "stop.py"': 'names a file but no machine in it; "stop.py:machine" would do',
+    'name = "stop.py"': 'names a file but no machine in it; for example "stop.py:machine"',
     'name = "stop.py:other"': "it has no machine 'other'; it declares machine",
     'name = "stop.py:cos"': "cos is a function; an orbits.Machine or a contvines.FlowProblem is expected",
     'name = "none.py:machine"': "there is no such file",
     'name = "../elsewhere/stop.py:machine"': "a study runs Python files of its own folder (or of folders in it) only",
-    'name = "/elsewhere/stop.py:machine"': '"stop.py" would do',
+    'name = "/elsewhere/stop.py:machine"': 'for example "stop.py"',
     'name = "stop.py:machine"\nmass = 1.0': "[model] mass = 1.0: there is no such field; known are ",
     'name = "stop.py:machine"\ndamping = "much"': "[model] damping = 'much' is not a number",
     'name = "stop.py:machine"\nrestitution = 2.0': "the restitution of wall 'R' is above 0 and at most 1",

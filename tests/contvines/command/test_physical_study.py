@@ -113,7 +113,7 @@ def test_start_replaces_what_the_model_says_of_the_same_thing():
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"units": "imperial"}, "units = 'imperial' is unknown; \"si\" would do"),
+        ({"units": "imperial"}, "units = 'imperial' is unknown; use \"si\""),
         ({"model__half_width": "20 m"}, "[model] half_width = '20 m' is implausible"),
         ({"model__half_width": "15 kg"}, "[model] half_width = '15 kg': 'kg' is the unit of a mass"),
 
@@ -129,7 +129,7 @@ def test_start_replaces_what_the_model_says_of_the_same_thing():
 
 
         ({"model__oscillator_mass": "3,8 kg"}, "[model] oscillator_mass = '3,8 kg' is not a number with a unit (decimals stand behind a point)"),
-        ({"model__oscillator_mass": "-3.8 kg"}, "[model] oscillator_mass = '-3.8 kg' is out of range; give a value above 0: \"3.8 kg\" would do"),
+        ({"model__oscillator_mass": "-3.8 kg"}, "[model] oscillator_mass = '-3.8 kg' is out of range; give a value above 0, for example \"3.8 kg\""),
         ({"model__natural_frequency": "8 kHz"}, "frequency = 7.9 Hz is 0.000988 times natural_frequency = 8 kHz, which is implausible"),
 
         ({"model__absorber_mass": "32 kg"}, "absorber_mass = 32 kg is 8.42 times oscillator_mass = 3.8 kg, which is implausible"),

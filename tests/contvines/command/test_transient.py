@@ -59,7 +59,7 @@ def test_a_free_decay(run, study, tmp_path):
         (["--release", "fast"], None, "this is no length"),
         (["--release", "12 mm", "--tail", "1 s"], None, "this goes with --record"),
         (["--tail", "1"], "0,1\n1,2\n", "has no unit"),
-        ([], "time [s],acceleration [mm]\n0,1\n1,2\n", "no unit of this acceleration; m/s^2 would do"),
+        ([], "time [s],acceleration [mm]\n0,1\n1,2\n", "no unit of this acceleration; expected m/s^2"),
         ([], "0,1\n0,2\n", "do not grow at row 1"),
         ([], "0,1\n0.5,x\n", "row 2 holds '0.5, x', not 2 numbers"),
         ([], "0\n1\n", "row 1 has 1 column; 2 columns are needed"),

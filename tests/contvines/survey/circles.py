@@ -19,7 +19,7 @@ class Circles:
     def __call__(self, values, near):
         radius = values["radius"]
         if radius > 3.0:
-            raise ValueError(f"radius = {radius:g} is more than 3; a smaller one would do")
+            raise ValueError(f"radius = {radius:g} is more than 3; expected a smaller one")
         if radius == self.deadly:
             flag = Path(self.folder) / "died"
             if not flag.exists():

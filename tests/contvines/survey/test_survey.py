@@ -42,7 +42,7 @@ def test_outcomes_are_those_of_circles(one):
 
 def test_a_system_that_fails_is_a_row_with_its_sentence(one):
     assert np.all(np.isnan(one["size"][4])) and one.failed == 2
-    assert one.notes[4, 0] == "radius = 4 is more than 3; a smaller one would do"
+    assert one.notes[4, 0] == "radius = 4 is more than 3; expected a smaller one"
     assert "2 of them failed" in str(one)
 
 

@@ -164,7 +164,7 @@ def test_its_response_is_how_far_the_oscillator_goes():
     problem = orbit.problem("frequency")
     assert problem.default_measure == "max_q" and coupled_two.units["max_q"] == "mm"
     assert orbit.measure("max_q") == pytest.approx(orbit.sample(4000)["q"].max(), rel=1e-6)
-    with pytest.raises(ValueError, match="response = 'max_x1': max_q, min_q, approach_speed would do"):
+    with pytest.raises(ValueError, match="response = 'max_x1': expected max_q, min_q, approach_speed"):
         check_response("max_x1", coupled_two.states, coupled_two.contacts)
 
 

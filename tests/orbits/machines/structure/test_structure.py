@@ -118,7 +118,7 @@ ONE = [[1.0]]
         (
             (ONE, ONE, ONE),
             {"forces": [{"at": 2, "amplitude": 1.0}]},
-            "at = 2 is no degree of freedom; 1 to 1 would do",
+            "at = 2 is no degree of freedom; expected 1 to 1",
         ),
         ((ONE, ONE, ONE), {"forces": [{"at": 1}]}, "amplitude is missing"),
         ((ONE, ONE, ONE), {"forces": [{"at": 1, "amplitud": 1.0}]}, "did you mean 'amplitude'"),
