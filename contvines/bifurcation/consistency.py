@@ -52,7 +52,8 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
         plus = 0  # det(F_u) vanishes with the parameter's part of the tangent, all along an upright branch
     if not engine.scaled and engine.detection == "map" and side is not None and plus % 2 != side:
         # det(F_u) keeps its sign where one comes back from infinity, as where an event of a virtual orbit grazes
-        return not (minus == -plus and pairs == 0 and segment.length <= 2.0 * engine.settings.resolution)
+        short = segment.length <= 2.0 * engine.settings.resolution
+        return not (minus == -plus and pairs == 0 and (short or segment.through_infinity()))
     known = [sum(e.kind in kinds for e in found) for kinds in PASSED_AT]
     known[0] += sum(e.astray for e in found)
     missing = any(abs(change) > number for change, number in zip((plus, minus, pairs), known))

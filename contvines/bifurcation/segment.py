@@ -56,6 +56,13 @@ class Segment:
         outside = (sizes > 1.0).sum(axis=1)
         return bool((logs > FAR).all() and outside[0] == outside[1])
 
+    def through_infinity(self) -> bool:
+        """Whether the outermost multipliers of both ends are real, of opposite signs, and so large that one has come back from infinity."""
+        spectra = self.engine.spectrum(np.array([self.a.row, self.b.row]))
+        one, other = spectra[(0, 1), np.abs(spectra).argmax(axis=1)]
+        far = min(abs(one), abs(other)) > 10.0**FAR and one.imag == other.imag == 0.0
+        return bool(far and one.real * other.real < 0.0)
+
     def at(self, s: float) -> Solved | None:
         """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""
         return solved_point(self.found((s,)), 0)

@@ -59,10 +59,12 @@ class SegmentSearch:
         self.deepest = 1 if engine.adaptive else engine.settings.halvings
         scale = None if engine.plain else engine.scale[:-1]
         self.symmetries = [SymmetryTest(s, engine.n, engine.shift, scale) for s in engine.problem.symmetries]
+        self.parts = 0  # of segments that were searched along the branch that is followed
         self.own = own_tests(engine, kinds, functions or {}, tuple(stops), BY_NAME["user"])
 
     def search(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
         """The special points of one segment (positions in [0, 1])."""
+        self.parts += depth > 0
         stop, before = self._stop(segment, real, depth)
         if before is not None:
             return [*before, *stop]
@@ -75,8 +77,11 @@ class SegmentSearch:
         middle = segment.at(0.5)
         if middle is None:
             return [*found, *self._own(segment)]
-        if depth < self.deepest and segment.length > self.engine.settings.resolution:
-            return self.both(segment, 0.5, middle, real, depth + 1)
+        settings = self.engine.settings
+        if depth < self.deepest and segment.length > settings.resolution:
+            if self.parts < settings.parts:
+                return self.both(segment, 0.5, middle, real, depth + 1)
+            return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]
 
     def _of_kind(self, kind: Kind, segment: Segment, found: Sequence[Located]) -> list[Located]:

@@ -59,7 +59,7 @@ def trace_half(
     origin : Solved, optional
         The special point beside which the branch starts: it becomes the first point, and the segment between is looked at.
     """
-    half = single(engine, start)
+    half, detector.parts = single(engine, start), 0
     if origin is not None:
         half, closer = opening(engine, origin, start, detector, journal, f"{key}/opening", real)
         if half.status != Status.RUNNING:
@@ -88,9 +88,9 @@ def trace_half(
         if known is None:
             events = detector.look(chunk, scanned, real)
             if len(chunk) > 1 and not isinstance(journal, NullJournal):
-                journal.record(name, pack(events, engine))
+                journal.record(name, {**pack(events, engine), "parts": detector.parts})
         else:
-            events = unpack(known)
+            events, detector.parts = unpack(known), int(known.get("parts", 0))
         status, count = chunk.status, len(chunk)
         retrace = None
         if events and events[-1].role in AGAIN:

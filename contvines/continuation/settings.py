@@ -53,6 +53,7 @@ WHOLE = (
     "chunk",
     "max_branches",
     "halvings",
+    "parts",
     "longest",
     "completion",
 )
@@ -98,6 +99,9 @@ class Settings:
         from a branch point; what the ends of so short a segment say and the points found between do not is *unresolved*.
     halvings : int
         Special points: how many times a segment is halved at most whose ends say more than what is found between them.
+    parts : int
+        Special points: parts of segments that are searched at most along a branch, in each direction; where they are spent, as on a branch that
+        folds without end, segments are not halved any more, and those whose ends say more than what is found are *unresolved* as they are.
     upright : float
         Special points: the parameter's part of a unit tangent, in its unit, below which the branch stands upright and has no folds.
     rounding : float
@@ -171,6 +175,7 @@ class Settings:
     max_branches: int = 200
     resolution: float = 3e-7
     halvings: int = 16
+    parts: int = 5000
     upright: float = 1e-9
     rounding: float = 1e-12
     aside: float = 1e-3

@@ -142,7 +142,7 @@ def _stretch(engine: Engine, branch: Branch, half: HalfBranch, index: int, event
     rows = half.joined().spectrum[[max(index - 1, 0), min(index + 1, len(branch) - 1)]]
     before, after = (tuple(found) for found in counts(engine, rows).tolist())
     low, high = sorted(event.bracket)
-    reason = "determinant" if before == after else "multipliers"
+    reason = event.name or ("determinant" if before == after else "multipliers")
     return Unresolved(branch.label, low, high, index, reason, before, after)
 
 

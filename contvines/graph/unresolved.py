@@ -10,7 +10,7 @@ from ..shared.number_text import number_text
 
 @dataclass(frozen=True)
 class Unresolved:
-    """What is certain on both sides of a stretch that is too short to be halved any more.
+    """What is certain on both sides of a stretch that is not halved any more.
 
     Attributes
     ----------
@@ -22,7 +22,8 @@ class Unresolved:
         Of the point of the branch that lies within.
     reason : str
         "multipliers": their numbers past the circle change by more than the points between say; "determinant": its sign changes without
-        a branch point, as where the two sides lie on different branches; "neighbours": two special points are one as far as they are known.
+        a branch point, as where the two sides lie on different branches; "neighbours": two special points are one as far as they are known;
+        "parts": one of the first two, of a stretch that may be long: it was not searched as closely as others, for `Settings.parts` were spent.
     before, after : (int, int, int)
         Numbers of multipliers past +1, past -1, and of complex pairs past the circle on the two sides, in the branch's order.
     points : tuple of str
@@ -46,6 +47,8 @@ class Unresolved:
         )
         if self.reason == "neighbours":
             return f"unresolved on {where}: {' and '.join(self.points)} cannot be distinguished"
+        if self.reason == "parts":
+            return f"unresolved on {where}: not searched any closer, settings.parts of this branch are spent; raise them to search on"
         if self.reason == "determinant":
             return f"unresolved on {where}: a branch point, or two branches nearer than that"
         counts = (

@@ -5,10 +5,10 @@ import pytest
 import contvines as cv
 
 
-def jumping(before, after):
+def jumping(before, after, **settings):
     """The fixed point u = p of a map whose multiplier jumps at p = 0.3."""
     problem = cv.MapProblem(lambda u, p: [p + (before if p < 0.3 else after) * (u[0] - p)], u0=[0.1], p0=0.1)
-    return cv.diagram(problem, within=(0.0, 1.0), depth=0)
+    return cv.diagram(problem, within=(0.0, 1.0), depth=0, settings=settings)
 
 
 @pytest.mark.parametrize(
@@ -25,3 +25,11 @@ def test_a_multiplier_that_jumps_over_the_circle_is_no_special_point(before, aft
     assert numbers == counts or numbers == counts[::-1]
     stable = [(0.0, 0.3)] if abs(before) < 1.0 else [(0.3, 1.0)]
     assert graph["B1"].stable_intervals() == [pytest.approx(stable[0], abs=1e-6)]
+
+
+def test_a_branch_whose_parts_are_spent_says_so():
+    """The stretch is as long as it was when it was halved for the last time, around the jump all the same."""
+    (closely,), (found,) = jumping(-0.5, -1.5).unresolved, jumping(-0.5, -1.5, parts=3).unresolved
+    assert found.reason == "parts" and found.low <= 0.3 <= found.high
+    assert found.high - found.low > 100.0 * (closely.high - closely.low)
+    assert "settings.parts" in found.sentence("p") and {found.before, found.after} == {(0, 0, 0), (0, 1, 0)}
