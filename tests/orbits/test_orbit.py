@@ -1,14 +1,12 @@
 """Orbits: closed forms, determinant identities, long words, mirror images, energy."""
 
-import warnings
-
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
-from orbits import Absorber, Coupled
+from orbits import Absorber
 from orbits.attractors import find_attractors, sweep
 from orbits.machines.closed_forms.absorber import (
     fold_beta,
@@ -20,7 +18,7 @@ from orbits.machines.closed_forms.absorber import (
     symmetry_breaking_beta,
     symmetry_breaking_square,
 )
-from orbits.starts.find import StartError, polish
+from orbits.starts.find import StartError
 from tests.machines import ABSORBER
 
 machines = st.builds(
@@ -146,16 +144,6 @@ def test_losses_balance_the_work_of_the_cavity():
     np.testing.assert_allclose(s["cavity"] - s["absorber"], s["w"], atol=1e-12)
 
 
-def test_losses_per_forcing_period_do_not_depend_on_how_often_an_orbit_is_written():
-    orbit = ABSORBER.symmetric_orbit(0.6)
-    once, thrice = orbit.measures(), orbit.repeat(3).measures()
-    assert "input_work_mean" not in once  # the reduced machine's oscillator is prescribed
-    for name in ("impact_loss", "friction_loss"):
-        assert once[f"{name}_mean"] == once[name]
-        assert thrice[name] == pytest.approx(3 * once[name], rel=1e-13)
-        assert thrice[f"{name}_mean"] == pytest.approx(once[name], rel=1e-13)
-
-
 def test_sliding_and_stick_slip_closed_forms_are_real_orbits():
     low, high = (float(x) for x in sliding_squares(friction_number(0.5, 0.211, 0.006)))
     for square, word in (
@@ -184,14 +172,6 @@ def test_without_friction_words_need_no_turns():
     )
 
 
-def test_polish_returns_the_orbit_itself():
-    orbit = ABSORBER.symmetric_orbit(0.55)
-    moved = type(orbit)(orbit.model, orbit.word, 1, orbit.nodes + 0.02, orbit.params)
-    again = polish(moved)
-    assert again is not None
-    np.testing.assert_allclose(again.nodes, orbit.nodes, atol=1e-12)
-
-
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_a_guess_tells_the_direction_of_a_sliding_motion(way):
     """`tt` leaves open whether it slides to the left first; the turning points are at +-sqrt(C^2 - h^2)."""
@@ -202,19 +182,6 @@ def test_a_guess_tells_the_direction_of_a_sliding_motion(way):
     orbit = ABSORBER.orbit("tt", amplitude=amplitude, guess=guess)
     assert orbit.real
     assert orbit.nodes[:, 1] == pytest.approx([-way * turning, way * turning], abs=1e-12)
-
-
-def test_a_guess_whose_phases_and_positions_belong_to_two_motions_is_not_taken_in_silence():
-    """The mirror image has the same positions half a period later: with the phases of the one, those of the other reverse."""
-    amplitude = np.sqrt(0.3)
-    turning = np.sqrt(0.3 - (0.5 * np.pi * 1.006 * 0.5 * 0.211) ** 2)
-    right = ABSORBER.orbit("tt", amplitude=amplitude, guess=[[4.403, -turning], [4.403 + np.pi, turning]])
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        orbit = ABSORBER.orbit("tt", amplitude=amplitude, guess=[[4.403, turning], [4.403 + np.pi, -turning]])
-    assert orbit.real or any("no machine follows" in str(warning.message) for warning in caught)
-    if orbit.real:
-        assert np.sort(orbit.nodes[:, 1]) == pytest.approx(np.sort(right.nodes[:, 1]), abs=1e-12)
 
 
 def test_a_guess_against_stated_directions_is_refused():
@@ -242,24 +209,6 @@ def test_any_spelling_goes_with_any_reading_of_the_guess(written):
             found = ABSORBER.orbit(written, amplitude=1.2, guess=guess.nodes + 1e-3)
             assert found.word == guess.word
             assert found.events.w == pytest.approx(guess.events.w, abs=1e-10)
-
-
-def test_an_orbit_shows_its_own_parameters():
-    """Not the machine's defaults: the frequency of the special point, the amplitude of the reduced absorber."""
-    orbit = ABSORBER.orbit("LR", amplitude=0.625)
-    assert "amplitude=0.625," in repr(orbit)
-    assert "amplitude=0.05," in repr(ABSORBER.orbit("", amplitude=0.05))
-    machine = Coupled(
-        restitution=0.76,
-        friction=0.5,
-        gravity=0.211,
-        mass_ratio=0.006,
-        damping=0.9,
-        forcing=3.3,
-        frequency=1.01,
-    )
-    shown = repr(machine.orbit("tt", frequency=0.970625))
-    assert "frequency=0.970625" in shown and "1.01" not in shown
 
 
 def test_diagrams_sweeps_and_attractors_spell_a_motion_alike():

@@ -28,17 +28,3 @@ def test_bounds_are_the_special_points_of_the_branch(seed):
     assert found["fold"] == pytest.approx(low, rel=1e-9)
     assert found["symmetry-breaking"] == pytest.approx(high, rel=1e-9)
     assert design.operating_ratio == pytest.approx(found["symmetry-breaking"] / found["fold"], rel=1e-9)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_sticking_limit_by_simulation(seed):
-    """Just below the limit the simulated machine is stuck for good, just above it is not."""
-    from orbits.attractors import find_attractor
-
-    rng = np.random.default_rng(seed)
-    mu, g, omega = rng.uniform(0.1, 0.8), rng.uniform(0.05, 0.4), rng.uniform(0.8, 1.2)
-    design = Design.from_dimensionless(gravity=g, cavity=0.02, friction=mu, mass_ratio=0.0)
-    limit = float(design.sticking_limit(omega * design.natural_frequency)) / 0.02
-    machine = Absorber(restitution=0.8, friction=mu, gravity=g, frequency=omega)
-    assert find_attractor(machine, amplitude=0.999 * limit).kind == "stuck"
-    assert find_attractor(machine, amplitude=1.02 * limit).kind == "sliding"

@@ -108,23 +108,6 @@ def test_slow_eigenvalues_are_the_limit_of_coupled_multipliers(settled):
     assert gaps[-1] < 1e-3 and np.all(np.abs(orders - 1) < 0.05)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_drawn_machines_converge_to_the_exact_closure(seed):
-    """Detuning, forcing and friction drawn; every steady state that is seen is the limit of a coupled
-    orbit."""
-    rng = np.random.default_rng(seed)
-    mu, forcing = rng.uniform(0.1, 0.7), rng.uniform(1.8, 3.2)
-    flow = ms.SlowFlow(forcing=forcing, friction=mu)
-    states: list[ms.Equilibrium] = []
-    while not states:
-        sigma = rng.uniform(-4.5, 3.5)
-        states = [s for s in ms.equilibria(flow, sigma) if s.seen and s.manifold == "impacting" and
-                  s.velocity > flow.activation.velocity + 0.1]  # fmt: skip
-    s = states[0]
-    found = limit((s.velocity, s.amplitude**2, s.phase), forcing=forcing, sigma=sigma, friction=mu)
-    assert found == pytest.approx([s.velocity, s.amplitude**2, s.phase], abs=1e-6)
-
-
 def test_sliding_states_too_are_limits_of_coupled_orbits():
     """tt in the coupled machine at sigma = -2.58: amplitude to first order in eps."""
     state = next(s for s in ms.equilibria(ms.SlowFlow(), -2.58) if s.manifold == "sliding")

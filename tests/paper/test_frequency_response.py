@@ -6,7 +6,6 @@ from `tests/orbits/machines/coupled/test_against_ode.py`, which knows nothing of
 return maps with events, to the symmetry breakings, the Neimark-Sacker point and the folds.
 """
 
-import matplotlib
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -14,7 +13,6 @@ from scipy.linalg import eigvals
 from scipy.optimize import brentq
 
 import contvines as cv
-from orbits.simulation import simulate
 from tests.machines import COUPLED
 from tests.orbits.machines.coupled.equations_of_motion import TIGHT, right_side
 
@@ -252,36 +250,6 @@ def test_the_symmetric_response_is_one_closed_curve():
         assert point.replay < 1e-6
 
 
-def test_a_weakly_forced_response_is_an_isola():
-    """G = 1: real all the way round, recognised as closed, with two folds, drawn closed."""
-    machine = COUPLED.changed(forcing=1.0)
-    graph = cv.diagram(machine.symmetric_orbit(frequency=1.0), over="frequency", within=WITHIN, depth=0)
-    (branch,) = graph
-    assert branch.real and branch.closed and branch.margin.min() > 0.0
-    np.testing.assert_allclose(branch.points[0], branch.points[-1] - 2 * np.pi * np.round(
-        (branch.points[-1] - branch.points[0]) / (2 * np.pi)), atol=1e-9)  # fmt: skip
-    folds = graph.of_kind("fold")
-    assert len(folds) == 2 and {p.kind for p in graph.special.values()} == {"fold"}
-    for point, inward in zip(sorted(folds, key=lambda p: p.value), (1e-6, -1e-6)):
-        assert point.value == pytest.approx(integrated_fold(machine, point.value, inward), abs=2e-11)
-    # nowhere stable: a multiplier beyond 1 on either side, as integrated
-    assert not branch.stable.any()
-    for fast in (True, False):
-        orbit = machine.symmetric_orbit(fast=fast, frequency=1.003)
-        _, multipliers = spectrum(1.003, np.array(orbit.nodes[0]), machine)
-        assert np.abs(multipliers).max() > 1.03
-        np.testing.assert_allclose(
-            np.sort(np.abs(multipliers)), np.sort(np.abs(orbit.half_multipliers)), atol=1e-7
-        )
-    matplotlib.use("Agg")
-    lines = [line for line in graph.plot(y="max_abs_q1").axes[0].get_lines() if len(line.get_xdata()) > 1]
-    assert len(lines) == 1
-    drawn = lines[0].get_xydata()
-    np.testing.assert_allclose(drawn[0], drawn[-1], atol=1e-9)
-    assert drawn[:, 0].min() == pytest.approx(branch.range[0], abs=1e-9)
-    assert drawn[:, 0].max() == pytest.approx(branch.range[1], abs=1e-9)
-
-
 def test_the_linear_regime_leads_to_all_others():
     """From the absorber stuck below resonance, by borders alone: stick-slip, sliding, impacts, and the linear regime above."""
 
@@ -300,28 +268,3 @@ def test_the_linear_regime_leads_to_all_others():
     words = {branch.description["word"] for branch in graph if branch.real and branch.stable.any()}
     assert {"", "ss", "tt"} <= words and words & {"LR", "RL"}
     assert sorted(p.value for p in graph.of_kind("fold"))[:1] == pytest.approx([FOLDS[0]], abs=1e-11)
-
-
-# ---------------------------------------------------------------------- free decay
-def test_free_decay_passes_through_impacts_sliding_and_rest():
-    machine = COUPLED.changed(forcing=0.0)
-    run = simulate(machine, {"q1": 1.2, "q2": 0.4}, periods=400)
-    letters = run.letters
-    last_hit = max(letters.rfind("L"), letters.rfind("R"))
-    assert last_hit > 50 and set(letters[last_hit + 1 :]) <= set("tsu")
-    assert letters[-1] == "s" and "at rest" in run.ended
-    eps, r, friction = machine.mass_ratio, machine.restitution, machine.friction * machine.gravity
-    # once at rest friction holds for ever: the cavity's acceleration stays below mu g
-    sample = run.sample(run.phases[-1:] + np.linspace(1e-6, 20 * np.pi, 2000))
-    shaking = (eps * machine.damping * sample.v_rate / (1 + eps) + sample.cavity) / (1 + eps)
-    assert 0.9 * friction < np.abs(shaking).max() < friction and np.abs(sample.w_rate).max() == 0.0
-    # the losses once more from the events alone (energy in units of M b^2 omega_0^2)
-    w = np.append(run.states[:, 1], run.end[1])
-    rubbed = eps * friction * np.abs(np.diff(w)).sum()  # w is monotone between events
-    hits = run.codes < 2
-    struck = 0.5 * eps / (1 + eps) * (1 - r * r) / r**2 * (run.rows[hits, 4] ** 2).sum()
-    balance = run.balance()
-    assert balance.friction == pytest.approx(rubbed, rel=1e-12)
-    assert balance.change == pytest.approx(-(balance.damping + balance.friction + balance.impacts), abs=1e-13)
-    assert balance.excitation == 0.0 and min(balance.damping, balance.friction, balance.impacts) > 0.05
-    assert balance.impacts == pytest.approx(struck, rel=1e-12)

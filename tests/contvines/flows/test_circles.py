@@ -64,25 +64,3 @@ def test_a_torus_of_langfords_system():
     # close to its birth the torus has the size that the normal form says
     assert found.circles[0].radius == pytest.approx(found.circles[0].predicted, rel=1e-3)
     assert set(found.names) < {"x", "y", "z"}
-
-
-def test_a_torus_of_a_forced_oscillator():
-    """Two oscillators that do not know of one another: Stuart-Landau's, and a forced linear one. Circle of radius sqrt(m), rotation w P / 2 pi."""
-
-    def rate(x, p, t):
-        square = x[0] ** 2 + x[1] ** 2
-        return [p.m * x[0] - x[1] - x[0] * square, x[0] + p.m * x[1] - x[1] * square, -x[2] + np.cos(1.7 * t)]
-
-    flow = cv.FlowProblem(rate, [0.0, 0.0, 0.0], {"m": -0.2}, period=2 * np.pi / 1.7, states=("u", "v", "w"))
-    times = np.linspace(0.0, 2 * np.pi / 1.7, 60)
-    states = np.column_stack(
-        [0 * times, 0 * times, (np.cos(1.7 * times) + 1.7 * np.sin(1.7 * times)) / (1 + 1.7**2)]
-    )
-    graph = cv.diagram(flow.cycle(times, states), over="m", within=(-0.5, 0.5))
-    (point,) = graph.of_kind("neimark-sacker")
-    assert point.value == pytest.approx(0.0, abs=1e-9)
-    found = point.circles(count=1)
-    last = found.circles[-1]
-    assert last.radius == pytest.approx(np.sqrt(last.value), rel=1e-6)
-    rotation = 1.0 / 1.7
-    assert min(abs(last.rotation % 1.0 - rotation), abs(-last.rotation % 1.0 - rotation)) < 1e-9

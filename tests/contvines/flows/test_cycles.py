@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.optimize import fsolve
 
 import contvines as cv
 
@@ -16,10 +15,6 @@ def stuart_landau(x, p):
 
 def lure(x, p):
     return [x[1], x[2], -p.alpha * x[2] - p.beta * x[1] - x[0] + x[0] ** 2]
-
-
-def lorenz(x, p):
-    return [10 * (x[1] - x[0]), p.r * x[0] - x[1] - x[0] * x[2], x[0] * x[1] - 8 / 3 * x[2]]
 
 
 def duffing(x, p, t):
@@ -74,21 +69,6 @@ def test_a_cascade_begins_where_simulation_has_a_multiplier_of_minus_one():
     assert graph["PD1"].criticality == "supercritical"
     assert graph["PD2"].branch == "B3"
     assert graph["B3"].measure("period")[0] == pytest.approx(2.0 * orbit.period, rel=1e-6)
-
-
-@pytest.mark.slow
-def test_lorenz_cycles_end_as_a_homoclinic_orbit():
-    side = np.sqrt(8 / 3 * 19)
-    flow = cv.FlowProblem(lorenz, [side, side, 19.0], {"r": 20.0}, mirror=lambda x: x * np.array([-1, -1, 1]))
-    graph = cv.diagram(flow, over="r", within=(13.0, 26.0))
-    hopf = graph.of_kind("hopf")[0]
-    assert hopf.value == pytest.approx(470 / 19, abs=1e-11)
-    assert hopf.criticality == "subcritical"
-    end = graph.of_kind("homoclinic")[0]
-    assert end.value == pytest.approx(13.926557, abs=1e-6)  # Sparrow 1982: 13.926
-    assert abs(end.value - 13.926557) < end.location_error + 5e-7
-    assert "saddle at (0, 0, 0)" in end.note
-    assert end.multipliers.real.max() > 1e10
 
 
 def test_a_motion_that_begins_at_an_unstable_equilibrium_leaves_it_upwards():
@@ -153,31 +133,6 @@ def test_a_graph_with_cycles_is_read_back(tmp_path):
     assert again["HB1"].cycles().period == pytest.approx(2.0 * np.pi, abs=1e-8)
 
 
-def electronic(x, p):
-    """The oscillator of AUTO's demo tor."""
-    a, b, c = x
-    cube = p.b3 * (b - a) ** 3
-    return [
-        (-(p.beta + p.nu) * a + p.beta * b - p.a3 * a**3 + cube) / p.r,
-        p.beta * a - (p.beta + p.gamma) * b - c - cube,
-        b,
-    ]
-
-
-def test_the_torus_demo_of_auto():
-    values = {"nu": -0.6, "beta": 0.5, "gamma": -0.6, "r": 0.6, "a3": 0.328578, "b3": 0.933578}
-    flow = cv.FlowProblem(electronic, [0.0, 0.0, 0.0], values, mirror=lambda x: -x)
-    graph = cv.diagram(flow, over="nu", within=(-0.62, -0.55), depth=2)
-    # printed by AUTO-07p: TR -0.591650, PD -0.614955, fold -0.584335
-    assert [p.value for p in graph.of_kind("fold")] == pytest.approx([-0.584335], abs=1e-6)
-    assert [p.value for p in graph.of_kind("neimark-sacker")] == pytest.approx([-0.591650], abs=1e-6)
-    assert [p.value for p in graph.of_kind("period-doubling")] == pytest.approx([-0.614955], abs=1e-6)
-    orbit = graph["NS1"].orbit
-    found = orbit.simulated_multipliers()
-    assert np.abs(np.abs(found) - 1.0).max() < 1e-6
-    assert np.abs(found.imag).max() == pytest.approx(np.abs(orbit.multipliers.imag).max(), abs=1e-6)
-
-
 @pytest.mark.slow
 def test_relaxation_oscillations_in_one_branch():
     flow = cv.FlowProblem(
@@ -208,79 +163,3 @@ def test_a_closed_branch_of_cycles():
     assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([-1.0, 1.0], abs=1e-10)
     radius = graph["B1"].measure("norm") ** 2
     assert np.abs((radius - 2.0) ** 2 + graph["B1"].values ** 2 - 1.0).max() < 1e-6
-
-
-@pytest.mark.slow
-def test_cycles_explode_through_canards_on_one_branch():
-    flow = cv.FlowProblem(
-        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, 0.08 * (x[0] + 0.7 - 0.8 * x[1])],
-        [1.0, 1.0],
-        {"I": 1.5},
-    )
-    graph = cv.diagram(flow, over="I", within=(1.415, 1.6), settings={"max_branches": 2})
-    # trace zero: 1 - x^2 = 0.064 at x = 0.96747..., I from the equilibrium
-    x = np.sqrt(1.0 - 0.064)
-    value = x**3 / 3 - x + (x + 0.7) / 0.8
-    assert graph["HB1"].value == pytest.approx(value, abs=1e-11)
-    assert graph["HB1"].criticality == "subcritical"
-    cycles = graph["B2"]
-    assert (
-        cycles.values[-1] == 1.415 or cycles.values[0] == 1.415
-    )  # the relaxation oscillation, behind the canards
-    assert cycles.measure("max x0").max() > 1.9
-
-
-def test_a_linear_centre_has_cycles_of_all_sizes():
-    """At mu = 0 van der Pol's equation is a linear oscillator; of its cycles the one of amplitude 2 goes on (Lindstedt)."""
-    flow = cv.FlowProblem(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], [0.0, 0.0], {"mu": -0.5})
-    graph = cv.diagram(flow, over="mu", within=(-1.0, 2.0))
-    assert np.abs(graph["B2"].values).max() < 1e-9
-    point = graph.of_kind("branch-point")[0]
-    assert point.orbit(np.array([0.0, 1.0, 2.0])).shape == (3, 2)
-    assert point.problem.measures(["max x0"], point.u, [point.value])["max x0"][0] == pytest.approx(
-        2.0, abs=1e-6
-    )
-    going = graph["B3"]
-    assert going.range == (-1.0, 2.0)
-
-
-def test_a_loop_of_doubled_motions_closes_at_the_image_of_its_start():
-    """Predator and prey with a season (Yu. A. Kuznetsov, S. Muratori and S. Rinaldi, International Journal of Bifurcation and Chaos 2
-    (1992) 117): half of the loop leads to the same motion a year later. Its folds against shooting with DOP853."""
-
-    def field(t, z, b):
-        x, y = z[:2]
-        level = b * (1.0 + 0.2 * np.cos(2.0 * np.pi * t))
-        eaten, by_x, by_y = (
-            12.56 * x * y / (level + x),
-            12.56 * y * level / (level + x) ** 2,
-            12.56 * x / (level + x),
-        )
-        rate = [6.28 * x * (1.0 - x) - eaten, eaten - 6.28 * y]
-        jacobian = np.array([[6.28 * (1.0 - 2.0 * x) - by_x, -by_y], [by_x, by_y - 6.28]])
-        return rate if len(z) == 2 else [*rate, *(jacobian @ z[2:].reshape(2, 2)).ravel()]
-
-    def folds(z):
-        run = solve_ivp(
-            field,
-            (0.0, 2.0),
-            [*z[:2], 1.0, 0.0, 0.0, 1.0],
-            args=(z[2],),
-            method="DOP853",
-            rtol=1e-11,
-            atol=1e-12,
-        )
-        end = run.y[:, -1]
-        return [*(end[:2] - z[:2]), np.linalg.det(end[2:].reshape(2, 2) - np.eye(2))]
-
-    flow = cv.FlowProblem(
-        lambda u, b0, t: np.array(field(t, u, b0)), [0.3, 0.3], 0.25, parameter="b0", period=lambda b0: 1.0
-    )
-    graph = cv.diagram(flow.attractor([0.3, 0.3]), over="b0", within=(0.2, 0.5), depth=0)
-    (branch,) = graph.branches.values()
-    assert branch.closed
-    found = graph.of_kind("fold")
-    assert len(found) == 2
-    for point in found:
-        own = fsolve(folds, [*point.orbit.states[0], point.value], xtol=1e-13)
-        assert point.value == pytest.approx(own[2], abs=1e-10)

@@ -37,19 +37,6 @@ def test_a_branch_of_equilibria_ends_where_it_meets_an_event():
     assert point.value == pytest.approx(1.0, abs=1e-12)
 
 
-def test_a_forced_cycle_ends_where_it_touches_an_event_that_moves():
-    """x' = -x + g cos t has the amplitude g / sqrt 2; the wall stands at 1 + t-periodic 0: touched at g = sqrt 2."""
-    flow = cv.FlowProblem(
-        lambda x, p, t: [-x[0] + p.g * np.cos(t)],
-        [0.0],
-        {"g": 0.5},
-        period=2 * np.pi,
-        events={"wall": lambda x, p, t: 1.0 - x[0]},
-    )
-    (point,) = cv.diagram(flow, over="g", within=(0.1, 3.0)).of_kind("event")
-    assert abs(point.value - np.sqrt(2.0)) < max(point.location_error, 1e-12) < 1e-5
-
-
 def test_motions_stop_at_an_event():
     flow = walled()
     with pytest.raises(Stopped, match="the event wall stops the motion"):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import csc_matrix, issparse
+from scipy.sparse import csc_matrix
 
 import contvines as cv
 
@@ -63,14 +63,6 @@ def test_cycles_with_sparse_and_full_matrices_are_the_same(orbit):
     points = [point for point, _ in zip(cv.trace(problem, within=(0.25, 0.32)), range(3))]
     other = [point for point, _ in zip(cv.trace(full.problem("a"), within=(0.25, 0.32)), range(3))]
     assert points[-1].value == pytest.approx(other[-1].value, rel=1e-6)
-
-
-def test_a_sparse_jacobian_may_be_given(orbit):
-    start = np.concatenate([np.ones(CELLS), np.zeros(CELLS)])
-    flow = cv.FlowProblem(coupled_cells, start, {"a": 0.3}, jacobian=jacobian)
-    assert issparse(jacobian(start, None))
-    given = flow.attractor()
-    assert given.period == pytest.approx(orbit.period, rel=1e-8)
 
 
 def test_cycles_leave_a_hopf_point_of_a_large_flow():

@@ -6,9 +6,7 @@ import pytest
 import contvines as cv
 
 
-@pytest.mark.parametrize("slope", [1.0, -1.0])
-@pytest.mark.parametrize("piece", [1.0, -1.0])
-@pytest.mark.parametrize("turned", [1.0, -1.0])
+@pytest.mark.parametrize(("slope", "piece", "turned"), [(1.0, 1.0, 1.0), (-1.0, -1.0, 1.0), (1.0, 1.0, -1.0)])
 def test_the_side_on_which_the_margin_is_negative(slope, piece, turned):
     """u = s (p - m q), with the piece of one sign of u: it is left across the line p = m q, to where s (p - m q) has the other sign."""
     problem = cv.AlgebraicProblem(

@@ -36,7 +36,9 @@ def test_burgers_map_where_a_pitchfork_meets_a_flip():
     problem = cv.MapProblem(
         burgers, [0.0, 0.0], {"mu": -0.3, "nu": 0.9}, parameter="mu", mirror=[[1, 0], [0, -1]]
     )
-    chart = cv.chart(cv.diagram(problem, within=(-0.5, 0.9), depth=2), over="nu", within=(0.1, 3.9))
+    chart = cv.chart(
+        cv.diagram(problem, within=(-0.5, 0.9), depth=2), over="nu", within=(0.1, 3.9), regions=False
+    )
     lines = {"symmetry-breaking": (0, 0.0), "neimark-sacker": (0, 0.5), "period-doubling": (1, 2.0)}
     assert sorted(locus.kind for locus in chart.loci.values()) == sorted(
         lines
@@ -66,7 +68,7 @@ def test_truncated_normal_form_of_the_resonance_1_2():
     branch_points = cv.locus(graph["BP1"], over="beta1", within=(-5.0, 3.0))
     assert set(branch_points.values[[0, -1], 1]) == {-5.0, 3.0}
     np.testing.assert_allclose(branch_points.values[:, 0], 2 - branch_points.values[:, 1] / 2, atol=1e-12)
-    chart = cv.chart(graph, over="beta1", within=(-5.0, 2.0))
+    chart = cv.chart(graph, over="beta1", within=(-5.0, 2.0), regions=False)
     assert chart.message == "finished"
     for label, condition in (("NS1", lambda b2, b1: b1 + b2), ("BP1", lambda b2, b1: b1 + 2 * b2 - 4)):
         assert np.abs([condition(*value) for value in chart.loci[label].values]).max() < 1e-11

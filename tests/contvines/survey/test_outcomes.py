@@ -1,12 +1,9 @@
 """Outcomes of the coupled machine: activation is the borders and folds of the diagram, shares and gaps add up."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.graph.attractor import Attractor
 from contvines.survey import survey
 from contvines.survey.outcomes import (
     Findings,
@@ -63,19 +60,6 @@ def test_shares(found):
     assert np.isnan(share(Findings(found.graph, None), "LR")["share_LR"])
 
 
-def test_shares_of_an_atlas(found):
-    """The mean over the values with the most starts, and the least of them; a brief look with few starts does not count."""
-    met = [
-        Attractor(1.0, "LR", 1, "periodic", "B1", 0.75, starts=64),
-        Attractor(1.0, "tt", 1, "periodic", "B2", 0.25, starts=64),
-        Attractor(1.5, "LR", 1, "periodic", "B1", 0.25, starts=64),
-        Attractor(1.2, "tt", 1, "periodic", "B2", 1.0, starts=16),
-    ]
-    graph = SimpleNamespace(attractors=met)
-    assert share(Findings(graph, None), "LR") == {"share_LR": 0.5, "share_LR_least": 0.25}
-    assert share(Findings(graph, None), "tt") == {"share_tt": 0.125, "share_tt_least": 0.0}
-
-
 def test_coexisting_responses_are_counted(found):
     """As many as `at` finds stable points of at any of 401 values."""
     values = np.linspace(*found.graph.within, 401)
@@ -115,23 +99,3 @@ def test_an_atlas_of_each_machine_is_the_atlas_of_that_machine():
             machine.changed(friction=friction), over="forcing", within=(0.8, 2.0), depth=1, **asked
         )
         assert made["share_LR"][i] == sum(a.share for a in graph.attractors if a.word == "LR") / 2
-
-
-def test_activation_in_a_survey_is_where_the_loci_of_the_chart_are(found):
-    """The points at which impacts begin, followed in the friction to another machine's, are that machine's activation."""
-    from orbits.design import Family
-
-    machine = found.seed.model
-    made = survey(
-        Family(machine, "LR", loose={"forcing": 1.2}), {"friction": [0.1, 0.13]}, over="forcing", within=(0.05, 2.0),
-        outcomes=("activation",), workers=1, depth=2, gaps=0,
-    )  # fmt: skip
-    met = 0
-    for column in made.columns.values():
-        for point in found.graph.special.values():
-            if abs(point.value - column[0]) < 1e-8:
-                locus = cv.locus(point, over="friction", within=(0.1, 0.13))
-                value, friction = locus.values[-1]
-                assert friction == 0.13 and abs(value - column[1]) < 1e-8
-                met += 1
-    assert met == 2

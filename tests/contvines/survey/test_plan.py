@@ -34,11 +34,6 @@ def test_samples_follow_their_distributions(sampling):
         assert len(np.unique(np.floor((mu - 0.1) / 0.2 * 256))) == 256
 
 
-def test_a_normal_law_cut_off():
-    plan = planned({"r": {"normal": [0.95, 0.1], "within": [0.5, 1.0]}}, "latin", 200)
-    assert plan.samples["r"].min() >= 0.5 and plan.samples["r"].max() <= 1.0
-
-
 @given(st.lists(st.integers(1, 4), min_size=1, max_size=3), st.booleans())
 def test_a_neighbour_comes_first_and_differs_in_one_place(lengths, sampled):
     vary = {f"x{i}": list(range(n)) for i, n in enumerate(lengths)}

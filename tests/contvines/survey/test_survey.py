@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import signal
-import sys
 
 import numpy as np
 import pytest
@@ -49,16 +48,6 @@ def test_a_system_that_fails_is_a_row_with_its_sentence(one):
 def test_two_processes_and_a_lost_worker(one, tmp_path):
     assert same(one, run(tmp_path, 1.5, workers=2))
     assert (tmp_path / "died").exists()
-
-
-def test_functions_of_a_notebook_are_found_in_this_process_alone(one, monkeypatch, capsys):
-    class Written(Circles):
-        __module__ = "__main__"
-
-    monkeypatch.delattr(sys.modules["__main__"], "__file__", raising=False)
-    monkeypatch.setattr("contvines.survey.pools.may_be_copied", lambda: False)  # a notebook has threads
-    assert same(one, survey(Written("", -1.0), VARY, **ASKED, workers=2))
-    assert "the survey runs in one process" in capsys.readouterr().err
 
 
 def test_a_cluster_that_loses_a_worker(one):
@@ -132,20 +121,3 @@ def test_bands_and_maps_are_drawn(one):
     assert labels == ["all samples", "95 %", "half of them", "median"]
     with pytest.raises(ValueError, match="no such outcome"):
         drawn.plot("weight")
-
-
-def test_axes_keep_their_order_in_a_file(tmp_path):
-    """Not the alphabet's: an outcome over (z, a) has z first."""
-    pytest.importorskip("xarray")
-    from contvines.survey import Plan, Survey
-
-    plan = Plan(
-        {"z": np.array([1.0, 2.0]), "a": np.array([1.0, 2.0, 3.0])}, {"y": np.ones(2), "b": np.zeros(2)}
-    )
-    values = np.arange(12.0).reshape(2, 3, 2)
-    about = {"axes": {"z": [1.0, 2.0], "a": [1.0, 2.0, 3.0]}, "samples": {"y": "ones", "b": "zeros"}}
-    Survey(plan, {"out": values}, np.full((2, 3, 2), ""), {}, about).save(tmp_path / "s.nc")
-    back = load_survey(tmp_path / "s.nc")
-    assert list(back.plan.axes) == ["z", "a"] and back.plan.shape == (2, 3, 2)
-    assert list(back.plan.samples) == ["y", "b"]
-    assert np.array_equal(back["out"], values)

@@ -1,14 +1,11 @@
 """What counts as an orbit beyond a border: every margin kept, and followed by the simulation."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 import contvines as cv
 from orbits import Absorber
 from orbits.borders.crossing import _followed
-from orbits.borders.sticking import to_rest
 
 MACHINE = Absorber(restitution=0.76, friction=0.2, gravity=0.211, mass_ratio=0.006)
 H = 0.5 * np.pi * 1.006 * 0.2 * 0.211
@@ -45,13 +42,3 @@ def test_orbit_branch_and_border_agree_on_what_is_real(room, real):
         and graph["WG1"].orbit.margin == pytest.approx(0.0, abs=1e-14)
     )
     assert all(branch.orbit(i).real is real for i in range(1, len(branch) - 1))
-
-
-@pytest.mark.parametrize(("part", "goes_on"), [(0.9, False), (1.0, True), (1.1, False)])
-def test_stick_slip_ends_in_rest_only_where_rest_begins(part, goes_on):
-    """The absorber is at rest up to C = (1 + eps) mu g: below, rest is no other side of anything, and above there is none."""
-    at = part * 1.006 * MACHINE.friction * MACHINE.gravity
-    problem = MACHINE.orbit("ss", amplitude=1.2 * at / part).problem("amplitude")
-    seeds = to_rest(problem, SimpleNamespace(value=at))
-    assert [len(seed.problem.word) for seed in seeds] == ([0] if goes_on else [])
-    assert all(seed.p < at for seed in seeds)

@@ -1,14 +1,11 @@
 """Why nothing goes on at a border: said where it is known, and confirmed by the simulator."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
-from orbits.borders.dead_ends import AT_REST, piled_up
 from orbits.simulation import simulate
 
 pytestmark = pytest.mark.slow
@@ -40,19 +37,6 @@ def test_impacts_that_pile_up_are_told_with_the_speed_of_the_slowest():
     assert np.abs(np.log(speeds / told)).min() < 0.2
 
 
-@pytest.mark.parametrize("soft", [0.05, 0.95])
-def test_of_a_slow_impact_the_speed_behind_it_counts(soft):
-    """It rises by half the square of its speed behind the wall: beside a position of one that has few digits left, or many."""
-    machine = Cavity(restitution_left=soft, restitution_right=0.7, friction=0.4, gravity=0.1)
-    orbit = machine.orbit("LR", amplitude=0.8)
-    slow = SimpleNamespace(
-        approaches=np.array([2e-5, 0.4]), word=orbit.word, flow=orbit.flow, model=machine, params=orbit.params
-    )
-    rise = 0.5 * (soft * slow.approaches[0]) ** 2
-    lost = np.spacing(1.0) / rise  # part of it that one rounding is
-    assert piled_up(slow) == (lost > 1e-5)
-
-
 def test_a_stick_at_a_wall_that_is_about_to_let_go():
     """An impact before the stick leaves it no time: the faster it is the later the stick begins, which slips all the same.
 
@@ -79,12 +63,3 @@ def test_a_stick_at_a_wall_that_is_about_to_let_go():
     graph = cv.diagram(start, over="amplitude", within=(0.5519, 0.554), depth=1)
     told = [text for point in graph.special.values() for text in point.remarks if "about to vanish" in text]
     assert len(told) == 1 and "1.5e-04" in told[0] and "1.3e-04" in told[0]
-
-
-def test_where_the_reason_is_not_known_that_is_said():
-    """Of an orbit away from all borders nothing is known; no remark is ever empty."""
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211)
-    graph = cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.5, 0.6), depth=0)
-    point = next(iter(graph.special.values()))
-    assert point.problem.dead_end(point).startswith(AT_REST)
-    assert all(text for p in graph.special.values() for text in p.remarks)

@@ -6,8 +6,6 @@ import pytest
 import contvines as cv
 from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
-from orbits.simulation.replaying import replay
-from orbits.starts.find import polish
 
 
 def switches(graph, point):
@@ -125,73 +123,3 @@ def test_periods_are_added_where_a_turn_touches_a_wall():
         told = np.abs(seen.multipliers).max()
         assert told == pytest.approx(np.abs(orbit.multipliers).max(), abs=1e-3) and told < 1.0
         assert flip.multipliers.real.min() == pytest.approx(-1.0, abs=1e-9)
-
-
-def test_an_impact_and_the_flight_after_it_vanish_together():
-    """From the stick at the wall the motion goes on without the impact; both are one motion at the border, and both are followed."""
-    machine = Cavity(
-        restitution_left=0.724035,
-        restitution_right=0.818974,
-        friction_left=0.424031,
-        friction_right=0.906205,
-        gravity=0.491416,
-        slope=-0.083218,
-        distance_left=1.438987,
-        distance_right=0.912791,
-        mass_ratio=0.05,
-    )
-    found = find_attractor(machine, {"w_rate": 1.0, "phase": 2.5727}, amplitude=0.754836)
-    graph = cv.diagram(polish(found.orbit), over="amplitude", within=(0.74, 0.79), depth=1)
-    soft = next(
-        point for point in graph.special.values()
-        if point.kind in ("stick", "wall-graze")
-        and any(m.kind == "approach" and abs(m.value) < 1e-9 for m in point.orbit.margins)
-    )  # fmt: skip
-    assert soft.orbit.word.events.count("L") == 2
-    assert switches(graph, soft)
-    for switch in switches(graph, soft):
-        target = graph[switch.target]
-        end = int(np.argmin(np.abs(target.values - soft.value)))
-        near = target.orbit(end)
-        assert near.word.events.count("L") == 2 * near.periods - 1
-        if near.periods > 1:
-            continue  # in every other round only; the border orbit itself is compared below
-        grid = np.linspace(0.0, 2.0 * np.pi, 500)
-        one, other = (
-            np.interp((grid - path["phase"][0]) % (2 * np.pi), path["phase"] - path["phase"][0], path["w"])
-            for path in (orbit.sample(20000) for orbit in (soft.orbit, near))
-        )
-        assert np.abs(one - other).max() < 1e-6
-        assert replay(target.orbit(len(target) // 2)).error < 1e-6
-
-
-def test_a_doubling_right_before_a_doubled_orbit_comes_back_to_its_root():
-    """A multiplier passes -1 within 2e-5 of the meeting, behind which lies the image of what is before it: found with any steps."""
-    machine = Cavity(
-        restitution_left=0.3026013366985359,
-        restitution_right=0.9116775872513103,
-        friction_left=0.6762239499547344,
-        friction_right=0.9838720605416361,
-        gravity=0.7175520851058237,
-        slope=-0.08957104092297741,
-        distance_left=1.2319815798863538,
-        distance_right=1.5673046754759739,
-    )
-    found = find_attractor(
-        machine, {"w_rate": 1.0, "phase": 3.9579484187309633}, amplitude=1.6462546849061006
-    )
-    for settings in ({}, {"max_step": 0.003}):
-        graph = cv.diagram(
-            polish(found.orbit),
-            over="amplitude",
-            within=(1.2462546849, 2.0462546849),
-            depth=1,
-            settings=settings,
-        )
-        meeting = next(p for p in graph.of_kind("period-doubling") if p.note.startswith("met from"))
-        branch = graph[meeting.met_from]
-        own = [graph[label] for _, label in branch.marks if label != meeting.label]
-        (doubling,) = [point for point in own if point.kind == "period-doubling"]
-        assert 0.0 < doubling.value - meeting.value < 3e-5
-        seen = replay(polish(doubling.orbit), thorough=True).multipliers
-        assert seen[np.argmax(np.abs(seen))] == pytest.approx(-1.0, abs=1e-4)

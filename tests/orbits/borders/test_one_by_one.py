@@ -6,8 +6,6 @@ import pytest
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractor
-from orbits.simulation.replaying import replay
-from orbits.starts.find import polish
 from tests.machines import ABSORBER
 
 
@@ -94,37 +92,6 @@ def _ends(branch, value):
     return ends
 
 
-@pytest.mark.parametrize("rotation", range(6))
-def test_borders_do_not_depend_on_how_the_word_is_read(rotation):
-    """Every rotation of `LsR`, `LtsR` and `LttR` meets the same borders, also where the change straddles its end."""
-    found = find_attractor(ABSORBER, {"w_rate": 1.0}, amplitude=0.88)
-    orbit = found.orbit
-    places = [k for k, letter in enumerate(orbit.word.events) if letter != "u"]
-    turned = polish(orbit.rotate(places[rotation % len(places)]))
-    if rotation >= len(places):
-        turned = turned.mirror()
-    graph = cv.diagram(turned, over="amplitude", within=(0.6, 1.0), depth=0)
-    values = sorted(p.value for p in graph.special.values() if p.kind in ("stick", "velocity-graze"))
-    assert np.square(values) == pytest.approx([0.7322667848, 0.7489568973, 0.7982897117], abs=1e-9)
-    assert sorted(len(b.description["word"]) for b in graph.branches.values()) == [2, 3, 4, 4]
-
-
-def test_the_slip_is_no_graze():
-    """A symmetric island of three periods: no false border where the flight after a slip starts with w' = w'' = 0."""
-    rng = np.random.default_rng(318)
-    values = rng.uniform(0.3, 0.95), rng.uniform(0, 1), rng.uniform(0.05, 0.5)
-    machine = Absorber(restitution=values[0], friction=values[1], gravity=values[2])
-    orbit = next(
-        found.orbit
-        for rate in np.linspace(-2.0, 2.0, 41)
-        if (found := find_attractor(machine, {"w_rate": rate, "phase": 1.0}, amplitude=0.9618)).periods == 3
-    )
-    graph = cv.diagram(orbit, over="amplitude", within=(0.6, 1.2), depth=0)
-    for point in graph.special.values():
-        if point.kind in ("velocity-graze", "wall-graze", "stick"):
-            assert min(abs(m.value) for m in point.orbit.margins) < 1e-9, point
-
-
 def test_without_friction_flights_graze_the_walls():
     """mu = 0: `LR` loses an impact or gains one where a flight or an impact grazes a wall; the simulator agrees."""
     machine = Absorber(restitution=0.8077, friction=0.0, gravity=0.3)
@@ -175,23 +142,6 @@ def test_friction_that_vanishes_joins_the_frictionless_orbits(amplitude):
         )
     assert gaps[2] < 2e-5
     assert gaps[0] > gaps[1] > gaps[2]
-
-
-def test_unrelated_attractor_is_no_switch():
-    """Without friction, LR at amplitude 1 touches the wall; the simulator then falls on an attractor far away."""
-    absorber = Absorber(restitution=0.6, friction=0.0, gravity=0.2, mass_ratio=0.01)
-    seed = absorber.symmetric_orbit(amplitude=0.6)
-    graph = cv.diagram(seed, over="amplitude", within=(0.1, 2.5), depth=1)
-    for switch in graph.switches:
-        if graph.special[switch.point].kind != "wall-graze":
-            continue
-        value = graph.special[switch.point].value
-        pair = []
-        for label in (switch.source, switch.target):
-            branch = graph[label]
-            pair.append(branch.orbit(int(np.argmin(np.abs(branch.values - value)))))
-        assert abs(pair[0].measure("B_post") - pair[1].measure("B_post")) < 0.1, switch
-    assert not [s for s in graph.switches if abs(graph.special[s.point].value - 1.0) < 1e-9]
 
 
 STIFF = Absorber(restitution=0.41, friction=0.68, gravity=0.44, mass_ratio=0.006)
@@ -247,29 +197,3 @@ def test_motions_on_both_sides_of_a_border_are_one(stiff):
             assert min(np.abs(paths[0] - other).max() for other in paths[1:]) < allowed + 1e-6, switch
         checked += 1
     assert checked >= 5
-
-
-@pytest.mark.parametrize("label", ["VG1", "VG2"])
-def test_multipliers_where_a_stick_begins_are_one_sided_limits(stiff, label):
-    """A stick of no duration: the return map of the simulation next to the border, by differences, has the same."""
-    point = stiff[label]
-    for switch in switches(stiff, point):
-        target = stiff[switch.target]
-        end = 0 if abs(target.values[0] - point.value) < 1e-9 else len(target) - 1
-        side = np.sign(target.values[len(target) // 2] - point.value)
-        lasts, seen = [], []
-        for ahead in (5e-5, 1.25e-5):
-            near = polish(
-                target.problem.orbit(target.points[3 if end == 0 else end - 3], point.value + side * ahead)
-            )
-            place = near.word.events.index("s")
-            lasts.append(near.nodes[place + 1, 0] - near.nodes[place, 0])
-            seen.append(np.abs(replay(near, thorough=True).multipliers).max())
-        line = np.polynomial.Polynomial.fit(lasts, seen, 1)
-        assert np.abs(target.multipliers[end]).max() == pytest.approx(line(0.0), abs=0.01)
-        # the orbit at the border itself, as users hold it, tells the same
-        told = target.orbit(-1 if end else 0)
-        assert np.abs(told.multipliers).max() == pytest.approx(line(0.0), abs=0.01)
-        assert told.to_dict()["multipliers"][0][0] == told.multipliers[0].real
-    np.testing.assert_array_equal(point.orbit.multipliers, point.multipliers)
-    np.testing.assert_array_equal(point.orbit.nodes, point.problem.orbit(point.u, point.value).nodes)

@@ -9,7 +9,6 @@ from orbits import Cavity, Coupled, Orbit, OrbitProblem, Word
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.identity import canonical
 from orbits.factories import FACTORIES
-from orbits.flows.solving import solved_at
 from orbits.problem import rebuild
 from tests.machines import ABSORBER
 
@@ -69,23 +68,6 @@ def test_at_rest_the_oscillator_answers_linearly(frequency):
     assert np.abs(np.sort_complex(orbit.multipliers) - expected).max() < 1e-13
     assert orbit.real and orbit.stable and orbit.symmetric and orbit.replay() < 1e-12
     assert np.abs(orbit.sample()["cavity"]).max() == pytest.approx(size, rel=1e-4)
-
-
-def test_a_problem_of_the_empty_word_is_solved_like_any_other():
-    orbit = COUPLED.changed(forcing=0.05).orbit("", frequency=0.97)
-    problem = orbit.problem("frequency")
-    u, p = orbit.seed(problem)
-    found, residual = solved_at(problem.equations, u + 0.1, p)
-    assert residual < 1e-12 and np.abs(found - u).max() < 1e-12
-    work = problem.workspace()
-    values = []
-    for step in (1e-6, -1e-6):
-        problem.kernels.linearise(problem.data, u, p + step, work)
-        values.append(work[0].copy())
-    problem.kernels.linearise(problem.data, u, p, work)
-    assert np.abs(work[2] - (values[0] - values[1]) / 2e-6).max() < 1e-8
-    assert problem.margin_kind(0) == "stick" and problem.root(u, p) is None and problem.symmetries == ()
-    assert problem.same_motion(u, p, orbit.problem("forcing"), u)
 
 
 def test_rest_on_a_slope_gives_way_downhill_first():

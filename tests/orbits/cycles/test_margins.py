@@ -43,26 +43,6 @@ def test_without_friction_flights_have_walls():
     )
 
 
-@pytest.mark.parametrize("shift", [-4e-16, 0.0, 4e-16])
-@pytest.mark.parametrize("length", [0.0, 4e-16])
-def test_a_stick_that_ends_where_it_begins_waits_no_time(shift, length):
-    """It begins, to rounding, at the very instant at which friction gives way: the time to the slip is zero, not a turn."""
-    machine = Absorber(restitution=0.7, friction=0.5, gravity=0.4)
-    orbit = machine.orbit("ss", amplitude=0.35)
-    nodes = orbit.nodes.copy()
-    slip = orbit.word.events.index("u")
-    # friction gives way where C |sin Psi| = mu g
-    assert abs(np.sin(nodes[slip, 0])) == pytest.approx(0.5 * 0.4 / 0.35, abs=1e-12)
-    nodes[slip - 1, 0] = nodes[slip, 0] + shift
-    nodes[slip, 0] = nodes[slip - 1, 0] + length
-    hold = next(
-        m
-        for m in type(orbit)(machine, orbit.word, 1, nodes, orbit.params).margins
-        if m.kind == "hold" and m.segment == slip - 1
-    )
-    assert abs(hold.value) < 1e-12
-
-
 @pytest.mark.parametrize("frequency", [0.7, 1.7])
 def test_a_slip_s_margin_is_the_rate_at_which_friction_gives_way(frequency):
     """The cavity's acceleration is C Omega^2 sin Psi; it reaches (1 + eps) mu g at the slip, and grows there by C Omega^3 |cos Psi| per time."""

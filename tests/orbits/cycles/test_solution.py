@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber, Cavity
-from orbits.cycles.deviation import by_events, by_positions
+from orbits import Absorber
+from orbits.cycles.deviation import by_events
 from orbits.cycles.identity import is_symmetric
 from orbits.simulation.replaying import replay
 from orbits.words import Word
@@ -26,24 +26,6 @@ def test_pure_sliding_is_real_up_to_the_walls(room, real):
     assert orbit.real is real
     wall = [margin.value for margin in orbit.margins if margin.kind == "wall"]
     assert wall == pytest.approx([room] * len(wall), abs=1e-12) and wall
-
-
-def test_unlike_walls_leave_unlike_room():
-    machine = Cavity(
-        restitution=0.76, friction=0.2, gravity=0.211, mass_ratio=0.006, distance_left=1.4, distance_right=0.6
-    )
-    orbit = machine.orbit("tt", 1, guess=MACHINE.orbit("tt", 1, amplitude=0.5).nodes, amplitude=0.5)
-    reach = np.sqrt(0.25 - H**2)
-    about_the_origin = type(orbit)(machine, orbit.word, 1, orbit.nodes - [0.0, 0.4], orbit.params)
-    for moved, rooms in (
-        (
-            orbit,
-            [1.0 - reach],
-        ),  # symmetric about the middle between the walls, at 0.4: half of it is looked at
-        (about_the_origin, [0.6 - reach, min(1.4 - reach, 0.6 + reach)]),
-    ):
-        found = sorted(margin.value for margin in moved.margins if margin.kind == "wall")
-        assert found == pytest.approx(rooms, abs=1e-12)
 
 
 @pytest.mark.parametrize(("text", "amplitude"), [("LR", 0.6), ("tt", 0.5)])
@@ -67,15 +49,6 @@ def test_a_mirror_image_after_whole_forcing_periods_is_no_symmetry():
     assert is_symmetric(word, 1, nodes)
     nodes[1, 0] = 0.3 + 3.0 * np.pi
     assert is_symmetric(word, 3, nodes)
-
-
-def test_a_stick_whose_end_comes_before_its_beginning_by_rounding_is_compared():
-    orbit = Absorber(restitution=0.7, friction=0.5, gravity=0.4).orbit("ss", amplitude=0.35)
-    nodes = orbit.nodes.copy()
-    slip = orbit.word.events.index("u")
-    nodes[slip - 1] = nodes[slip] + [3e-8, 0.0]
-    late = type(orbit)(orbit.model, orbit.word, 1, nodes, orbit.params)
-    assert by_positions(late, lambda: (late._examined[2], late.multipliers)) < 1e-2
 
 
 def test_orbits_on_which_rounding_grows_within_a_period_are_replayed_event_by_event():

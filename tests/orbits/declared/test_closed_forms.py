@@ -141,14 +141,3 @@ def test_grazing_of_the_elastic_stop(F, D, gap):
     start = machine.attractor(frequency=1.15 * exact, forcing=F, damping=D, gap=gap)
     graph = cv.diagram(start, over="frequency", within=(0.95 * exact, 1.3 * exact), depth=0)
     assert specials(graph, "switch-graze")[-1] == pytest.approx(exact, abs=1e-10)
-
-
-@pytest.mark.parametrize("frequency", [0.4, 0.8, 1.7, 2.6])
-def test_grazing_amplitude_at_each_frequency(frequency):
-    """A wall touches the linear motion where its amplitude is the gap."""
-    machine = page("impact_oscillator")
-    exact = abs(1 - frequency**2)  # forcing at which |x| = 1 without damping
-    nodes = [[0.0, 0.5 / (1 - frequency**2) * exact, 0.0]]
-    orbit = machine.orbit("", 1, nodes, frequency=frequency, gap=1.0, forcing=0.5 * exact)
-    graph = cv.diagram(orbit, over="forcing", within=(0.2 * exact, 1.3 * exact), depth=0)
-    assert specials(graph, "wall-graze")[0] == pytest.approx(exact, abs=1e-10)

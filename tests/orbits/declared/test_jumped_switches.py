@@ -8,7 +8,6 @@ from scipy.optimize import brentq
 import contvines as cv
 from orbits import Machine, Switch, Wall
 from orbits.symbols import cos
-from orbits.words import WordError
 
 GRAVITY, DRAG, RESTITUTION = 0.1, 0.1, 0.8
 
@@ -54,33 +53,6 @@ def test_the_fold_of_the_dragged_bounce(machine):
     assert start.word.text == "B up-" and start.orbit.real and start.orbit.replay() < 1e-10
     graph = cv.diagram(start, over="amplitude", within=(0.02, 0.09), depth=0)
     assert [p.value for p in graph.of_kind("fold")] == pytest.approx([exact], abs=1e-10)
-
-
-def test_what_an_impact_leaves_is_read_from_the_word(machine):
-    assert machine.word("B up-").modes == ((0, 1), (0, -1))  # before a crossing to below the ball goes up
-    assert machine.word("B up- up+").modes == ((0, 1), (0, -1), (0, 1))
-    assert machine.word("B B up-").modes == ((0, -1), (0, 1), (0, -1))
-    for text in ("B", "B[-]", "B up-", "B B up-", "B[+] B up-"):
-        word = machine.word(text)
-        assert machine.word(word.text) == word
-    with pytest.raises(WordError, match="must alternate, up. and up-; impacts may change its sign"):
-        machine.word("B up- up-")
-
-
-def test_a_ball_at_rest_on_a_table_at_rest(machine):
-    """Chatter to the end, though the velocity that the switch watches is then zero for good."""
-    resting = ball(contacts=[
-        Wall("B", lambda s, phase, p: s.y, {"v": 1.0}, RESTITUTION),
-        Switch("up", surface=lambda s, phase, p: s.v),
-    ])  # fmt: skip
-    found = resting.attractor({"y": 0.3})
-    assert found.kind == "rest" and found.trajectory.held
-    with pytest.raises(ValueError, match="a wall holds the body for good"):
-        found.problem()
-    shaken = machine.attractor({"y": 0.08}, amplitude=0.04)  # the table never falls faster than the ball
-    assert shaken.kind == "rest"
-    motions, index, _ = machine.population("amplitude").settle([[0.0, 0.08, 0.0]], 0.04)
-    assert [motions[k].kind for k in index] == ["stuck"]
 
 
 def test_a_crossing_that_comes_out_of_an_impact():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits import Absorber, Machine, Wall, Word
+from orbits import Machine, Wall, Word
 from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import Stepper
 from tests.machines import ABSORBER
@@ -34,48 +34,6 @@ def test_the_declared_absorber_sorts_the_starts_of_the_built_in_one(amplitude):
         problem, u = motion.problem, motion.u
         assert problem.parameter == "amplitude"
         assert problem.data is not None and np.all(np.isfinite(u))
-
-
-# where long motions follow one another in windows of an amplitude beside chaos
-WINDOWS = {
-    "restitution": 0.5507855053185154,
-    "friction": 0.35091270972781097,
-    "gravity": 0.26017524000479453,
-    "mass_ratio": 0.006,
-    "frequency": 0.9963660983902861,
-}
-
-
-def test_a_motion_that_repels_is_not_listed_though_starts_pass_it_by_slowly():
-    """Beside the stable motion of ten periods lies one with the same word and a multiplier of 1.6; the built-in machine's starts all reach the first."""
-    amplitude = 1.1982186704268658
-    declared = page("absorber").population("amplitude", **WINDOWS)
-    starts = declared.starts(16, 13, amplitude)[[0, 1, 2, 8]]
-    theirs, _, _ = declared.settle(starts, amplitude)
-    ours, _, _ = Absorber(**WINDOWS).population("amplitude").settle(starts, amplitude)
-    assert [m.periods for m in theirs] == [m.periods for m in ours] == [10]
-    for motion in (theirs[0], ours[0]):
-        assert np.abs(motion.problem.orbit(motion.u, amplitude).multipliers).max() < 1.0
-
-
-@pytest.mark.parametrize(
-    ("amplitude", "built_in", "periods"),
-    [(1.2069181325395584, True, 20), (1.2069181325395584, False, 20), (1.20094, True, 26)],
-)
-def test_a_motion_that_recurs_late_is_told_by_its_word(amplitude, built_in, periods):
-    """Longer than what is looked for at first. Followed from phase zero to phase zero it comes back after all its periods, and not before."""
-    own = (
-        Absorber(**WINDOWS).population("amplitude")
-        if built_in
-        else page("absorber").population("amplitude", **WINDOWS)
-    )
-    (motion,), index, _ = own.settle(own.starts(3, 0, amplitude), amplitude)
-    assert (motion.kind, motion.periods) == ("periodic", periods) and index.tolist() == [0, 0, 0]
-    section = motion.problem.section(amplitude)
-    rounds = section.rounds(motion.u)
-    assert section.step(rounds[0]) == pytest.approx(rounds[0], abs=1e-8)
-    assert len(rounds) == periods
-    assert np.abs(rounds[1:] - rounds[0]).max(axis=1).min() > 1e-4
 
 
 def ball_exponent(amplitude, gravity, restitution, periods):

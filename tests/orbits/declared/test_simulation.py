@@ -111,20 +111,3 @@ def test_orbits_against_an_independent_integrator(name):
     assert orbit is not None and orbit.real and orbit.residual < 1e-10
     assert deviation(orbit, machine.equations.formulas_of_motion) < 1e-8
     assert orbit.replay() < 1e-9
-
-
-def test_stick_slip_on_a_belt_has_a_period_of_its_own():
-    machine = page("belt_slider")
-    orbit = machine.attractor({"x": 1.0, "v": 0.5}).orbit
-    assert orbit.word.text == "s-" and orbit.stable and len(orbit.multipliers) == 1
-    assert abs(orbit.multipliers[0]) < 1e-12  # sticking forgets
-    assert deviation(orbit, machine.equations.formulas_of_motion) < 1e-8
-
-
-def test_a_motion_that_dies_out_is_simulated_for_as_long_as_asked():
-    """Sliding that decays onto x = friction at v = 0: 2e5 units of time are more steps than one flight may have."""
-    given = {"belt": 0.28, "damping": 0.15, "least": 0.755, "weakening": 2.5}
-    run = page("belt_slider").simulate({"x": 0.9, "v": -0.35}, time=2e5, **given)
-    assert run.end == pytest.approx(2e5)
-    last = run.sample(np.array([run.end]))[0]
-    assert last == pytest.approx([0.755 + 0.245 / (1 + 2.5 * 0.28**2), 0.0], abs=1e-10)

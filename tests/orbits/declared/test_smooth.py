@@ -110,12 +110,3 @@ def test_a_machine_without_contacts_that_is_forced():
     assert orbit.measure("max_x") == pytest.approx(0.7 / np.hypot(1 - 1.3**2, 2 * 0.1 * 1.3), rel=1e-9)
     with pytest.raises(PageError, match="forced"):
         machine.smooth()
-
-
-def test_starts_of_a_belt_come_to_rest_on_the_equilibrium_of_the_graph():
-    machine = belt()
-    population = machine.population("speed")
-    motions, _, _ = population.settle(population.starts(6, 3, 2.0), 2.0)
-    (rest,) = [motion for motion in motions if motion.kind == "stuck"]
-    x = 0.5 * (1.0 + np.exp(-2.0 / 0.5))
-    assert rest.u == pytest.approx([x, 0.0], abs=1e-9)

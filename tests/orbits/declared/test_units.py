@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-import contvines as cv
 from orbits import Machine, Wall
-from orbits.machines.page.formulas import PageError
 from orbits.symbols import cos
 
 pytest.importorskip("pint")
@@ -48,21 +46,3 @@ def test_motions_are_the_same_in_every_unit():
     assert np.abs(shown.multipliers) == pytest.approx(np.abs(plain.multipliers), abs=1e-10)
     assert shown.measure("max_x") == pytest.approx(1e3 * plain.measure("max_x"), rel=1e-12)
     assert shown.model.units["max_x"] == "mm" and shown.model.units["frequency"] == "Hz"
-
-
-def test_diagrams_run_over_what_is_shown():
-    plain, shown = stop(SI).attractor().found, stop(SHOWN, UNITS).attractor().found
-    ours = cv.diagram(shown, over="frequency", within=(5.2, 5.8), depth=0)
-    theirs = cv.diagram(plain, over="frequency", within=(2 * np.pi * 5.2, 2 * np.pi * 5.8), depth=0)
-    assert [p.kind for p in ours.special.values()] == [p.kind for p in theirs.special.values()]
-    told = [p.value / (2 * np.pi) for p in theirs.special.values()]
-    assert [p.value for p in ours.special.values()] == pytest.approx(told, rel=1e-8)
-
-
-def test_bad_units_are_refused():
-    with pytest.raises(PageError, match="'gab' is no state and no parameter"):
-        stop(SI, {"gab": "mm"})
-    with pytest.raises(PageError, match="'furlongs per' is no unit"):
-        stop(SI, {"gap": "furlongs per"})
-    with pytest.raises(PageError, match="'Hz' or 'rad/s'"):
-        stop(SI, {"frequency": "m"})

@@ -7,7 +7,6 @@ from scipy.integrate import solve_ivp
 from orbits import Coupled, Machine, Wall
 from orbits.design.page_transients import page_transient
 from orbits.design.start_up import start_up
-from orbits.machines.coupled_two import coupled_two
 from orbits.symbols import cos
 
 LINEAR = Machine(
@@ -45,17 +44,6 @@ def test_the_built_in_machine_runs_up_as_its_page_starts():
     np.testing.assert_allclose(seen.impact_speeds[: hits.size], plain.impact_speeds[: hits.size], atol=1e-6)
     bare = np.interp(plain.times, seen.times, seen.bare)
     np.testing.assert_allclose(bare, plain.bare, atol=5e-3)  # between samples
-
-
-def test_energy_without_damping_is_taken_by_impacts_and_friction():
-    params = coupled_two.vector({"base_amplitude": 0.0, "damping_ratio": 0.0})
-    seen = page_transient(coupled_two, params, {"q": 20.0, "x1": 20.0, "x2": 20.0}, time=4.0)
-    lost = seen.energy[0] - seen.energy[-1]
-    assert seen.impacts[-1] > 0.0 and seen.friction[-1] > 0.0
-    assert seen.impacts[-1] + seen.friction[-1] == pytest.approx(lost, rel=1e-12)
-    assert seen.share(4.0) == pytest.approx(lost / seen.energy[0], rel=1e-12)
-    stiffness = 3.8 * (2 * np.pi * 8.0) ** 2
-    assert seen.energy[0] == pytest.approx(0.5 * stiffness * 0.02**2, rel=1e-12)
 
 
 def test_a_bouncing_ball_takes_its_energy_in_powers():

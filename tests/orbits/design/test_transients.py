@@ -91,22 +91,6 @@ def test_what_goes_in_is_kept_or_lost():
     assert seen.peak < seen.bare_peak
 
 
-def test_a_periodic_motion_that_is_recorded_is_the_simulated_one():
-    """A harmonic base given as a record settles on the orbit of the harmonic machine."""
-    eps, omega = 0.02, 1.0
-    machine = MACHINE.changed(forcing=6.0, frequency=omega)
-    t = np.arange(0.0, 700.0, 0.02)
-    acceleration = -eps * 6.0 * omega**2 * np.sin(omega * t)
-    seen = recorded(machine, machine.vector(), t, acceleration)
-    last = seen.times > 680.0
-    base = eps * 6.0 * np.sin(omega * seen.times[last])
-    settled = np.abs(seen.oscillator[last] + base).max()
-    from orbits.attractors import find_attractor
-    from orbits.attractors.search import described
-
-    assert settled == pytest.approx(described(find_attractor(machine))[1]["max_abs_q1"], rel=2e-3)
-
-
 def test_bad_records_get_a_sentence():
     p = MACHINE.vector()
     for t, a, says in (

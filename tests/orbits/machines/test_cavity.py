@@ -10,17 +10,15 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import contvines as cv
-from orbits import Absorber, Cavity, ParameterError
+from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor
 from orbits.machines.closed_forms.absorber import (
     friction_number,
     restitution_ratio,
     symmetry_breaking_square,
 )
-from orbits.problem import OrbitProblem
 from orbits.simulation import simulate
 from orbits.starts.find import StartError
-from orbits.words import Word
 
 LEVEL = {"gravity": 0.211, "mass_ratio": 0.006}
 
@@ -94,67 +92,6 @@ def test_symmetry_breaks_where_one_distance_varies():
     orbit = machine.orbit("LR", amplitude=amplitude)
     graph = cv.diagram(orbit, over="distance_left", within=(0.4, 1.4), depth=1)
     assert graph["SB1"].value == pytest.approx(expected, abs=1e-11)
-
-
-@pytest.mark.parametrize(
-    "parameter", ["distance_left", "distance_right", "amplitude", "frequency", "friction"]
-)
-@pytest.mark.parametrize("text", ["LtLRtR", "tLRtRL", "suLsuR"])
-def test_the_equations_of_a_level_cavity_have_its_mirror(text, parameter):
-    """At any unknowns: the image's residuals are those of the unknowns in other places, and the half word's are those of the whole one.
-
-    So that a sign, a place or the derivative of the middle between the walls that is wrong shows without any orbit.
-    """
-    machine = Cavity(restitution=0.6, friction=0.4, distance_left=0.7, distance_right=1.2, **LEVEL)
-    params, word = machine.vector({"amplitude": 0.9}), Word.parse(text)
-    whole, half = (
-        OrbitProblem(machine, word, 1, parameter, params, symmetric) for symmetric in (False, True)
-    )
-    draw = np.random.default_rng(5)
-    u = draw.uniform(-0.5, 0.5, whole.dimension)
-    u[::2] = np.sort(draw.uniform(0.0, 2.0 * np.pi, whole.length))
-    p = 1.1 * whole.value(params)
-    (symmetry,) = (one for one in whole.symmetries if one.kind == "symmetry-breaking")
-
-    def residuals(problem, unknowns, value=p):
-        work = problem.workspace()
-        problem.kernels.linearise(problem.data, unknowns, value, work)
-        return work[0].ravel().copy(), work[3].ravel().copy()
-
-    image = symmetry.apply(u) + symmetry.offset(p)
-    assert symmetry.apply(image) + symmetry.offset(p) == pytest.approx(u, abs=1e-12)
-    one, other = residuals(whole, u)[0], residuals(whole, image)[0]
-    assert np.sort(np.abs(one)) == pytest.approx(np.sort(np.abs(other)), abs=1e-12)
-    v = u[: half.dimension].copy()
-    v[::2] = np.sort(draw.uniform(0.0, np.pi, half.length))
-    one, other = residuals(half, v)[0], residuals(whole, whole.reduce(half.expand(v, p)))[0]
-    assert np.abs(np.tile(one, 2)) == pytest.approx(np.abs(other), abs=1e-12)
-    slope = (residuals(half, v, p + 1e-6)[0] - residuals(half, v, p - 1e-6)[0]) / 2e-6
-    assert residuals(half, v)[1] == pytest.approx(slope, abs=1e-8)
-
-
-def test_level_with_unlike_distances_sliding_ends_where_it_fills_the_cavity():
-    """It turns at the mean of the walls' places -+ sqrt(C^2 - H^2), and goes over into LR where that is half the way from wall to wall."""
-    b, mass_ratio = 0.95, 0.006
-    machine = Cavity(
-        restitution=0.5,
-        friction=0.5,
-        gravity=0.2,
-        mass_ratio=mass_ratio,
-        distance_left=0.6,
-        distance_right=1.3,
-    )
-    H = friction_number(0.5, 0.2, mass_ratio)
-    sliding = machine.orbit("tt", amplitude=0.9)
-    turns = np.sort(sliding.nodes[:, 1]) + 0.5 * (1.3 - 0.6)
-    assert turns == pytest.approx(np.sqrt(0.81 - H**2) * np.array([-1, 1]), abs=1e-12)
-    assert sliding.real
-    beside = {"phase": float(sliding.nodes[0, 0]), "w": float(sliding.nodes[0, 1]) + 0.03}
-    found = find_attractor(machine, beside, amplitude=0.9).orbit  # the same motion, moved to its place
-    assert found.real and np.sort(found.nodes[:, 1]) == pytest.approx(np.sort(sliding.nodes[:, 1]), abs=1e-9)
-    graph = cv.diagram(sliding, over="amplitude", within=(0.5, 1.0), depth=1)
-    assert graph["WG1"].value == pytest.approx(np.hypot(b, H), abs=1e-12)
-    assert [branch.description["word"] for branch in graph] == ["tt", "LR"]
 
 
 # ---------------------------------------------------------------------------------------------- a ball on a table
@@ -262,101 +199,11 @@ def test_an_attractor_of_the_unlike_cavity_is_what_runge_kutta_finds(amplitude):
     assert abs(state[1] - orbit.events.rate_post[0]) < 1e-8
 
 
-@settings(max_examples=30, deadline=None)
-@given(
-    slope=st.floats(-1.5, 1.5),
-    gravity=st.floats(0.05, 1.0),
-    left=st.floats(0.0, 0.6),
-    right=st.floats(0.0, 0.6),
-    amplitude=st.floats(0.1, 2.0),
-)
-def test_energy_is_balanced_and_the_walls_hold(slope, gravity, left, right, amplitude):
-    machine = Cavity(
-        restitution_left=0.8, restitution_right=0.6, friction_left=left, friction_right=right, gravity=gravity,
-        slope=slope, distance_left=1.4, distance_right=0.7,
-    )  # fmt: skip
-    run = simulate(machine, {"phase": 0.3, "w": 0.2, "w_rate": 0.1}, periods=40, amplitude=amplitude)
-    assert run.balance().error < 1e-11
-    seen = run.sample()
-    assert seen.w.max() <= 1.4 + 1e-13 and seen.w.min() >= -0.7 - 1e-13
-
-
-@settings(max_examples=20, deadline=None)
-@given(
-    slope=st.floats(0.01, 0.3),
-    amplitude=st.floats(0.4, 1.5),
-    friction=st.floats(0.05, 0.5),
-    r=st.floats(0.4, 0.9),
-)
-def test_the_mirror_image_belongs_to_the_opposite_slope(slope, amplitude, friction, r):
-    runs = []
-    for side in (1.0, -1.0):
-        machine = Cavity(restitution=r, friction=friction, gravity=0.3, slope=side * slope)
-        start = {"phase": 0.4 + (0.0 if side > 0 else math.pi), "w": 0.2 * side, "w_rate": 0.3 * side}
-        runs.append(simulate(machine, start, events=6, periods=20, amplitude=amplitude))
-    n = min(len(run) for run in runs)
-    assert runs[0].letters[:n].translate(str.maketrans("LR", "RL")) == runs[1].letters[:n]
-    assert np.abs(runs[0].rows[:n, 2] + runs[1].rows[:n, 2]).max(initial=0.0) < 1e-9
-
-
-def test_derivatives_with_respect_to_every_parameter_are_those_of_differences():
-    orbit = find_attractor(UNLIKE, amplitude=0.9).orbit
-    for name in UNLIKE.amount_names:
-        problem = OrbitProblem(UNLIKE, orbit.word, orbit.periods, name, orbit.params)
-        u, p, work = problem.reduce(orbit.nodes) + 0.01, problem.value(orbit.params), problem.workspace()
-        values = []
-        for step in (1e-6, -1e-6):
-            problem.kernels.linearise(problem.data, u, p + step, work)
-            values.append(work[0].copy())
-        problem.kernels.linearise(problem.data, u, p, work)
-        assert np.abs(work[3] - (values[0] - values[1]) / 2e-6).max() < 1e-8, name
-
-
-# ---------------------------------------------------------------------------------------------- symmetry is declared
-def test_no_mirror_no_half_words():
-    machine = Cavity(restitution=0.76, friction=0.5, slope=0.02, **LEVEL)
-    orbit = machine.orbit("LR", amplitude=0.55)
-    assert not orbit.symmetric and not orbit.problem("amplitude").symmetries
-    with pytest.raises(ValueError, match="no mirror"):
-        orbit.mirror()
-    with pytest.raises(ValueError, match="no symmetric orbits"):
-        OrbitProblem(machine, Word.parse("LR"), 1, "amplitude", orbit.params, symmetric=True)
-    level = machine.changed(slope=0.0).orbit("LR", amplitude=0.55)
-    assert level.symmetric and level.problem("amplitude").symmetric and level.problem("friction").symmetric
-    assert not level.problem("slope").symmetric and not level.problem("slope").symmetries
-
-
 def test_an_inclined_cavity_has_no_symmetry_breaking():
     machine = Cavity(restitution=0.76, friction=0.5, slope=0.02, **LEVEL)
     graph = cv.diagram(machine.orbit("LR", amplitude=0.55), over="amplitude", within=(0.2, 0.85), depth=1)
     kinds = {s.kind for s in graph.special.values()}
     assert "symmetry-breaking" not in kinds and "branch-point" not in kinds and "fold" in kinds
-
-
-def test_both_walls_vary_together_where_they_were_given_together():
-    machine = Cavity(restitution=0.7, friction_left=0.4, friction_right=0.5, **LEVEL)
-    assert "restitution" in machine.amount_names and "restitution_left" not in machine.amount_names
-    orbit = machine.orbit("LR", amplitude=0.6)
-    graph = cv.diagram(orbit, over="restitution", within=(0.6, 0.8), depth=0)
-    branch = next(iter(graph.branches.values()))
-    last = branch.orbit(-1)
-    assert last.parameters["restitution_left"] == last.parameters["restitution_right"] != 0.7
-
-
-@pytest.mark.parametrize(
-    ("wrong", "words"),
-    [
-        ({"restitution": None}, ["restitution is missing", "restitution_left and restitution_right"]),
-        ({"restitution_left": 0.5}, ["restitution = 0.76", "restitution_left = 0.5", "both given"]),
-        ({"friction": None, "friction_left": 0.1}, ["friction_right is missing"]),
-        ({"slope": 2.0}, ["slope = 2", "from -1.5708 to 1.5708"]),
-        ({"distance_left": 0.0}, ["distance_left = 0", "above 0"]),
-    ],
-)
-def test_refusals(wrong, words):
-    with pytest.raises(ParameterError) as refusal:
-        Cavity(**{"restitution": 0.76, "friction": 0.5, **LEVEL, **wrong})
-    assert all(word in str(refusal.value) for word in words)
 
 
 def test_at_rest_on_a_wall_it_says_that_there_is_nothing_to_follow():

@@ -2,12 +2,11 @@
 
 import math
 
-import numpy as np
 import pytest
 
 import contvines as cv
 from orbits import Cavity
-from orbits.machines.physical import QuantityError, physical
+from orbits.machines.physical import physical
 
 SAID = {
     "half_width": "15 mm", "natural_frequency": "8 Hz", "frequency": "7.2 Hz", "restitution_left": 0.7, "restitution_right": 0.75,
@@ -28,17 +27,6 @@ def test_the_numbers_by_hand():
         assert numbers[name] == pytest.approx(value, rel=1e-12), name
 
 
-def test_both_sides_vary_together_and_a_zero_stays_one():
-    machine = physical("cavity", SAID | {"friction": 0.0})
-    assert np.all(np.isfinite(machine.amounts(machine.vector())))
-    moved = machine.with_(friction=0.2)
-    numbers = dict(zip(moved.parameter_names, moved.vector()))
-    assert numbers["friction_left"] == numbers["friction_right"] == 0.2
-    one = physical("cavity", {k: v for k, v in SAID.items() if "restitution" not in k} | {"restitution": 0.6})
-    both = one.vector_at("restitution", 0.5)
-    assert [float(one.column(both, f"restitution_{side}")) for side in ("left", "right")] == [0.5, 0.5]
-
-
 def test_a_diagram_in_millimetres_is_the_dimensionless_one():
     machine = physical("cavity", SAID | {"frequency": "8 Hz"})
     graph = cv.diagram(machine.orbit("LR"), over="amplitude", within=(5.0, 12.0), depth=1)
@@ -49,20 +37,3 @@ def test_a_diagram_in_millimetres_is_the_dimensionless_one():
     found = [(p.kind, p.value / 15.0) for p in graph.special.values()]
     assert [kind for kind, _ in found] == [p.kind for p in known.special.values()]
     assert [v for _, v in found] == pytest.approx([p.value for p in known.special.values()], abs=1e-10)
-
-
-@pytest.mark.parametrize(
-    ("changes", "says"),
-    [
-        ({"slope": "2 mm"}, "'mm' is the unit of a length, but slope is an angle"),
-        ({"slope": "120 deg"}, "slope = '120 deg' is implausible for the cavity's angle"),
-        ({"slope": 3}, "has no unit"),
-        ({"restitution": 0.7}, "restitution and restitution_left say the same thing twice|are both given"),
-        ({"restitution_right": None}, "restitution_right is missing"),
-        ({"friction_right": 0.2}, "friction and friction_right are both given"),
-        ({"distance_left": -1}, "distance_left"),
-    ],
-)
-def test_bad_quantities_get_a_sentence(changes, says):
-    with pytest.raises(QuantityError, match=says):
-        physical("cavity", {k: v for k, v in (SAID | changes).items() if v is not None})

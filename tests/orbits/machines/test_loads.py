@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled, Machine, Wall
-from orbits.contacts.letters import SLIP
 from orbits.machines.building import build
 from orbits.machines.measures import LOADS
 from orbits.machines.page.formulas import PageError
@@ -90,26 +89,6 @@ def test_half_sine_has_the_impulse(orbit):
         orbit.measure("peak_force")
 
 
-def test_half_sine_in_si_units():
-    text = {
-        "name": "coupled", "units": "si", "oscillator_mass": "3.2 kg", "absorber_mass": "32 g", "half_width": "15 mm",
-        "natural_frequency": "8 Hz", "damping_ratio": 0.01, "restitution": 0.65, "friction": 0.1, "base_amplitude": "1 mm",
-        "contact_time": "0.4 ms",
-    }  # fmt: skip
-    machine = build(text).with_(frequency="8 Hz", friction=0.1)
-    orbit = build(machine.told_by("stiffness").settings()).symmetric_orbit()
-    found = orbit.measures("impulse", "peak_force")
-    assert machine.units["peak_force"] == "N"
-    np.testing.assert_allclose(found["peak_force"], found["impulse"] * np.pi / 0.8e-3, rtol=1e-12)
-    for wrong, says in (
-        ("0.4", "no unit"),
-        ("0.4 mm", "is a length|unit of a length"),
-        ("3 s", "implausible"),
-    ):
-        with pytest.raises(ValueError, match=says):
-            build(text | {"contact_time": wrong})
-
-
 def test_a_page_with_its_energy_has_the_loads_of_the_machine():
     """The coupled machine as a declared one, the oscillator's mass 1: energies and impulses are mass_ratio times those per absorber's mass."""
     values = {**STRONG, "forcing": 2.47, "frequency": 1.01, "damping": 1.0}
@@ -130,29 +109,6 @@ def test_a_page_with_its_energy_has_the_loads_of_the_machine():
     for name, same in (alike | {"impulse_L": "impulse_left", "impulse_R": "impulse_right"}).items():
         scale = 1.0 if name == "impact_rate" else eps
         np.testing.assert_allclose(orbit.measure(name), scale * known.measure(same), rtol=1e-8, err_msg=name)
-
-
-def test_friction_on_a_belt_takes_its_own_heat():
-    """Stuck to the belt nothing is lost; sliding, force times the sliding speed: by quadrature of solve_ivp."""
-    from scipy.integrate import solve_ivp
-
-    page = load_page(EXAMPLES / "belt_slider.py", "machine")
-    machine = Machine(
-        name="belt", states=("x", "v"), parameters=page.parameters, motion=motion_of(page), contacts=page.contacts,
-        energy=lambda s, phase, p: 0.5 * (s.x**2 + s.v**2),
-    )  # fmt: skip
-    orbit = machine.attractor({"x": 1.0}).found
-    p = machine.parameters
-    slip = next(i for i in range(len(orbit.nodes)) if orbit.word.letter(i).kind == SLIP)
-    x, v = orbit.nodes[slip, 1:]
-
-    def rates(t, y):
-        sliding = p["belt"] - y[1]
-        force = p["least"] + (p["most"] - p["least"]) / (1 + p["weakening"] * sliding**2)
-        return [y[1], -y[0] - 2 * p["damping"] * y[1] + force, force * sliding]
-
-    run = solve_ivp(rates, (0.0, orbit.nodes[slip, 0]), [x, v, 0.0], rtol=1e-11, atol=1e-12)
-    np.testing.assert_allclose(orbit.measure("friction_loss"), run.y[2, -1], rtol=1e-7)
 
 
 def test_an_energy_without_mass_is_refused():

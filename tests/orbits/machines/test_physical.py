@@ -5,8 +5,6 @@ import pickle
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from orbits import Coupled
 from orbits.machines.base import ParameterError
@@ -142,27 +140,6 @@ def test_responses_in_hertz_and_millimetres_are_the_dimensionless_ones():
     assert entry["nodes"][0]["w"] == pytest.approx(15.0)
 
 
-def test_the_shaken_cavity_has_units_too():
-    machine = physical(
-        "absorber",
-        {
-            "amplitude": "8 mm",
-            "half_width": "15 mm",
-            "frequency": "8 Hz",
-            "restitution": 0.6,
-            "friction": 0.1,
-        },
-    )
-    numbers = dict(zip(machine.parameter_names, machine.vector({})))
-    assert numbers["amplitude"] == pytest.approx(8 / 15, rel=1e-14)
-    assert numbers["gravity"] == pytest.approx(9.81 / (0.015 * (16 * np.pi) ** 2), rel=1e-14)
-    assert numbers["frequency"] == pytest.approx(1.0, rel=1e-15)
-    orbit = machine.orbit("LR")
-    assert orbit.measure("max_abs_w") == pytest.approx(15.0)
-    loss = orbit.measures("impact_loss")["impact_loss"]
-    assert loss > 0.0
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [
@@ -203,12 +180,3 @@ def test_missing_and_unusual():
     assert physical("coupled", FLAT | {"half_width": "20 m"}, unusual=True).quantities["half_width"] == 20.0
     with pytest.raises(ParameterError):
         physical("coupled", FLAT).orbit("LR", frequency="7.9 mm")
-
-
-@settings(max_examples=40, deadline=None)
-@given(st.floats(1e-3, 1e3), st.sampled_from(["mm", "cm", "m", "um", "inch"]))
-def test_units_of_one_length_agree(value, unit):
-    sizes = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "inch": 25.4}
-    there = physical("coupled", FLAT | {"half_width": f"{value!r} {unit}"}, unusual=True).vector({})
-    here = physical("coupled", FLAT | {"half_width": f"{value * sizes[unit]!r} mm"}, unusual=True).vector({})
-    np.testing.assert_allclose(there, here, rtol=1e-12)

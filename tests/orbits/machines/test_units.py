@@ -58,23 +58,3 @@ def test_lengths_may_be_counted_in_anything(length):
     )
     again = cv.diagram(longer, over="amplitude", within=(0.6 * length, 1.2 * length), depth=1)
     same(points(again, length), points(graph))
-
-
-def test_a_graph_in_other_units_is_kept(tmp_path, slow):
-    """What a file says of the unknowns is enough to have the same orbits again."""
-    fast = Absorber(restitution=0.41, friction=0.68, gravity=0.44 * 9e4, mass_ratio=0.006, frequency=300.0)
-    graph = cv.diagram(
-        fast.orbit("LR", amplitude=0.75, guess=slow[0].orbit("LR", amplitude=0.75).nodes * [1.0, 300.0]),
-        over="amplitude",
-        within=(0.7, 0.8),
-        depth=0,
-    )
-    cv.save(graph, tmp_path / "fast.vines")
-    branch = cv.load(tmp_path / "fast.vines")["B1"]
-    middle = branch.orbit(len(branch) // 2)
-    assert middle.residual < 1e-10
-    assert middle.replay() < 1e-6
-    other = graph["B1"].problem.against(
-        "frequency", {"frequency": 300.0, "amplitude": middle.parameters["amplitude"]}
-    )
-    assert other.orbit(branch.points[len(branch) // 2], 300.0).residual < 1e-10

@@ -5,8 +5,6 @@ import pytest
 
 from orbits.proofs.balls import ball, precision
 from orbits.proofs.equations import Motif
-from orbits.proofs.special import AtBorder, Vanishing
-from orbits.proofs.varying import Varying
 
 pytestmark = pytest.mark.slow
 
@@ -116,31 +114,3 @@ def test_flights_of_an_inclined_cavity(mode, letter):
         assert abs(float(here.w) - place) < 1e-15 and abs(float(here.w1) - speed) < 1e-15
         assert abs(float(here.push) - (-C * Omega**2 * mp.sin(psi + Omega * t) - b)) < 1e-15
         assert abs(float(here.v1) - C * Omega * mp.cos(psi + Omega * t)) < 1e-15
-
-
-@pytest.mark.parametrize(("side", "w", "left"), [(1, "1.1", 0.15), (-1, "-0.5", 0.4)])
-def test_the_border_at_a_wall_lies_at_the_wall(side, w, left):
-    """What is left to the wall on that side: its distance minus the way from w = 0."""
-    motif = Motif("cavity", ("t", "t"), (1, -1), 1, False, False)
-    with precision(80):
-        fixed = {name: value for name, value in numbers(CAVITY).items() if name != "amplitude"}
-        system = AtBorder(motif, fixed, Varying.single("amplitude"), Vanishing("wall", 0, side))
-        ((place, row),) = system.borders
-        assert place == 0 and float(row([ball("0.7"), ball(w)], [ball("0.8")])) == pytest.approx(
-            left, abs=1e-15
-        )
-
-
-def test_the_steady_push_on_the_stuck_absorber():
-    """q1 of a mass 1 + eps under the base's motion; the push is (1 + eps) q1''."""
-    p = COUPLED
-    eps, Omega = p["mass_ratio"], p["frequency"]
-    drag, stiffness = eps * p["damping"] * Omega, 1 - (1 + eps) * Omega**2
-    response = eps * p["forcing"] * (1 + 1j * p["excitation"] * drag) / (stiffness + 1j * drag)
-    with precision(80):
-        flights = Motif("coupled", ("L",), (-1,), 1, False, False).flights(numbers(COUPLED))
-        for phase in ("0.3", "2.0"):
-            push, rate = flights.resting(ball(phase))
-            turned = response * complex(mp.expj(float(phase)))
-            assert float(push) == pytest.approx(-(1 + eps) * Omega**2 * turned.imag, rel=1e-14)
-            assert float(rate) == pytest.approx(-(1 + eps) * Omega**3 * turned.real, rel=1e-14)

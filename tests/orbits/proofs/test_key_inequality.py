@@ -3,10 +3,8 @@
 import mpmath
 import numpy as np
 import pytest
-import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mpmath import iv
 
 from orbits.proofs.balls import ball, precision
 from orbits.proofs.elimination import Blocks, Singular, solve
@@ -14,7 +12,6 @@ from orbits.proofs.enclosing import enclose, refine
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.jets import Jet, exp, sin_cos, sqrt
 from orbits.proofs.obstacles import Obstacle
-from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -64,59 +61,6 @@ def test_no_root_no_proof():
         with pytest.raises(Obstacle), precision(160):
             system = Polynomial([ball("1"), ball("0"), ball(small)])
             enclose(system, [[ball("0.0000001")]], [], 160)
-
-
-def symmetric_equations():
-    """The half map of the symmetric orbit LR from w'' = -C sin Psi - a s at Omega = 1, integrated by sympy."""
-    psi, B, t, s, C, a, r = sympy.symbols("psi B t s C a r")
-    # leaving w = 1 in mode -: w' = C cos psi - B at the start
-    rate = C * sympy.cos(psi) - B + sympy.integrate(-C * sympy.sin(psi + s) + a, (s, 0, t))
-    w = 1 + sympy.integrate(rate, (t, 0, t))
-    end = {t: sympy.pi}
-    hit = sympy.simplify(w.subs(end) + 1)
-    # after the impact on the right B+ = v' + r w', and must be -B
-    leave = sympy.simplify((C * sympy.cos(psi + sympy.pi) + r * rate.subs(end)) + B)
-    return sympy.Matrix([hit, leave]), (psi, B), (C, a, r)
-
-
-def test_newton_kantorovich_by_hand_agrees_with_the_prover():
-    """Radii polynomial p(r) = Y + (Z1 - 1) r + Z2 r^2 < 0 (another theorem, other equations, other intervals).
-
-    With A near DF(m)^{-1}: Y >= |A F(m)|, Z1 >= |I - A DF(m)|, Z2 r >= |A (DF(x) - DF(m))| for |x - m| <= r, in the largest norm.
-    """
-    F, unknowns, symbols = symmetric_equations()
-    proof = ABSORBER.symmetric_orbit(amplitude=0.6).prove()
-    iv.dps = 60
-    numbers = [iv.mpf("0.6"), iv.mpf("1.006") * iv.mpf("0.5") * iv.mpf("0.211"), iv.mpf("0.76")]
-    arguments = (*unknowns, *symbols)
-    m = [iv.mpf(pair[0]) for pair in proof.nodes()[0]]
-
-    def at(expression, x):
-        names = {"sin": iv.sin, "cos": iv.cos, "pi": iv.pi, "mpf": iv.mpf}
-        return sympy.lambdify(arguments, expression, modules=[names, "mpmath"])(*x, *numbers)
-
-    f = at(list(F), m)
-    DF = at(F.jacobian(unknowns).tolist(), m)
-    with mpmath.workdps(60):
-        A = mpmath.matrix(2, 2)
-        J = mpmath.matrix([[mpmath.mp.make_mpf(DF[i][j]._mpi_[0]) for j in range(2)] for i in range(2)])
-        A = J**-1
-    A = [[iv.mpf(A[i, j]) for j in range(2)] for i in range(2)]
-    Y = max(abs(sum(A[i][j] * f[j] for j in range(2))).b for i in range(2))
-    Z1 = max(
-        sum(abs((1 if i == j else 0) - sum(A[i][k] * DF[k][j] for k in range(2))) for j in range(2)).b
-        for i in range(2)
-    )
-    wide = [x + iv.mpf([-1, 1]) * iv.mpf("1e-3") for x in m]
-    H = [at(sympy.hessian(part, unknowns).tolist(), wide) for part in F]
-    Z2 = max(
-        sum(abs(A[i][k]) * abs(H[k][j][l]) for k in range(2) for j in range(2) for l in range(2)).b
-        for i in range(2)
-    )
-    radius = iv.mpf("1e-20")
-    assert (Y + (Z1 - 1) * radius + Z2 * radius * radius).b < 0
-    # the orbit is within 1e-20 of the middle by this theorem, and within the prover's radius by the other
-    assert Y < 1e-30 and proof.radius < 1e-20
 
 
 # ------------------------------------------------------------------ beneath

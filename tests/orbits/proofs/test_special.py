@@ -10,11 +10,7 @@ from mpmath import mp, mpf, pi, sqrt
 import contvines as cv
 from orbits import Cavity, Coupled
 from orbits.proofs.checker import Refused, check
-from orbits.proofs.equations import Motif
-from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import ProofError
-from orbits.proofs.prove import prove_special
-from orbits.proofs.varying import Varying
 from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
@@ -76,19 +72,6 @@ def test_pure_sliding_begins_where_den_hartog_says():
     assert proof.real is True
 
 
-# roots of a brute-force return map in 40 digits, in ten of them
-THREE = {"fold": "1.0037342178", "period-doubling": "1.4125623672", "velocity-graze": "1.9824794254"}
-
-
-def test_the_window_of_three_impacts():
-    seed = ABSORBER.orbit("LRLt", 1, amplitude=1.2)
-    found = cv.diagram(seed, over="amplitude", within=(0.9, 2.1), depth=0)
-    for kind, known in THREE.items():
-        (point,) = (p for p in found.of_kind(kind) if abs(p.value - float(known)) < 1e-6)
-        proof = point.prove()
-        assert proof.existence and abs(value(proof)[0] - mpf(known)) < mpf("1e-10")
-
-
 def test_a_neimark_sacker_point_of_the_coupled_machine():
     machine = Coupled(
         restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, forcing=2.47, damping=1.0
@@ -105,24 +88,6 @@ def test_a_neimark_sacker_point_of_the_coupled_machine():
         for side in (-1e-6, 1e-6)
     ]
     assert min(sizes) < 1.0 < max(sizes)
-
-
-def test_a_stick_slip_motion_that_shrinks_to_the_stuck_one():
-    """The border is the stuck motion's own, over the whole period; half of it would say nothing of the other direction."""
-    motif = Motif("absorber", tuple("us"), (1, 0), 1, True, False)
-    stuck, rest, margin = merged(
-        motif, np.array([[1.0, 0.0], [1.0, 0.0]]), ("duration", 0), {1: 1.0, -1: 1.0}
-    )
-    assert (stuck.events, stuck.half, len(rest), margin) == ((), False, 0, ("hold", 0))
-    limit = 1.006 * 0.5 * 0.211  # C Omega^2 = a: closed form
-    given = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006, "frequency": 1.0}
-    proof = prove_special("stick", stuck, rest, given, Varying.single("amplitude"), limit, margin=margin)
-    assert proof.existence and abs(value(proof)[0] - mpf("1.006") * mpf("0.5") * mpf("0.211")) < mpf("1e-12")
-    assert verified(proof)
-    wrong = json.loads(json.dumps(proof.certificate()))
-    wrong["half"] = True
-    with pytest.raises(Refused):
-        check(wrong)
 
 
 def test_the_bouncing_ball_doubles_where_its_closed_form_says():
@@ -239,21 +204,3 @@ def test_the_certificates_of_the_errata():
     }
     assert abs(square["doubling of the printed maps"] - mpf("0.86787")) < 5e-6
     assert abs(square["doubling of the machine"] - mpf("1.128")) < 5e-4
-
-
-def test_a_border_of_a_long_and_very_unstable_word_is_proved_and_verified():
-    """34 events, a multiplier of 1e7: the tile about the point is narrower than 1e-25."""
-    machine = Coupled(
-        restitution=0.7222512081656711,
-        friction=0.16735971428762814,
-        gravity=0.25,
-        mass_ratio=0.024756755745843205,
-        damping=1.4562672548360984,
-        forcing=3.136804654995166,
-    )
-    seed = machine.attractor(frequency=1.0024273603539913).orbit
-    graph = cv.diagram(seed, over="frequency", within=(0.98, 1.003), depth=2)
-    wild = [p for p in graph.special.values() if p.kind == "stick" and np.abs(p.multipliers).max() > 1e6]
-    proof = wild[0].prove()
-    assert proof.existence and abs(float(proof.value[0]) - wild[0].value) < 1e-12
-    assert float(proof.chain[1]["half_width"]) < 1e-20 and verified(proof)

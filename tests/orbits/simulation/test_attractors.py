@@ -5,10 +5,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from orbits import Absorber, Cavity, Coupled
+from orbits import Absorber, Cavity
 from orbits.attractors import find_attractor, find_attractors, sweep, sweeps
 from orbits.simulation import simulate
-from orbits.starts.find import polish
 from tests.machines import ABSORBER
 from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact
@@ -45,64 +44,6 @@ def test_symmetry_breaks_where_it_should():
     assert np.abs(above.multipliers).max() == pytest.approx(1.0, abs=1e-3)
 
 
-def test_route_of_the_asymmetric_branch():
-    """A stick appears between 0.72 and 0.74, then stick and turn, two turns just below 0.80, doubling near 1.128."""
-    values = np.array([0.6, 0.72, 0.74, 0.78, 0.795, 0.80, 0.9, 1.0, 1.1, 1.12, 1.127, 1.1295, 1.14])
-    rows = sweep(MACHINE, "amplitude", np.sqrt(values), start=START, transient=1500)
-    told = dict(zip(values, ((row.detail.word.canonical().text, row.periods) for row in rows)))
-    assert told[0.6] == told[0.72] == ("LR", 1)
-    assert told[0.74][0].count("s") == 1 and "t" not in told[0.74][0]
-    assert sorted(told[0.78][0]) == sorted(told[0.795][0]) == sorted("LRst")
-    for c2 in (0.80, 0.9, 1.0, 1.1, 1.12, 1.127):
-        assert sorted(told[c2][0]) == sorted("LRtt")
-        assert told[c2][1] == 1
-    assert told[1.1295][1] == told[1.14][1] == 2
-    assert rows[-1].impacts == 4
-    assert not any(row.detail.symmetric for row in rows)
-    # extrapolated multiplier -1
-    (one, two) = (min(rows[i].detail.multipliers.real) for i in (9, 10))
-    doubling = 1.12 + 0.007 * (one + 1.0) / (one - two)
-    assert doubling == pytest.approx(1.128, abs=5e-4)
-    # a stick forgets: one multiplier is 0
-    assert np.abs(rows[2].detail.multipliers).min() < 1e-7
-
-
-def test_determinant_of_words_with_turns():
-    """det A = prod r^2 over impacts * prod (|v''| - a)/(|v''| + a) over turns."""
-    for c2 in (0.9, 1.1, 1.3, 1.7, 9.0):
-        found = find_attractor(MACHINE, START, amplitude=np.sqrt(c2))
-        assert found.periods == 1
-        pull = np.sqrt(c2) * np.abs(np.sin(found.nodes[found.codes == 2, 0]))
-        told = R ** (2 * found.impacts) * np.prod((pull - A) / (pull + A))
-        assert np.prod(found.multipliers).real == pytest.approx(told, rel=1e-6)
-
-
-def test_sliding_lives_between_its_bounds():
-    low, high = H**2 * (1 + 4 / np.pi**2), 1 + H**2
-    assert find_attractor(MACHINE, amplitude=np.sqrt(low * (1 - 1e-6))).word.events == ("s", "u", "s", "u")
-    above = find_attractor(MACHINE, amplitude=np.sqrt(low * (1 + 1e-6)))
-    assert above.text == "tt"
-    assert above.kind == "sliding"
-    c = np.sqrt(high * (1 - 1e-10))  # started on the orbit: turning point delta = sqrt(C^2 - H^2)
-    start = {"phase": np.arccos(H / c), "w": np.sqrt(c**2 - H**2)}
-    run = simulate(MACHINE, start, periods=10, amplitude=c)
-    assert set(run.letters) == {"t"}
-    assert np.abs(run.rows[:, 2]) == pytest.approx(start["w"], abs=1e-12)
-    grown = simulate(MACHINE, start, periods=10, amplitude=np.sqrt(high * (1 + 1e-6)))
-    assert grown.impacts > 0
-    assert find_attractor(MACHINE, amplitude=A * (1 - 1e-9)).kind == "stuck"
-
-
-def test_mirror_images_are_one():
-    found = find_attractor(MACHINE, START, amplitude=np.sqrt(0.6))
-    image = find_attractor(MACHINE, {"phase": np.pi, "w_rate": -1.0}, amplitude=np.sqrt(0.6))
-    assert not found.symmetric
-    assert np.abs(found.nodes - image.nodes).max() > 0.01
-    assert found.distance(image) < 1e-10
-    other = find_attractor(MACHINE, START, amplitude=np.sqrt(0.61))
-    assert 1e-6 < found.distance(other) < 1.0
-
-
 def test_kinds():
     chatter = find_attractor(Absorber(restitution=0.3, friction=0.2, gravity=0.2), START, amplitude=8.0)
     assert chatter.kind == "chatter"
@@ -128,36 +69,6 @@ def test_results_do_not_depend_on_the_number_of_workers():
     first = find_attractors(MACHINE, starts, amplitude=0.7)
     again = [find_attractor(MACHINE, start, amplitude=0.7) for start in starts]
     assert all(np.array_equal(a.nodes, b.nodes) for a, b in zip(first, again))
-
-
-def test_rows_of_a_stuck_absorber_wait_for_the_oscillator():
-    """Lightly damped, it rings for a thousand periods; its linear response is known."""
-    eps, forcing, damping = 0.006, 1.0, 0.9
-    machine = Coupled(
-        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=eps, damping=damping, forcing=forcing
-    )
-    for row in sweep(machine, "frequency", [0.9, 0.93, 0.95], transient=50):
-        drag = eps * damping * row.value
-        response = eps * forcing * abs(1.0 + 1j * drag) / abs(1.0 - (1.0 + eps) * row.value**2 + 1j * drag)
-        assert row.attractor == "stuck"
-        assert row.measures["max_abs_q1"] == pytest.approx(response, rel=1e-9)
-
-
-def test_rows_of_a_periodic_motion_are_those_of_its_orbit():
-    """Measured on the solved orbit: largest |q1| and approach speed as Newton's method on the maps has them."""
-    machine = Coupled(
-        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.9, forcing=3.3
-    )
-    rows = sweep(machine, "frequency", [0.977, 0.983], start={"v": 1.0, "w_rate": 0.5}, transient=100)
-    assert [row.attractor for row in rows] == ["periodic", "periodic"]
-    for row in rows:
-        orbit = polish(row.detail.orbit)
-        fine = orbit.sample(20000)
-        assert row.measures["max_abs_q1"] == pytest.approx(np.abs(fine["cavity"]).max(), rel=1e-8)
-        hits = [letter in "LR" for letter in orbit.word.events]
-        assert row.measures["impact_speed"] == pytest.approx(
-            np.abs(orbit.events.rate_pre[hits]).max(), rel=1e-9
-        )
 
 
 def test_a_slow_transient_beside_a_symmetry_breaking_is_no_chaos():

@@ -7,7 +7,6 @@ from scipy.integrate import solve_ivp
 
 from orbits.machines.absorber import Absorber
 from orbits.simulation import simulate
-from tests.machines import ABSORBER
 
 
 def integrate(C, r, a, omega, psi, w, rate, count):
@@ -125,22 +124,6 @@ def test_flight_after_a_slip():
         assert run.rows[1, 2] == pytest.approx(float(reach), rel=1e-14)
 
 
-def test_stuck_forever_and_free_drift():
-    machine = ABSORBER
-    held = 1.006 * 0.5 * 0.211
-    run = simulate(machine, {"w": 0.3}, periods=50, amplitude=held)
-    assert len(run) == 0
-    assert "rest" in run.ended
-    assert run.end[1] == 0.3
-    assert simulate(machine, {"w": 0.3}, periods=2, amplitude=held * (1 + 1e-6)).letters[:2] == "us"
-    # at rest where rounding has put it behind the wall
-    assert simulate(machine, {"w": np.nextafter(1.0, 2.0)}, periods=2, amplitude=held).end[1] == 1.0
-    drift = Absorber(restitution=1.0, friction=0.0, gravity=0.2)
-    bounces = simulate(drift, {"w_rate": 0.5}, events=10, amplitude=0.0)
-    assert bounces.letters == "LRLRLRLRLR"
-    assert bounces.phases == pytest.approx(2.0 + 4.0 * np.arange(10), rel=1e-14)
-
-
 def test_without_friction_a_flight_reverses_without_an_event():
     """The limit of small friction has the same impacts, with turns between those on one wall."""
     start = {"w_rate": 1.0}
@@ -173,18 +156,3 @@ def test_chatter_ends_in_contact_and_contact_in_release():
             wall = run.rows[place, 2]
             assert -C * np.sin(run.phases[place + 1]) * wall == pytest.approx(-mu * g, abs=1e-12)
             assert run.modes[place + 1] == -wall
-
-
-def test_elastic_bounces_do_not_pile_up():
-    machine = Absorber(restitution=1.0, friction=0.0, gravity=0.2)
-    run = simulate(machine, {"phase": 4.0, "w": 1.0, "w_rate": -0.01}, events=200, amplitude=2.0)
-    assert not np.any(run.codes == 5)
-    assert run.impacts == 200
-
-
-def test_a_length_of_time_is_so_many_periods():
-    machine = Absorber(restitution=0.76, friction=0.5, gravity=0.211, frequency=1.7)
-    run = simulate(machine, time=9.0, amplitude=0.6)
-    same = simulate(machine, periods=9.0 * 1.7 / (2.0 * np.pi), amplitude=0.6)
-    assert run.letters == same.letters and np.array_equal(run.phases, same.phases)
-    assert run.impact_times == pytest.approx(run.phases[run.codes < 2] / 1.7)

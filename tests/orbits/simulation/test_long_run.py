@@ -10,7 +10,7 @@ from orbits.attractors import find_attractor, sweep
 from orbits.attractors.observation import lasting, observe
 from orbits.machines.stepping import HOLD
 from orbits.simulation import simulate
-from tests.machines import ABSORBER, COUPLED
+from tests.machines import ABSORBER
 
 pytestmark = pytest.mark.slow
 
@@ -53,43 +53,6 @@ def test_chaos_of_the_reduced_machine():
         assert found.kind == "chaotic"
         assert found.impacts_per_period == pytest.approx(run.impacts / 30_000, rel=0.02)
         assert found.impact_speed == pytest.approx(fastest, rel=0.02)
-
-
-def test_motions_that_recur_are_followed_over_one_cycle(monkeypatch):
-    """They cost no more: one piece of as many periods as the cycle has."""
-    from orbits.attractors import observation
-
-    lengths = []
-    plain = observation._Tally._add
-    monkeypatch.setattr(
-        observation._Tally,
-        "_add",
-        lambda self, periods, per_period: (lengths.append(periods), plain(self, periods, per_period))[1],
-    )
-    machine = COUPLED
-    (row,) = sweep(machine, "frequency", [1.01])
-    assert row.periods == 1 and lengths == pytest.approx([1])
-    seen = simulate(machine, row.detail.state, periods=row.periods, frequency=1.01).sample(per_period=20_000)
-    assert row.measures["max_abs_q1"] == pytest.approx(np.abs(seen.cavity).max(), rel=1e-6)
-
-
-def test_a_weakly_damped_motion_is_waited_for():
-    """Free oscillations fade as exp(-damping eps Psi / 2), to 1/e in 160 periods: not chaos, only slow."""
-    machine = Coupled(
-        damping=0.4,
-        mass_ratio=0.005,
-        restitution=0.7,
-        friction=0.1,
-        gravity=0.25,
-        frequency=1.01,
-        forcing=0.8,
-    )
-    orbit = machine.orbit("tt", 1)
-    assert orbit.real and orbit.stable
-    for transient in (100, 130, 200):
-        (row,) = sweep(machine, "forcing", [0.8], transient=transient)
-        assert (row.attractor, row.periods) == ("sliding", 1)
-        assert row.measures["max_abs_q1"] == pytest.approx(orbit.measure("max_abs_q1"), rel=2e-2)
 
 
 def test_a_rare_contact_is_no_chatter_whenever_it_comes():

@@ -4,14 +4,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from orbits import Absorber, Coupled
-from orbits.machines.catalogue import stepper as stepped
-from orbits.orbit import Orbit
+from orbits import Absorber
 from orbits.simulation import replay
-from orbits.simulation.replaying import _Cycle, _returns
-from orbits.simulation.return_map import go_round
-from orbits.words import Word
-from tools.fuzz.many_digits import exact
 
 pytestmark = pytest.mark.slow
 
@@ -67,34 +61,3 @@ def test_such_an_orbit_is_said_to_return():
     )  # it grows on the way, and is gone after two rounds
     assert np.abs(orbit.multipliers).max() < 1e-3
     assert replay(orbit, thorough=True).returned is True
-
-
-BESIDE_FOLD = "LRLtLRLtLtLRsLttRLtLt" * 2  # its two halves are not alike
-ON_BOTH_SIDES = {  # forcing and the first node, 1e-9 from the fold in forcing, 3e-3 from one another in nodes
-    "stable": (3.638568203173958, [1.54398224970829, 2.4128631185271274, -0.44644749662048755, 2.038330923452163]),
-    "unstable": (3.638568204172114, [1.543985758668333, 2.4128635444322497, -0.44643889810143905, 2.0383316639349265]),
-}  # fmt: skip
-
-
-def beside_fold(forcing, first):
-    machine = Coupled(
-        restitution=0.7828130871212142, friction=0.8181104949532413, gravity=0.08083475502881599,
-        mass_ratio=0.3, damping=1.9889560055431161, frequency=1.061776535855394, excitation="exact",
-    )  # fmt: skip
-    word, params = Word.parse(BESIDE_FOLD), machine.vector({"forcing": forcing})
-    there = go_round(stepped("coupled"), params, word.codes, word.mode_codes, np.array(first))
-    return Orbit(machine, word, 8, np.vstack([first, there.nodes[:-1]]), params)
-
-
-def test_beside_a_fold_starts_return_from_within_the_basin_to_where_rounding_lets_them():
-    """The basin ends at the unstable orbit, 3e-3 away at the node where that is most, where a displacement of 1e-6 has grown to as much."""
-    orbit, other = (beside_fold(*ON_BOTH_SIDES[side]) for side in ("stable", "unstable"))
-    assert 1e-3 < np.abs(orbit.nodes - other.nodes).max() < 1e-2
-    growth = [float(np.abs(exact(o).multipliers).max()) for o in (orbit, other)]  # in eighty digits
-    assert 0.995 < growth[0] < 0.999 < 1.001 < growth[1]
-    assert replay(orbit, thorough=True, most=1).returned is True
-    # on the other one nothing settles, which rounding drives away, even if it were called stable
-    growth = float(np.abs(orbit.multipliers).max())
-    codes, modes = other.word.codes, other.word.mode_codes
-    cycle = _Cycle(stepped("coupled"), other.params, codes, modes, other.nodes, 8)
-    assert not _returns(cycle, growth)

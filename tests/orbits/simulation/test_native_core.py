@@ -8,9 +8,7 @@ from hypothesis import strategies as st
 from contvines.core.library import native
 from orbits.attractors import batches
 from orbits.machines.catalogue import model_class, reference_stepper, stepper
-from orbits.machines.native_stepper import floats
-from orbits.machines.states import event_states, nodes_of, states_of
-from orbits.machines.stepping import HOLD, MODE, PSI, RATE, REST, TIME_REACHED, TURNS, V_RATE, V, W
+from orbits.machines.stepping import MODE, PSI, RATE, REST, TIME_REACHED, TURNS, V_RATE, V, W
 from orbits.simulation.driver import collect
 
 pytestmark = pytest.mark.skipif(not native(), reason="the native core is not loaded")
@@ -138,40 +136,6 @@ def _near_a_border(rows, others, codes, other_codes):
     return min(speeds, default=0.0) < 1e-6 or np.ptp(before[:, 0] + 2 * np.pi * before[:, 1]) < 1e-6
 
 
-@settings(max_examples=150, deadline=None)
-@given(motion=motions(), ahead=st.one_of(st.floats(0.0, 2.0), st.floats(0.0, 1e-3)))
-def test_pieces_of_segments(motion, ahead):
-    """Motion, works and energies: sums of a few products, equal to rounding of the largest."""
-    name, params, state = motion
-    engine, plain = stepper(name), reference_stepper(name)
-    plain.launch(state, params)
-    states, ahead = np.tile(state, (2, 1)), np.array([ahead, 0.5 * ahead])
-    for function, width in (("sample", 4), ("works", 3)):
-        found, wanted = np.empty((2, width)), np.empty((2, width))
-        getattr(engine, function)(states, params, ahead, found)
-        getattr(plain, function)(states, params, ahead, wanted)
-        assert close(found, wanted, 10.0 if function == "sample" else 100.0)
-    found, wanted = np.empty(2), np.empty(2)
-    engine.energies(states, params, found)
-    plain.energies(states, params, wanted)
-    assert close(found, wanted, 1.0)
-
-
-@settings(max_examples=60, deadline=None)
-@given(motion=motions())
-def test_states_from_nodes_are_those_of_the_events(motion):
-    name, params, state = motion
-    engine = stepper(name)
-    engine.launch(state, params)
-    codes, modes, rows, _ = collect(engine, state, params, state[TURNS] + 4.0, 12)
-    keep = codes != HOLD
-    codes, modes, rows = codes[keep], modes[keep], rows[keep]
-    nodes = nodes_of(engine, params, codes, modes, rows)
-    found, wanted = states_of(engine, params, codes, modes, nodes), event_states(engine, modes, rows)
-    phase = found[:, PSI] + 2 * np.pi * found[:, TURNS], wanted[:, PSI] + 2 * np.pi * wanted[:, TURNS]
-    assert close(*phase, 1.0) and close(found[:, [W, RATE, MODE]], wanted[:, [W, RATE, MODE]], 1.0)
-
-
 def test_a_long_run_is_followed_in_slices():
     """Free drift of an undamped absorber hits a wall every 4/0.5 time units; 60,000 periods are three slices."""
     engine, params = stepper("absorber"), absorber(0.0, 1.0, 0.0, 0.2)
@@ -202,15 +166,3 @@ def test_many_starts(name, params, monkeypatch):
     assert np.array_equal(results[0]["outcome"], results[1]["outcome"])
     assert np.array_equal(results[0]["impacts"], results[1]["impacts"])
     np.testing.assert_allclose(*kept, atol=1e-9)
-
-
-def test_growth_of_a_small_difference(monkeypatch):
-    """Over the first periods of a chaotic motion, while rounding is far below the difference."""
-    params, state = absorber(1.4, 0.9, 0.05), start(0.3, 0.2, 0.9)
-    stepper("absorber").launch(state, params)
-    found = []
-    for use in (True, False):
-        monkeypatch.setattr(batches, "native", lambda use=use: use)
-        engine = stepper("absorber") if use else reference_stepper("absorber")
-        found.append(batches.growth(engine, state.copy(), floats(params), 1.0, -1.0, 8, 1e-5))
-    np.testing.assert_allclose(*found, rtol=1e-6)

@@ -9,11 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from orbits import multiple_scales as ms
 
-levels = st.floats(0.0, 0.6)
 restitutions = st.floats(0.2, 0.99)
 
 
@@ -135,20 +134,6 @@ def test_ends_of_the_attracting_part_are_the_bifurcations_of_the_half_map(r, h):
 
 
 @settings(max_examples=30, deadline=None)
-@given(r=restitutions, h=levels)
-def test_activation_is_the_lowest_point(r, h):
-    R = (1 - r) / (1 + r)
-    lowest = minimize_scalar(lambda b: (1 - 0.5 * np.pi * b) ** 2 + (R * b + h) ** 2, bounds=(-1, 2), method="bounded",
-                             options={"xatol": 1e-12})  # fmt: skip
-    found = ms.activation(R, h)
-    assert found.velocity == pytest.approx(lowest.x, abs=1e-6)
-    assert found.amplitude**2 == pytest.approx(lowest.fun, abs=1e-12)
-    for branch in (-1, 1):
-        b = ms.velocity_at(found.amplitude + 0.2, R, h, branch)
-        assert np.sqrt(ms.squared_amplitude(b, R, h)) == pytest.approx(found.amplitude + 0.2, rel=1e-12)
-
-
-@settings(max_examples=30, deadline=None)
 @given(mu=st.floats(0.05, 1.0), g=st.floats(0.05, 0.6))
 def test_sliding_bounds_by_watching_the_motion(mu, g):
     """Between turns w' = v' -+ (mu g)(phase from the turn's middle): symmetric turns, no stick, no wall."""
@@ -164,52 +149,6 @@ def test_sliding_bounds_by_watching_the_motion(mu, g):
         assert 0.5 * stroke == pytest.approx(ms.turning_point(amplitude, h), abs=1e-9)
     assert low * np.sin(np.arccos(h / low)) == pytest.approx(a, rel=1e-10)  # frame's acceleration at the turn
     assert ms.turning_point(high, h) == pytest.approx(1.0, rel=1e-12)
-
-
-@settings(max_examples=30, deadline=None)
-@given(
-    x=st.floats(0.1, 0.95),
-    phase=st.floats(-3, 3),
-    sigma=st.floats(-5, 5),
-    kind=st.sampled_from(["impacting", "sliding"]),
-)
-def test_eigenvalues_are_those_of_a_numerical_jacobian(x, phase, sigma, kind):
-    flow = ms.SlowFlow()
-    squared = flow.harmonics(x, kind)[0]
-
-    def field(s, gamma):
-        if kind == "sliding":
-            where = np.sqrt(s - flow.level**2)
-        else:
-            where = ms.velocity_at(
-                np.sqrt(s), flow.loss, flow.level, 1 if x > flow.activation.velocity else -1
-            )
-        return np.array(flow.rates(where, gamma, sigma, kind))
-
-    if kind == "impacting" and abs(x - flow.activation.velocity) < 0.03:
-        return
-    d = 1e-6
-    jacobian = np.column_stack([
-        (field(squared + d, phase) - field(squared - d, phase)) / (2 * d),
-        (field(squared, phase + d) - field(squared, phase - d)) / (2 * d),
-    ])  # fmt: skip
-    expected = np.linalg.eigvals(jacobian)
-    found = flow.eigenvalues(x, phase, kind)
-    assert np.sum(found) == pytest.approx(np.sum(expected), rel=1e-4, abs=1e-5)
-    assert np.prod(found) == pytest.approx(np.prod(expected), rel=1e-4, abs=1e-4)
-
-
-def test_trajectories_settle_on_equilibria_or_say_why_they_end():
-    flow = ms.SlowFlow()
-    states = {(s.manifold, s.attracting): s for s in ms.equilibria(flow, -2.58)}
-    for kind, start in (("impacting", 0.8), ("sliding", 0.3)):
-        run = ms.integrate(flow, -2.58, start, -1.0, 60.0, kind)
-        assert run.ended == "time"
-        assert run.amplitude[-1] == pytest.approx(states[kind, True].amplitude, abs=1e-7)
-        assert run.phase[-1] == pytest.approx(states[kind, True].phase, abs=1e-7)
-    free = flow.with_(forcing=0.0)
-    assert ms.integrate(free, 0.0, 1.5, 0.0, 10.0).ended == "activation"
-    assert ms.integrate(free, 0.0, 0.5, 0.0, 10.0, "sliding").ended == "stick"
 
 
 @settings(max_examples=15, deadline=None)
@@ -236,27 +175,6 @@ def test_free_decay_in_closed_form_is_the_integrated_flow(r, mu, lam, start):
     share = -0.5 * flow.mass_ratio * rate(0, np.array([start**2]))[0] / start**2
     assert ms.damping_ratio(flow, start) == pytest.approx(share, rel=1e-10)
     assert ms.damping_ratio(flow) == pytest.approx(ms.damping_ratio(flow, 1e7), rel=1e-5)
-
-
-@settings(max_examples=20, deadline=None)
-@given(
-    r=restitutions,
-    mu=st.floats(0, 1),
-    amplitude=st.floats(0.8, 3),
-    closure=st.sampled_from(["exact", "paper"]),
-)
-def test_backbone_is_the_phase_resonant_steady_state(r, mu, amplitude, closure):
-    """Forcing and detuning of the backbone put an equilibrium of phase -pi/2 where the amplitude says."""
-    flow = ms.SlowFlow(restitution=r, friction=mu, closure=closure)
-    if amplitude < flow.activation.amplitude + 0.02:
-        return
-    b = float(ms.velocity_at(amplitude, flow.loss, flow.level))
-    line = ms.backbone(flow, [b])
-    forced = flow.with_(forcing=float(line.forcing[0]))
-    assert np.abs(forced.rates(b, -0.5 * np.pi, line.detuning[0])) == pytest.approx(0, abs=1e-12)
-    assert ms.resonance_detuning(flow, amplitude) == pytest.approx(line.detuning[0], rel=1e-9, abs=1e-12)
-    shifted = ms.resonance_frequency(0.02 * amplitude, cavity=0.02, natural_frequency=7.666, flow=flow)
-    assert shifted == pytest.approx(7.666 * line.frequency[0], rel=1e-12)
 
 
 def test_response_curves_hold_every_equilibrium_and_their_own_folds():

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from orbits import multiple_scales as ms
-from orbits.theory.multiple_scales.polynomials import real_roots
 
 pytestmark = pytest.mark.slow
 
@@ -93,16 +92,3 @@ def test_every_sliding_equilibrium_is_found():
         & (roots[where[0], 0] <= delta[where[0], where[1] + 1] + 1e-12)
     )
     assert seen.sum() > 500
-
-
-def test_real_roots_of_polynomials_with_known_roots():
-    rng = np.random.default_rng(3)
-    for degree in range(1, 7):
-        known = np.sort(rng.uniform(-3, 3, (200, degree)), axis=1)
-        coefficients = np.array([np.poly(k) for k in known])
-        found = real_roots(coefficients, -4.0, 4.0)
-        apart = np.min(np.diff(known, axis=1), axis=1, initial=9.0) > 1e-2
-        assert found[apart] == pytest.approx(known[apart], abs=1e-8)
-    pair = real_roots(np.array([1.0, -2.0, 1.0]), 0.0, 5.0)  # touched, not crossed
-    assert pair[0] == pytest.approx(1.0) and np.isnan(pair[1])
-    assert real_roots(np.array([0.0, 0.0, 2.0, -1.0]), -9.0, 9.0)[0] == pytest.approx(0.5)

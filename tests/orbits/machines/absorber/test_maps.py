@@ -3,11 +3,8 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from orbits import Absorber
-from orbits.flows.native.kernels import assemble
 from orbits.machines.reference.machine import reference
 from orbits.problem import OrbitProblem
 from orbits.words import Word
@@ -68,28 +65,6 @@ def test_derivatives_are_those_of_finite_differences(text, periods, symmetric, p
         np.testing.assert_allclose(J[:, j], slope, atol=2e-9 * max(1.0, np.abs(slope).max()))
 
 
-@pytest.mark.parametrize(("text", "periods", "symmetric"), CASES)
-def test_structured_elimination_is_the_dense_solution(text, periods, symmetric):
-    params = MACHINE.vector({"amplitude": 0.6})
-    problem = OrbitProblem(MACHINE, Word.parse(text), periods, "amplitude", params, symmetric)
-    bordered = assemble(MACHINE).bordered
-    signs = []
-    for seed in range(20):
-        u = some_nodes(problem, seed)
-        F, J, work = dense(problem, u, 0.6)
-        border = np.random.default_rng(100 + seed).normal(size=problem.dimension + 1)
-        step, tangent = np.empty_like(border), np.empty_like(border)
-        sign = bordered(problem.data, work, border, 0.3, step, tangent)
-        full = np.vstack([J, border])
-        condition = np.linalg.cond(full)
-        wanted = np.linalg.solve(full, np.r_[-F, 0.3])
-        along = np.linalg.solve(full, np.r_[np.zeros_like(F), 1.0])
-        np.testing.assert_allclose(step, wanted, atol=1e-14 * condition * (1 + np.abs(wanted).max()))
-        np.testing.assert_allclose(tangent, along, atol=1e-14 * condition * (1 + np.abs(along).max()))
-        signs.append(sign * np.sign(np.linalg.det(full)))
-    assert len(set(signs)) == 1  # the sign of the determinant, up to a constant of the word
-
-
 def test_alternating_impacts_are_the_published_maps():
     """G+_LR and G+_RL as printed by Youssef, Karoui, Leine (their table of elementary mappings)."""
     params = MACHINE.vector({"amplitude": 0.6})
@@ -111,54 +86,6 @@ def test_alternating_impacts_are_the_published_maps():
     length, rate = problem.equations.units  # unknowns and equations are in units of the machine's own size
     found = residual(problem, problem.reduce(u.reshape(-1, 2)), C) * [rate, length, rate, length]
     np.testing.assert_allclose(found, [*G(u[:2], u[2:], 1.0), *G(u[2:], end, -1.0)], atol=1e-14)
-
-
-def pre_impact_multipliers(orbit):
-    """Multipliers of the published pre-impact maps G-_LR, G-_RL, derivatives by complex steps."""
-    C, r, mu, g, eps, omega = orbit.params
-    pull = mu * g * (1.0 + eps)
-
-    def G(a, b, s):
-        d = b[0] - a[0]
-        leave = r * a[1] - (1 + r) * C * omega * np.cos(a[0])
-        return np.array(
-            [
-                leave + b[1] + s * pull / omega * d,
-                C * (np.sin(b[0]) - np.sin(a[0]))
-                + 2.0 * s
-                + 0.5 * s * pull / omega**2 * d**2
-                + leave * d / omega,
-            ]
-        )
-
-    nodes = np.column_stack([orbit.nodes[:, 0], orbit.events.B_pre])
-    nodes = np.vstack([nodes, nodes[:1] + [2.0 * np.pi, 0.0]])
-    product = np.eye(2)
-    for i, s in ((0, 1.0), (1, -1.0)):
-        blocks = []
-        for which in (0, 1):
-            block = np.empty((2, 2))
-            for c in range(2):
-                pair = [nodes[i].astype(complex), nodes[i + 1].astype(complex)]
-                pair[which][c] += 1e-30j
-                block[:, c] = np.imag(G(pair[0], pair[1], s)) / 1e-30
-            blocks.append(block)
-        assert np.abs(G(nodes[i], nodes[i + 1], s)).max() < 1e-12
-        product = -np.linalg.solve(blocks[1], blocks[0]) @ product
-    return np.linalg.eigvals(product)
-
-
-@settings(max_examples=40, deadline=None)
-@given(r=st.floats(0.2, 1.0), mu=st.floats(0.0, 0.6), omega=st.floats(0.5, 2.0), above=st.floats(0.01, 0.5))
-def test_pre_impact_maps_have_the_same_multipliers(r, mu, omega, above):
-    from orbits.machines.closed_forms.absorber import fold_square, friction_number, restitution_ratio
-
-    machine = Absorber(restitution=r, friction=mu, gravity=0.2, mass_ratio=0.01, frequency=omega)
-    least = float(fold_square(restitution_ratio(r), friction_number(mu, 0.2, 0.01, omega)))
-    orbit = machine.symmetric_orbit(amplitude=np.sqrt(least + above))
-    ours = np.sort_complex(np.round(orbit.multipliers, 14))
-    theirs = np.sort_complex(np.round(pre_impact_multipliers(orbit), 14))
-    np.testing.assert_allclose(ours, theirs, atol=1e-10, rtol=1e-10)
 
 
 @pytest.mark.parametrize("lasting", [1e-7, 1e-4, 1.9e-3, 2.1e-3, 0.05])

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from orbits import Cavity, Orbit, Word
+from orbits import Cavity
 from orbits.machines.reference.law import cavity
 
 VALUES = {
@@ -50,16 +50,6 @@ def test_the_numbers():
     assert numbers(cavity(params)) == pytest.approx(by_hand(VALUES), rel=1e-15)
 
 
-@pytest.mark.parametrize("name", list(VALUES))
-def test_their_derivatives(name):
-    """By complex steps, against central differences."""
-    params = np.array([VALUES[n] for n in Cavity.parameter_names])
-    slope = np.array([1.0 if n == name else 0.0 for n in Cavity.parameter_names])
-    found = [np.imag(x) / 1e-30 for x in numbers(cavity(params + 1e-30j * slope))]
-    ahead, behind = (by_hand(VALUES | {name: VALUES[name] + h}) for h in (1e-6, -1e-6))
-    assert found == pytest.approx([(a - b) / 2e-6 for a, b in zip(ahead, behind)], abs=1e-9)
-
-
 @pytest.mark.parametrize("slope", [-0.4, 0.0, 0.1, 0.4])
 @pytest.mark.parametrize("frictions", [(0.9, 0.7), (0.5, 0.9)])
 def test_the_stuck_absorber_slips_where_gravity_helps(slope, frictions):
@@ -90,13 +80,3 @@ def test_a_ball_bounces_off_the_lower_wall_with_that_wall_s_restitution(slope, w
     assert after == pytest.approx(-r * before)
     b, period = 1.2 * 0.5 * math.sin(slope), 2.0 * math.pi / 1.3
     assert after - before == pytest.approx(b * period)  # v' is the same at both ends of the flight
-
-
-@pytest.mark.parametrize(("slope", "text"), [(0.4, "R"), (-0.4, "L")])
-def test_the_bounces_in_closed_form_solve_the_equations(slope, text):
-    machine = made(slope=slope, friction_left=0.0, friction_right=0.0)
-    params, word = machine.vector({"amplitude": 2.5}), Word.parse(text, frictionless=True)
-    found = [
-        Orbit(machine, word, 1, nodes, params).residual for nodes in machine.start_nodes(word, 1, params)
-    ]
-    assert len(found) == 2 and max(found) < 1e-12

@@ -4,13 +4,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from orbits import Coupled
 from orbits.arguments import cycle_data, workspace
 from orbits.flows.native.reference_kernels import ReferenceKernels
 from orbits.machines.path import single
 from orbits.machines.reference.machine import reference
-from orbits.machines.reference.oscillation import Oscillation, first_zero
-from tests.machines import COUPLED
 from tests.orbits.machines.coupled.motion import path
 
 L, R, T, S, U = range(5)
@@ -169,64 +166,3 @@ def test_margins_are_those_of_the_motion(segment, case):
         assert found[1] == pytest.approx(mode * jerk, abs=1e-5)
     if arrival < 2:
         assert found[5] == pytest.approx((1.0 - 2.0 * arrival) * (u[5] - u[7]) / r)
-
-
-def test_half_and_whole_words_agree():
-    """A symmetric orbit closes on its half word with twist -1 and on the whole word with twist +1."""
-    machine = COUPLED
-    orbit = machine.symmetric_orbit(frequency=0.99)
-    u = orbit.nodes.ravel()
-    codes, modes = orbit.word.codes, orbit.word.mode_codes
-    whole = closed(codes, modes, orbit.params, single(9, 1))
-    half = closed(codes[:1].copy(), modes[:1].copy(), orbit.params, single(9, 1), -1.0)
-    one, two = workspace(1, 4, 9), workspace(2, 4, 9)
-    assert linearise(half, u[:4].copy(), 0.99, one) < 1e-14
-    assert linearise(whole, u, 0.99, two) < 1e-14
-    short, long = np.empty(4), np.empty(8)
-    margins(half, u[:4].copy(), 0.99, one, short)
-    margins(whole, u, 0.99, two, long)
-    np.testing.assert_allclose(long, np.tile(short, 2), atol=1e-13)
-
-
-def test_what_cannot_be_evaluated_is_infinite():
-    machine = Coupled(
-        restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006, damping=0.0, forcing=2.47
-    )
-    params = machine.vector({"frequency": 0.9})
-    events, modes = np.array([L, R], np.int8), np.array([-1, 1], np.int8)
-    u = np.array([0.3, 1.0, 0.1, 0.2, 3.4, -1.0, -0.1, -0.2])
-    work = workspace(2, 4, 9)
-    assert (
-        linearise(closed(events, modes, params, single(9, 1)), u, 1.0, work) == np.inf
-    )  # undamped resonance
-    assert linearise(closed(events, modes, params, single(9, 2)), u, 400.0, work) == np.inf  # overdamped
-
-
-def test_first_zero_finds_every_zero():
-    """Against sign changes on a fine grid, for sums of a harmonic and a damped oscillation with nearby frequencies."""
-    generator = np.random.default_rng(3)
-    for _ in range(200):
-        h0, h1, z0, z1 = generator.normal(size=4)
-        omega, beta, alpha = *generator.uniform(0.4, 2.5, 2), generator.uniform(0.0, 0.3)
-        if generator.random() < 0.5:
-            beta = omega * (1.0 + 0.01 * generator.normal())
-        q = Oscillation(omega, alpha, beta, h0, h1, z0, z1)
-        tau = np.linspace(0.0, 12.0, 24001)
-        third = omega**2 * (omega * h0 * np.sin(omega * tau) - h1 * np.cos(omega * tau))
-        A, B = z0, (z1 + alpha * z0) / beta
-        for _ in range(3):  # derivatives of exp(-alpha tau) (A cos beta tau + B sin beta tau)
-            A, B = beta * B - alpha * A, -beta * A - alpha * B
-        third += np.exp(-alpha * tau) * (A * np.cos(beta * tau) + B * np.sin(beta * tau))
-        expected = tau[1:][third[1:] * third[:-1] < 0.0]
-
-        def look(t, q=q):
-            at = q.at(t)
-            return at.h3 + at.z3, q.fourth(at)
-
-        found, place = [], 0.0
-        while (place := first_zero(look, place, 12.0, q.driven(5) + q.own(5, place), 1e-15)) < 12.0:
-            assert abs(look(place)[0]) < 1e-12
-            found.append(place)
-        assert len(found) >= len(expected)  # the grid may miss a pair, `first_zero` may not
-        for grid in expected:
-            assert min(abs(grid - place) for place in found) <= 6e-4

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from orbits.machines.reference.law import coupled
-from orbits.machines.reference.oscillation import Oscillation, certain, oscillation
+from orbits.machines.reference.oscillation import Oscillation, oscillation
 
 OMEGA, ALPHA, BETA = 1.07, 0.03, 0.98
 START = (0.21, -0.34, 0.55, 0.17)  # harmonic h and its rate, oscillation z and its rate
@@ -42,44 +42,6 @@ def test_small_differences_keep_their_digits(tau):
         ]  # a series of order 8 has fewer terms left for them
         for value, w, relative in zip(found, wanted, near):
             assert abs(value - w) < (relative * abs(w) if tau < 0.03 else 1e-14)
-
-
-def test_fourth_and_fifth_derivatives():
-    """Of the motion whose second derivatives are those of h and z, and of z alone the fourth and fifth."""
-    q = Oscillation(OMEGA, ALPHA, BETA, *START)
-    at = q.at(0.7)
-    with mp.workdps(30):
-        assert q.fourth(at) == pytest.approx(float(sum(exact(4, mp.mpf(0.7)))), rel=1e-13)
-        assert q.fifth(at) == pytest.approx(float(sum(exact(5, mp.mpf(0.7)))), rel=1e-13)
-
-
-@pytest.mark.parametrize("excitation", [0.0, 0.4, 1.0])
-@pytest.mark.parametrize("mass", [1.0, 1.15])
-def test_the_response_solves_the_forced_oscillator(excitation, mass):
-    """K X - c Y = f and c X + K Y = chi f c for q = X sin Psi + Y cos Psi, drag c, and f (sin + chi c cos) on the right."""
-    params = PARAMS.copy()
-    params[7] = excitation
-    law = coupled(params)
-    force, drag, stiffness = 0.15 * 2.1, 0.15 * 0.8 * 0.97, 1.0 - mass * 0.97**2
-    X, Y = (law.slide if mass == 1.0 else law.stuck)[:2]
-    assert stiffness * X - drag * Y == pytest.approx(force, rel=1e-13)
-    assert drag * X + stiffness * Y == pytest.approx(excitation * drag * force, abs=1e-14)
-
-
-def test_damped_and_overdamped():
-    stuck = coupled(PARAMS).stuck
-    assert 1.15 * (stuck.alpha**2 + stuck.beta**2) == pytest.approx(1.0)
-    assert 2.0 * 1.15 * stuck.alpha == pytest.approx(0.15 * 0.8)
-    params = PARAMS.copy()
-    params[[2, 3]] = 2.1, 1.0
-    assert np.isnan(coupled(params).slide.beta)
-
-
-@pytest.mark.parametrize(("y", "rate"), [(0.3, 0.2), (0.3, -0.2), (1e-9, -1e-3), (0.5, 0.0)])
-def test_the_certain_time_is_the_first_zero_of_the_worst_parabola(y, rate):
-    """y + y' h - bound h^2/2 = 0 at h > 0."""
-    h = certain(y, rate, 0.7)
-    assert h > 0.0 and y + rate * h - 0.35 * h * h == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("mode", [-1.0, 0.0, 1.0])

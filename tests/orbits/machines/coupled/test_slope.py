@@ -7,7 +7,6 @@ import pytest
 
 import contvines as cv
 from orbits import Cavity, Coupled, DryFriction, Machine, Wall
-from orbits.machines.physical import physical
 from orbits.problem import rebuild
 from orbits.symbols import cos, sin
 
@@ -72,14 +71,6 @@ def test_a_light_absorber_is_the_inclined_cavity():
     assert sorted(own) == pytest.approx(sorted(map(abs, alone.multipliers)), abs=1e-7)
 
 
-@pytest.mark.parametrize("slope", [0.3, -0.3])
-def test_energy_balances_and_the_absorber_slides_downhill(slope):
-    machine = INCLINED.changed(slope=slope, frequency=0.985)
-    assert machine.simulate({"q1": 1.0, "q2": 1.0}, periods=60).balance().error < 1e-12
-    end = machine.changed(friction=0.1).simulate({}, periods=400, forcing=0.0).end
-    assert end[1] == -np.sign(slope)  # positive pulls towards the right wall, w = -1
-
-
 def test_it_rests_up_to_the_angle_of_friction():
     still = INCLINED.changed(forcing=0.0)
     for slope, rests in ((np.arctan(0.5) - 1e-5, True), (np.arctan(0.5) + 1e-5, False)):
@@ -89,28 +80,6 @@ def test_it_rests_up_to_the_angle_of_friction():
     response = INCLINED.changed(forcing=0.3, frequency=0.9).stuck_response()
     expected = 1.006 * (0.211 * (0.5 * np.cos(0.1) - np.sin(0.1)) - 0.9**2 * response.amplitude)
     assert response.reserve == pytest.approx(expected, abs=1e-14)
-
-
-def test_without_friction_flights_reverse_freely():
-    machine = Coupled(
-        restitution=0.7, friction=0.0, gravity=0.1, mass_ratio=0.05, forcing=10.0, frequency=0.8, slope=1.2
-    )
-    found = machine.attractor({"w": -0.5}).orbit
-    assert found.word.events.count("R") > found.word.events.count("L") > 0
-    assert found.real and found.stable and found.replay() < 1e-9
-    assert machine.simulate({"w": -0.5}, periods=60).balance().error < 1e-12
-
-
-def test_quantities_in_si_units():
-    given = {
-        "oscillator_mass": "3.8 kg", "natural_frequency": "8 Hz", "damping_ratio": 0.007, "absorber_mass": "32 g", "half_width": "14 mm",
-        "restitution": 0.6, "friction": 0.1, "base_amplitude": "0.3 mm", "frequency": "7.9 Hz", "slope": "5 deg",
-    }  # fmt: skip
-    model = physical("coupled", given)
-    assert model.slope == pytest.approx(np.deg2rad(5.0))
-    assert model.gravity == pytest.approx(9.81 / (0.014 * (2.0 * np.pi * 8.0) ** 2))
-    assert model.with_(slope="0.1 rad").slope == pytest.approx(0.1)
-    assert model.with_(slope="-5 deg").slope == pytest.approx(-np.deg2rad(5.0))
 
 
 def test_a_file_from_before_the_slope_is_read():

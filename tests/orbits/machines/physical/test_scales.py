@@ -32,36 +32,6 @@ def test_the_published_machine():
     assert scales.detuning(0.985 * 7.666) == pytest.approx(-2.5, rel=1e-9)
 
 
-def test_back_to_si():
-    scales = Scales(**RIG, friction=0.5, restitution=0.76, base_amplitude=3e-4)
-    again = Scales.of(scales.machine(), oscillator_mass=3.0, half_width=0.02)
-    assert again.natural_frequency == pytest.approx(7.666, rel=1e-12)
-    assert again.damping == pytest.approx(0.78, rel=1e-12)
-    assert again.base_amplitude == pytest.approx(3e-4, rel=1e-12)
-    assert Scales.of(
-        scales.machine(), oscillator_mass=3.0, natural_frequency=7.666
-    ).half_width == pytest.approx(0.02)
-    assert scales.hertz(scales.frequency(7.5)) == pytest.approx(7.5)
-    assert scales.metres(0.5) == pytest.approx(0.01)
-    assert scales.metres_per_second(1.0) * scales.seconds(1.0) == pytest.approx(0.02)
-    # one half of m v^2 with v = b omega_0
-    assert scales.joules(0.5) == pytest.approx(0.5 * 0.018 * scales.metres_per_second(1.0) ** 2)
-
-
-def test_frequency_through_zero_and_resonance_without_damping():
-    scales = Scales(**{**RIG, "damping": 0.0}, base_amplitude=1e-4)
-    with pytest.raises(ParameterError, match=r"frequency = 0 Hz is out of range; give a number above 0"):
-        scales.frequency(0.0)
-    with pytest.raises(ParameterError, match=r"resonance .* damping = 0"):
-        scales.machine(hertz=scales.natural_frequency)
-    with pytest.raises(ParameterError, match=r"frequency = 0 is out of range"):
-        Coupled(restitution=0.7, friction=0.1, gravity=0.1, mass_ratio=0.01, frequency=0.0)
-    undamped = Coupled(restitution=0.7, friction=0.1, gravity=0.1, mass_ratio=0.01, damping=0.0, forcing=1.0)
-    with pytest.raises(ParameterError, match="give a damping above 0 or another frequency"):
-        undamped.vector({"frequency": 1.0})
-    assert undamped.vector({"frequency": 1.0, "forcing": 0.0})[0] == 0.0  # free motion is bounded
-
-
 def test_a_missing_forcing_is_named():
     machine = Coupled(restitution=0.7, friction=0.1, gravity=0.1, mass_ratio=0.01)
     with pytest.raises(ParameterError, match="forcing is missing"):
