@@ -74,6 +74,7 @@ class MapPopulation:
 
     across = 200
     """Starts across and up in a picture of basins where no number is given."""
+    price = 1.0
 
     @property
     def brief(self) -> tuple[int, int]:

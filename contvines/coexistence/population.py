@@ -12,7 +12,7 @@ The contract, in words:
 4. ``population.about`` is what the graph says of the machine (JSON-able); ``population.names`` are the coordinates of a start, ``population.box(p)`` their ranges, shape (n, 2).
    Optional: ``population.notation``, labels of axes by name of coordinate; ``population.leftward``, the coordinate that a picture shows growing from right to left.
 5. ``population.brief`` is how many values and how many starts at each a brief look after a diagram takes: few, so that it costs a
-   fraction of the diagram; ``population.price``, if it has any, how many times as long as in closed form a solution takes; ``population.across`` how many starts each way a picture of basins has where no number is given.
+   fraction of the diagram; ``population.price``, how many times as long as in closed form a solution takes; ``population.across`` how many starts each way a picture of basins has where no number is given.
 6. ``population.embedded(motion.state, p)`` returns ``(problem, u)`` of unstable cycles that a chaotic motion passes near, each once.
    Windows of periodic motion are born in pairs of which the unstable one lives on in the chaos beside them: traced back, it
    leads into windows that are too narrow for starts to meet.
@@ -22,7 +22,7 @@ The contract, in words:
 9. ``population.restored(problem.describe(), u, p)`` returns the problem of a motion that `settle`, `embedded` or `returning` had at p, measured as theirs; None
    where it cannot be rebuilt.
 10. ``population.observed(motion.state, p)`` returns the measures by name of the motion through this state, from simulation; none without a state.
-10. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas; without it only continuation is counted.
+11. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas; without it only continuation is counted.
 """
 
 from __future__ import annotations
@@ -71,6 +71,9 @@ class Population(Protocol):
 
     @property
     def across(self) -> int: ...
+
+    @property
+    def price(self) -> float: ...
 
     def box(self, p: float) -> np.ndarray: ...
 

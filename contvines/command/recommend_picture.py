@@ -49,7 +49,8 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
     later = [p for p in found.places if p.samples == found.most > 1]
     for places, mark, label in (
         (first, "o", "the study's machine"),
-        (later, "D", f"worst of {found.most} samples"),
+        ([p for p in later if not p.left], "D", f"worst of {found.most} samples"),
+        ([p for p in later if p.left], "^", "at least: one sample"),
     ):
         known = [(p.value, p.worst) for p in places if math.isfinite(p.worst)]
         if known:
@@ -58,7 +59,7 @@ def draw_places(axes: Axes, found: Recommendation) -> None:
                 mark,
                 color=BLUE,
                 markersize=4,
-                mfc="white" if mark == "o" else BLUE,
+                mfc=BLUE if mark == "D" else "white",
                 label=label,
             )
     hidden = [p.value for p in found.places if p.unknown]

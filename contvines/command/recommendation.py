@@ -46,6 +46,8 @@ class Place:
         Of how many samples the response is not known, and how many there are; one where nothing is uncertain, and in the first look.
     why : str
         Of the first one that is not known.
+    left : bool
+        Whether samples were left out, as the response in one of them is too large already: the worst is at least `worst`.
     """
 
     value: Number
@@ -55,6 +57,7 @@ class Place:
     unknown: int
     samples: int
     why: str = ""
+    left: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@ import dataclasses
 import hashlib
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from contvines.survey.plan import Plan
 
 PLACES = 13  # values of the first look
+RESPONSES = ("peak", "lower_peak")  # what is asked of every machine
+UNSEEN = "not looked at"  # a note
 LATER = (7, 5)  # of the later ones, between the neighbours of the best
 SAMPLES = 16  # where the study does not say
 QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
@@ -104,7 +106,7 @@ def recommend(
 
     1. Theory (`orbits.design.first_clearance`) gives a first value, and the range if the study has none.
     2. A diagram of the study's own machine at each of some values over the range.
-    3. Diagrams of all samples between the neighbours of the best, twice.
+    3. Diagrams of all samples between the neighbours of the best, twice; of a value that costs too much in one sample no others.
     4. At the choice: what simulated starts lead to, loads, start-up, a sweep by simulation up and down.
 
     Parameters
@@ -134,16 +136,13 @@ def recommend(
     if not isinstance(study, Study):
         study = read_study(study)
     work = _Work(study, workers, journal, tell, progress)
-    places: list[Place] = []
-    first = work.look(work.range(), False)
-    places += first
+    places = work.first_look()
     best = _best(places)
     for count in LATER if best is not None else ():
         assert best is not None
         low, high = _neighbours(places, best.value)
-        values = np.linspace(low, high, count)
-        done = {place.value for place in places if place.samples == work.samples}
-        places = _merged(places, work.look([v for v in map(_tidy, values) if v not in done], True))
+        values = map(_tidy, np.linspace(low, high, count))
+        places = _merged(places, work.later_look(values, best.value, cost))
         best = _best([place for place in places if place.samples == work.samples])
         if best is None:
             break
@@ -208,8 +207,9 @@ class _Work:
         self.samples = plan.shape[-1] if plan.samples else 1
         self.params = model.vector(study.loose)
         self.theory = self._theory()
-        self.pace: float | None = None
-        self.round = 0
+        self.pace: float | None = None  # seconds a machine
+        self.round = self.surveys = 0
+        self.rows: dict[float, _Looked] = {}  # by value, of all samples
 
     def _theory(self) -> Any:
         from orbits.design.first_clearance import first_clearance
@@ -247,15 +247,61 @@ class _Work:
             own = None
         return sorted({*map(_tidy, values), *([] if own is None else [own])})
 
-    def look(self, values: Sequence[float], all_: bool) -> list[Place]:
-        """Diagrams at these values, of all samples or of the study's own machine."""
+    def first_look(self) -> list[Place]:
+        """Diagrams of the study's own machine over the range."""
         from contvines.survey.plan import Plan
 
-        if not len(values):
-            return []
-        plan = Plan({self.name: np.array(values)}, self.drawn if all_ else {})
-        found = self.surveyed(plan, ("peak", "lower_peak"))
-        return [_place(found, i, float(value)) for i, value in enumerate(values)]
+        values = self.range()
+        self._tell_round(len(values))
+        found = _looked(self.surveyed(Plan({self.name: np.array(values)}, {}), RESPONSES))
+        rows = [_Looked(*row) for row in zip(*(column.reshape(-1, 1) for column in found))]
+        if not self.drawn:
+            self.rows |= dict(zip(values, rows))
+        return [_place(value, row, 1) for value, row in zip(values, rows)]
+
+    def later_look(self, values: Iterable[float], near: float, cost: float) -> list[Place]:
+        """Diagrams of the samples: all of them at the value nearest to the best; at others first of the sample that is worst there, and no more
+        where that costs too much, for the worst of all samples is no better.
+        """
+        known = self.rows
+        new = sorted((v for v in values if v not in known), key=lambda v: (abs(v - near), v))
+        every = np.arange(self.samples)
+        full = [v for v in known if not np.isnan(known[v].known).any()]
+        self._tell_round(len(new) * self.samples, "at most " if self.samples > 1 else "")
+        if not full and new:
+            self._look(new[:1], every)
+            full = [v for v in new[:1] if np.isfinite(known[v].known).all()]
+        new = [v for v in new if v not in known]
+        best = min(full, key=lambda v: known[v].known.max(), default=None)
+        worst = every[:1] if best is None else every[[int(np.argmax(known[best].known))]]
+        limit = math.inf if best is None else (1.0 + cost) * float(known[best].known.max())
+        self._look(new, worst)
+        self._look([v for v in new if known[v].known[worst[0]] <= limit], np.setdiff1d(every, worst))
+        return [_place(value, row, self.samples) for value, row in known.items()]
+
+    def _look(self, values: Sequence[float], samples: np.ndarray) -> None:
+        """Diagrams at these values, of these samples."""
+        from contvines.survey.plan import Plan
+
+        if not len(values) or not len(samples):
+            return
+        drawn = {name: column[samples] for name, column in self.drawn.items()}
+        found = _looked(self.surveyed(Plan({self.name: np.array(values)}, drawn), RESPONSES))
+        for i, value in enumerate(values):
+            nothing = (
+                np.full(self.samples, np.nan),
+                np.full(self.samples, np.nan),
+                np.full(self.samples, UNSEEN, object),
+            )
+            row = self.rows.setdefault(value, _Looked(*nothing))
+            for own, column in zip(row, found):
+                own[samples] = column[i]
+
+    def _tell_round(self, machines: int, at_most: str = "") -> None:
+        self.round += 1
+        rest = "" if self.pace is None else f", about {_duration(self.pace * machines)}"
+        said = f"{machines} {'machine' if machines == 1 else 'machines'}"
+        self.tell(f"round {self.round} of {len(LATER) + 2}: {at_most}{said}{rest}")
 
     def surveyed(self, plan: Plan, outcomes: Sequence[Any], **ways: Any) -> Survey:
         """The rows of a plan, kept in the journal of the round."""
@@ -263,17 +309,13 @@ class _Work:
         from contvines.command.surveying import without_main
         from contvines.survey.survey import survey
 
-        self.round += 1
-        rest = "" if self.pace is None else f", about {_duration(self.pace * len(plan))}"
-        self.tell(
-            f"round {self.round} of {len(LATER) + 2}: {len(plan)} {'machine' if len(plan) == 1 else 'machines'}{rest}"
-        )
+        self.surveys += 1
         begun = monotonic()
         options = {**options_of(self.study), "depth": 0}  # what leaves a branch is met by simulation, too
         with without_main():
             found = survey(
                 self.family, plan, over=self.study.parameter, within=self.study.within, outcomes=outcomes, workers=self.workers,
-                journal=self.journal(self.round), units=self.units, about={"recommend": self.round, **asked_of(self.study)},
+                journal=self.journal(self.surveys), units=self.units, about={"recommend": self.surveys, **asked_of(self.study)},
                 progress=self.progress, gaps=self.study.survey.gaps, **ways, **options,
             )  # fmt: skip
         self.pace = (monotonic() - begun) / len(plan)
@@ -318,6 +360,7 @@ class _Work:
         from contvines.survey.plan import Plan
 
         plan = Plan({self.name: np.array([best.value])}, self.drawn)
+        self._tell_round(len(plan))
         rows = self.surveyed(plan, ("peak", "modulated", loads, met), values=VALUES, starts=STARTS)
         peaks = rows.known("peak").ravel()
         works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
@@ -446,16 +489,25 @@ class _Work:
         )
 
 
-def _place(found: Survey, i: int, value: float) -> Place:
-    known = np.atleast_1d(found.known("peak")[i])
-    engaged = np.atleast_1d(found.known("lower_peak")[i])
-    notes = np.atleast_1d(found.notes[i])
+class _Looked(NamedTuple):
+    """Of machines the largest response, and the largest if the lowest of those that coexist is met, no number where not known; why (`UNSEEN`: not looked at)."""
+
+    known: np.ndarray
+    engaged: np.ndarray
+    notes: np.ndarray
+
+
+def _looked(found: Survey) -> _Looked:
+    return _Looked(found.known("peak"), found.known("lower_peak"), found.notes)
+
+
+def _place(value: float, row: _Looked, samples: int) -> Place:
+    seen = row.notes != UNSEEN
+    known, all_ = row.known[seen], bool(seen.all())
     unknown = int(np.count_nonzero(~np.isfinite(known)))
-    why = next((str(note) for note, peak in zip(notes, known) if not math.isfinite(peak)), "")
-    return Place(
-        value, float(known.max()), float(np.nanmedian(known)) if unknown < known.size else math.nan, float(engaged.max()), unknown,
-        known.size, why,
-    )  # fmt: skip
+    why = next((str(note) for note, peak in zip(row.notes[seen], known) if not math.isfinite(peak)), "")
+    median = float(np.nanmedian(known)) if all_ and unknown < samples else math.nan
+    return Place(value, float(known.max()), median, float(row.engaged.max()), unknown, samples, why, not all_)
 
 
 def _best(places: Sequence[Place]) -> Place | None:
@@ -477,7 +529,9 @@ def _merged(places: Sequence[Place], more: Sequence[Place]) -> list[Place]:
 
 
 def _tolerance(places: Sequence[Place], best: Place, cost: float) -> tuple[float, float]:
-    """The farthest values about the best, without a gap, at which the worst response costs at most so much; of places with all samples."""
+    """The farthest values about the best, without a gap, at which the worst response costs at most so much; of places with all samples, and
+    those with a sample that costs more.
+    """
     all_ = [place for place in places if place.samples == best.samples]
     at, limit = all_.index(best), (1.0 + cost) * best.worst
     low = high = at

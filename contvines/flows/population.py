@@ -86,6 +86,7 @@ class FlowPopulation:
 
     across = 60
     brief = BRIEF
+    price = 1.0
 
     def __init__(
         self,

@@ -88,7 +88,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
         for counted in found:
             if counted.u is None or locate(run, counted) is not None:
                 continue
-            spent = _size(graph, before) * getattr(population, "price", 1.0) > run.settings.completion
+            spent = _size(graph, before) * population.price > run.settings.completion
             if spent or len(counted.u) > run.settings.longest:
                 counted.problem, untraced = None, untraced + spent
         join(run, found, depth)

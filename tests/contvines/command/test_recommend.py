@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from contvines.command import recommending
 from contvines.command.cli import main
 from contvines.command.recommendation import Place, Recommendation
 from contvines.command.recommending import recommend
@@ -93,6 +94,39 @@ def test_what_is_not_known_stays_unknown_in_a_file():
     assert "No half width can be recommended" in str(again) and "not known: the response" in str(again)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_machines_that_are_left_out_change_neither_the_choice_nor_the_tolerance(seed, monkeypatch):
+    """Beside the worst of all samples at all values, drawn; a few are not known."""
+    generator, cost = np.random.default_rng(seed), 0.1
+    values = np.round(np.linspace(10.0, 20.0, 7), 3)
+    table = (
+        1.0 + 0.01 * generator.uniform(0, 2) * (values[:, None] - 15.0) ** 2 + 0.1 * generator.random((7, 4))
+    )
+    table[generator.random(table.shape) < 0.02] = np.nan
+    work, looked = object.__new__(recommending._Work), []
+    work.name, work.samples, work.drawn = "gap", 4, {"restitution": np.arange(4.0)}
+    work.rows, work.pace, work.round, work.tell = {}, None, 0, lambda _: None
+
+    def surveyed(plan, outcomes):
+        looked.append(len(plan))
+        rows = table[np.searchsorted(values, plan.axes["gap"])][:, plan.samples["restitution"].astype(int)]
+        return recommending._Looked(rows, rows, np.where(np.isnan(rows), "not known", "").astype(object))
+
+    monkeypatch.setattr(work, "surveyed", surveyed)
+    monkeypatch.setattr(recommending, "_looked", lambda found: found)
+    places = sorted(work.later_look(values, 15.0, cost), key=lambda place: place.value)
+    best, worst = recommending._best(places), table.max(axis=1)
+    assert best is not None and best.worst == np.nanmin(worst) and best.value == values[np.nanargmin(worst)]
+    good = worst <= (1.0 + cost) * best.worst
+    low = high = int(np.nanargmin(worst))
+    while low > 0 and good[low - 1]:
+        low -= 1
+    while high < 6 and good[high + 1]:
+        high += 1
+    assert recommending._tolerance(places, best, cost) == (values[low], values[high])
+    assert sum(looked) <= table.size
+
+
 @pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no browser that prints")
 def test_a_page_is_printed_on_paper(tmp_path):
     page = tmp_path / "a.html"
@@ -126,7 +160,7 @@ def test_without_a_browser_the_answer_is_set_on_two_sheets(tmp_path):
 def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     path = written(tmp_path, MODEL + SURVEY)
-    kept = [tmp_path / f"{k}.rows" for k in range(5)]
+    kept = [tmp_path / f"{k}.rows" for k in range(9)]
 
     def interrupted(text):
         if "round 2" in text:
