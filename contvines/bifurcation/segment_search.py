@@ -26,6 +26,7 @@ from .segment import Segment
 from .symmetry_test import SymmetryTest
 from .user_functions import own_tests
 
+TINY = float(np.finfo(float).tiny)
 PLACES = np.arange(1, 8) / 8.0  # of a segment at which its inside is looked at
 NARROWER, ROOF = (
     3,
@@ -65,6 +66,10 @@ class SegmentSearch:
     def search(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
         """The special points of one segment (positions in [0, 1])."""
         self.parts += depth > 0
+        place, start = self._beside_infinity(segment)
+        if start is not None:
+            rest = self.search(Segment(self.engine, start, segment.b), real, depth)
+            return [replace(e, position=place + (1.0 - place) * e.position) for e in rest]
         stop, before = self._stop(segment, real, depth)
         if before is not None:
             return [*before, *stop]
@@ -83,6 +88,14 @@ class SegmentSearch:
                 return self.both(segment, 0.5, middle, real, depth + 1)
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]
+
+    def _beside_infinity(self, segment: Segment) -> tuple[float, Solved | None]:
+        """A point close behind the beginning of a segment at which a multiplier is infinite but for rounding, so that the others are rounding, too."""
+        engine, place = self.engine, self.engine.settings.close / max(segment.length, TINY)
+        if engine.detection != "map" or not place < 1.0 or not _infinite(engine, segment.a):
+            return place, None
+        start = segment.at(place)
+        return place, None if start is None or _infinite(engine, start) else start
 
     def _of_kind(self, kind: Kind, segment: Segment, found: Sequence[Located]) -> list[Located]:
         """The special points of a kind: its own search, or the zeros of its test functions that it verifies."""
@@ -309,6 +322,12 @@ class SegmentSearch:
         return self.before(segment, s, middle, real, depth) + [
             replace(e, position=s + (1.0 - s) * e.position) for e in second
         ]
+
+
+def _infinite(engine: Engine, point: Solved) -> bool:
+    """Whether the largest multiplier of a point is so large that rounding of it is no smaller than the circle."""
+    spectrum = engine.spectrum(point.row)
+    return bool(np.abs(spectrum).max(initial=0.0) * np.finfo(float).eps >= 1.0)
 
 
 def _without_turnings(found: list[Located], near: float) -> list[Located]:

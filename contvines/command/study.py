@@ -4,6 +4,7 @@ Every value that cannot be used is refused with a sentence that names the field,
 all such sentences of one study are reported together.
 """
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from contvines.command.study_errors import StudyError as StudyError
 from contvines.command.toml_text import TomlError, toml_data
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.catalogue import PAGES, STRUCTURE
+
+QUANTITY = re.compile(r"\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[a-zA-Z%].*")  # "3.2 kg"
 
 
 def read_study(path: str | Path) -> Study:
@@ -83,6 +86,11 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
         else:
             from contvines.command.catalogue_study import read_catalogue
 
+            for key, value in about.items():
+                if isinstance(value, str) and QUANTITY.fullmatch(value):
+                    raise StudyError(
+                        f'[model] {key} = {value!r}: quantities want units = "si" on the first line of the study.'
+                    )
             study = read_catalogue(data, path)
         study = replace(study, conditions=conditions, tables=tables)
         if study.kinds is not None:

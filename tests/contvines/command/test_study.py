@@ -102,6 +102,7 @@ def test_coupled_studies_have_their_own_parameters():
         ({"model__restitution": 0.0}, ["[model] restitution = 0.0", "from 1e-6 to 1", "0.76"]),
         ({"start__word": "LR" * 50_000}, ["[start] word has 100000 letters", "a word of events such as"]),
         ({"model__restitution": "high"}, ["[model] restitution = 'high'", "not a number"]),
+        ({"model__gravity": "9.81 m/s^2"}, ["[model] gravity = '9.81 m/s^2'", 'units = "si"', "first line"]),
         ({"model__restitution": None}, ["[model] restitution is missing", "0.76"]),
         ({"model__friction": float("nan")}, ["[model] friction = nan", "not a finite number"]),
         ({"model__restituton": 0.7}, ["[model] restituton = 0.7", "did you mean 'restitution'"]),

@@ -372,3 +372,12 @@ def test_a_steep_branch_comes_to_its_period_doubling_in_many_digits():
     neighbours.judge(replace(graph, branches={branch.label: branch}, switches=[]), tally)
     assert not tally.findings
     assert comes_to(branch.orbit(2), branch.orbit(1), branch.orbit(0))
+
+
+def test_multipliers_beside_an_infinite_one_are_no_evidence():
+    """Where a branch begins at a graze one multiplier is infinite, and rounding of it moves the others over the circle: nothing happens there."""
+    graph = diagram("coupled", 1, 4817)
+    assert graph["WG2"].kind == "wall-graze" and not graph.unresolved
+    branch = graph["B17"]
+    counts = {int((np.abs(m) > 1.0).sum()) for m in branch.multipliers[1:]}
+    assert branch.marks[0] == (0, "WG2") and counts == {1}
