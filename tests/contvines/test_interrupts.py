@@ -10,7 +10,6 @@ import time
 import pytest
 
 import contvines as cv
-from contvines import interrupts
 from contvines.graph.persistence import same_graph
 from contvines.interrupts import HELD, OPEN, listening
 from tests.machines import ABSORBER
@@ -152,50 +151,3 @@ def test_what_was_not_written_is_written_again(tmp_path):
         store.put = put
         store.checkpoint(graph)
     assert same_graph(cv.load(tmp_path / "x.vines", problems=False), graph)
-
-
-def test_a_held_section_keeps_an_interrupt_back_though_nobody_listens(capfd):
-    """As at the start of a diagram, or where a point of a branch is solved for from Python."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        reached = []
-        with pytest.raises(KeyboardInterrupt):
-            with HELD:
-                with HELD:
-                    ignoring()
-                reached.append("the end of the outer section")
-            raise AssertionError("the section's result was used")
-        assert reached and capfd.readouterr().err == ""
-        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-        with pytest.raises(ZeroDivisionError), HELD:
-            ignoring()
-            raise ZeroDivisionError
-        with HELD:
-            pass  # nothing is left over
-        with pytest.raises(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-@pytest.mark.parametrize("begin", [listening, lambda: HELD], ids=["listening", "held"])
-def test_an_interrupt_that_comes_as_soon_as_it_is_listened_to_is_raised_once(begin, monkeypatch):
-    class Hasty:
-        getsignal = staticmethod(signal.getsignal)
-
-        @staticmethod
-        def signal(number, handler):
-            signal.signal(number, handler)
-            if handler is interrupts._interrupted:
-                signal.raise_signal(signal.SIGINT)
-
-    monkeypatch.setattr(interrupts, "_plain", Hasty)
-    with pytest.raises(KeyboardInterrupt), begin():
-        raise AssertionError("the work has begun")
-    monkeypatch.undo()
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    with listening(), HELD:
-        pass  # nothing is left to be raised
-    with HELD:
-        pass
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -47,28 +47,6 @@ def test_circles_are_those_of_the_closed_form(sign):
         assert found[3].simulated == pytest.approx(found[3].rotation, abs=1e-8)
 
 
-@pytest.mark.slow
-def test_circles_of_the_delayed_logistic_map_by_iteration():
-    problem = cv.MapProblem(lambda x, p: np.array([p * x[0] * (1 - x[1]), x[0]]), [0.4, 0.4], 1.9)
-    graph = cv.diagram(problem, within=(1.8, 2.2), depth=0)
-    found = graph["NS1"].circles(to=2.1)
-    r = found[-1].value
-    x, y, angle = 0.6, 0.5, []
-    for i in range(60000):
-        x, y = r * x * (1 - y), x
-        if i >= 20000:
-            angle.append(np.arctan2(y - (1 - 1 / r), x - (1 - 1 / r)))
-    turns = np.unwrap(angle)
-    assert abs(turns[-1] - turns[0]) / (2 * np.pi * (len(turns) - 1)) == pytest.approx(
-        found[-1].rotation, abs=2e-5
-    )
-    dense = found[-1].at(np.linspace(0, 2 * np.pi, 20001))
-    assert np.hypot(dense[:, 0] - x, dense[:, 1] - y).min() < 1e-4
-    # the radius grows like the root of the distance, as the normal form says
-    first = found[0]
-    assert first.radius == pytest.approx(first.predicted, rel=2e-3)
-
-
 def test_averages_of_a_quasi_periodic_sequence():
     golden = (np.sqrt(5) - 1) / 2
     phases = 2 * np.pi * golden * np.arange(4000)
@@ -207,31 +185,3 @@ def test_circles_near_a_resonance_end_at_a_homoclinic_orbit_as_iteration_does():
     assert max(distance) < 1e-4
     beyond = iterated(al, last.value + 1e-4, [x + 1e-3, x], 60_000)
     assert len(beyond) < 60_000
-
-
-@pytest.mark.slow
-def test_circles_that_live_within_a_billionth_of_the_frequency():
-    """Beside a motion with two turns that nearly graze a wall multipliers change by e^(1.3 10^6 dp): the circle attracts, rotates as simulated."""
-    machine = Coupled(
-        forcing=2.47, damping=1.0, mass_ratio=0.006, restitution=0.76, friction=0.5, gravity=0.211
-    )
-    guess = [
-        [-1.2723456, 0.9264669, -1.0548038, -0.4321126],
-        [-0.0940424, 0.2211511, -0.8076203, 0.8003431],
-        [1.2728325, 0.4523528, 0.6277291, 0.9466513],
-        [3.1143277, -2.0706451, 0.7504652, -0.8528377],
-        [5.0384505, 0.7013409, -1.0678695, -0.4067179],
-        [5.9666226, 0.4881245, -0.9697267, 0.6019907],
-        [7.7491497, 0.8244664, 0.7958716, 0.8107879],
-        [9.8453054, -2.3747859, 0.3016632, -1.0901773],
-    ]
-    orbit = machine.orbit("LttRLtLR", periods=2, guess=guess, frequency=0.9915406276)
-    graph = cv.diagram(orbit, over="frequency", within=(0.99154, 0.991541), depth=0)
-    point = min(graph.of_kind("neimark-sacker"), key=lambda found: abs(found.value - 0.9915406276))
-    assert point.criticality == "supercritical"
-    found = point.circles()
-    assert "1/3, at which motions lock" in found.ended
-    first = found[0]
-    assert first.stable and first.simulated == pytest.approx(first.rotation, abs=1e-6)
-    assert 0.0 < point.value - first.value < 1e-8 and first.replay < 1e-9
-    assert first.radius == pytest.approx(first.predicted, rel=0.15)

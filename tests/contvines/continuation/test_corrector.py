@@ -54,17 +54,3 @@ def test_the_prediction_is_of_fourth_order():
     orders = [math.log2(a / b) for a, b in itertools.pairwise(errors)]
     assert orders == pytest.approx([4.0, 4.0], abs=0.15)
     assert errors[1] < 0.3 * 0.1**4
-
-
-def test_the_sign_of_the_determinant_turns_with_the_tangent():
-    problem = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1.0, [1.0], 0.0, scale=1.0)
-    engine = Engine(problem, (-1.0, 1.0), Settings())
-    for angle in (0.3, 1.2):
-        u, p = np.array([math.cos(angle)]), math.sin(angle)
-        tangent = engine.unit(np.array([-p, u[0]]))
-        for border in (engine.weights * tangent, -engine.weights * tangent):
-            target = float(border @ np.append(u, p))
-            for sign in (1.0, -1.0):
-                found = engine.solve(u, p, border, target, sign * tangent)
-                matrix = np.array([[2.0 * u[0], 2.0 * p], sign * tangent * engine.weights])
-                assert found.sign == np.sign(np.linalg.det(matrix))

@@ -87,19 +87,6 @@ def test_a_negative_factor_rejects_the_step_and_shortens_it():
     assert steps[:3] * np.sqrt(2.0) == pytest.approx([0.0075, 0.0075 * 0.75, 0.0075 * 0.75**2], rel=1e-9)
 
 
-@pytest.mark.slow
-def test_diagrams_take_a_rule_and_keep_its_name():
-    problem = cv.AlgebraicProblem(lambda u, p: u**2 + p**2 - 1.0, [1.0], 0.0)
-    usual = cv.diagram(problem, within=(-2.0, 2.0), depth=0)
-    short = cv.diagram(
-        problem, within=(-2.0, 2.0), depth=0, settings={"step_rule": cv.StepRule(constant, "constant")}
-    )
-    assert "step_rule" not in usual.settings and short.settings["step_rule"] == "constant"
-    folds = [[p.value for p in graph.of_kind("fold")] for graph in (usual, short)]
-    assert folds[0] == pytest.approx(folds[1], abs=1e-12) and sorted(folds[0]) == pytest.approx([-1, 1])
-    assert Settings.kept(short.settings) == Settings()  # the function itself is no data
-
-
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10, 1e-13])
 def test_the_tolerance_bounds_the_last_correction(tolerance):
     """With a slope that is a tenth too steep each correction is about an eleventh of the one before."""

@@ -5,11 +5,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from contvines.core import build
-from contvines.core.records import block, pack
 
 ROOT = Path(__file__).parents[3]
 ASK = "from contvines.core.library import native; print(native())"
@@ -87,28 +85,3 @@ print(interrupted > 10, library_is)
 def test_interrupted_at_any_call_of_its_loading_it_is_loaded_by_the_next():
     """Nothing stays half registered: after an interrupt the process uses the same core as one left alone."""
     assert run(INTERRUPTED).stdout.split() == ["True", run(ASK).stdout.strip()]
-
-
-def test_a_compiler_that_fails_is_quoted(tmp_path):
-    with pytest.raises(build.NotBuilt, match="core.cpp"):
-        build.build(tmp_path, ["false"])
-
-
-def test_a_struct_holds_numbers_and_places_of_arrays():
-    values = np.arange(3.0)
-    made = pack(3, 0.5, values)
-    assert made[0] == 3 and made.view(float)[1] == 0.5 and made[2] == values.ctypes.data
-
-
-def test_a_block_holds_its_arrays():
-    memory, (one, two) = block((7, 0.25), ((2, 3), (4,)))
-    one[:], two[:] = 1.0, 2.0
-    assert memory.view(np.int64)[0] == 7 and memory[1] == 0.25
-    assert memory.view(np.int64)[2:4].tolist() == [one.ctypes.data, two.ctypes.data]
-    assert memory[4:].tolist() == [1.0] * 6 + [2.0] * 4
-
-
-@pytest.mark.parametrize("wrong", [np.zeros((4, 4)).T[:2], np.zeros(3, np.float32)])
-def test_an_array_of_another_kind_is_refused(wrong):
-    with pytest.raises(TypeError, match="cannot be handed"):
-        pack(wrong)

@@ -2,15 +2,13 @@
 
 import csv
 import json
-import math
 
 import networkx
 import numpy as np
 import pytest
 from scipy.io import loadmat
 
-from contvines.export import export, json_text
-from contvines.export.latex import cell
+from contvines.export import export
 from tests.contvines import fakes
 
 
@@ -114,12 +112,6 @@ def test_latex_has_a_row_per_branch_and_point(graph, tmp_path):
     assert "->" not in text and export(graph, None, tmp_path / "h.tex").exists()
 
 
-def test_numbers_and_signs_in_latex():
-    assert cell("-1.5e-07") == r"$-1.5 \times 10^{-7}$"
-    assert cell("2e+03") == r"$2 \times 10^{3}$"
-    assert cell("max_w 50%") == r"max\_w 50\%"
-
-
 def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):
     with pytest.raises(
         ValueError, match="--to xml: there is no such format; choose one of csv, json, graphml, mat"
@@ -129,16 +121,3 @@ def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):
         export(graph, "csv", tmp_path / "none" / "g.csv")
     with pytest.raises(ValueError, match="cannot be written"):
         export(graph, "json", tmp_path)
-
-
-def test_json_text_keeps_every_bit():
-    values = [0.1 + 0.2, 1e-308, math.pi, -0.0, 5e-324]
-    assert [v.hex() for v in json.loads(json_text(values))] == [v.hex() for v in values]
-    assert json.loads(
-        json_text({"z": 1 + 2j, "a": np.arange(3), "n": np.float64(2), "t": np.bool_(True)})
-    ) == {
-        "z": [1.0, 2.0],
-        "a": [0, 1, 2],
-        "n": 2.0,
-        "t": True,
-    }

@@ -1,7 +1,5 @@
 """Data frames and data sets hold the branches' own numbers."""
 
-import csv
-
 import numpy as np
 import pytest
 
@@ -28,24 +26,6 @@ def test_a_graph_as_a_frame(graph):
     assert np.allclose(side["multiplier0_re"], -2 * side["p"], atol=1e-8)
     assert frame["stable"].dtype == bool
     assert set(frame["special"]) - {""} >= {p.label for p in graph.of_kind("symmetry-breaking")}
-
-
-def test_a_branch_as_frame_and_data_set(graph):
-    frame = graph["B2"].to_pandas()
-    assert np.allclose(frame["u0"] ** 2, frame["p"], atol=1e-9)
-    data = graph["B2"].to_xarray()
-    assert np.allclose(data["unknowns"][:, 0] ** 2, data["p"], atol=1e-9)
-    assert data.attrs["label"] == "B2"
-
-
-def test_the_frame_and_the_csv_file_agree(graph, tmp_path):
-    graph.export(tmp_path / "g.csv")
-    with (tmp_path / "g.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    frame = graph.to_pandas().reset_index()
-    assert len(rows) == len(frame)
-    for name in ("p", "u0", "multiplier0_re"):
-        assert [float(row[name]) for row in rows] == frame[name].tolist()
 
 
 def test_a_graph_as_a_data_set_has_every_point_of_every_branch():

@@ -26,23 +26,6 @@ def test_labels_run_along_the_branch():
     assert ((steps * graph["B1"].tangents[1:]).sum(axis=1) > 0.0).all()
 
 
-def test_network_of_branches_listed_once():
-    """x (p - x^2) (x - p + 1/2) = 0: a line, a parabola and a line, which cross in five places; each is one branch."""
-
-    def f(u, p):
-        x = u[0]
-        return np.array([x * (p - x * x) * (x - p + 0.5)])
-
-    graph = cv.diagram(cv.AlgebraicProblem(f, [0.0], -0.5), within=(-1.0, 2.0), depth=5)
-    assert len(graph) == 3
-    places = sorted((round(p.value, 9), round(float(p.u[0]), 9)) for p in graph.of_kind("branch-point"))
-    x = np.array([0.5 * (1 - np.sqrt(3)), 0.5 * (1 + np.sqrt(3))])  # x^2 = x + 1/2
-    exact = sorted([(0.0, 0.0), (0.5, 0.0), *((round(a * a, 9), round(a, 9)) for a in x)])
-    np.testing.assert_allclose(places, exact, atol=2e-9)
-    ties = {(s.point, frozenset((s.source, s.target))) for s in graph.switches}
-    assert len(ties) == len(graph.switches) == 4
-
-
 @pytest.mark.parametrize("turns", [0.0, 1.0, 2.0, 3.0, 4.5])
 def test_stable_intervals_of_a_closed_branch_are_in_order_and_not_cut_where_it_begins(turns):
     """u' = -(u^2 + p^2 - 1) (u - w(p)), w = 5 p (2 p^2 - 1) / 6: on the circle its sign of u (u - w) says where it is stable."""
@@ -89,12 +72,6 @@ def test_a_cascade_is_followed_where_doublings_lie_closer_than_the_first_step():
     a, b, c = found[-3:]
     assert c - (c - b) ** 2 / (c - 2.0 * b + a) == pytest.approx(3.5699456718709449, abs=1e-9)
     assert (b - a) / (c - b) == pytest.approx(4.669201609, abs=1e-2)
-
-
-def test_depth_counts_switches():
-    for depth, branches in ((0, 1), (1, 2), (2, 3)):
-        problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
-        assert len(cv.diagram(problem, within=(2.4, 3.55), depth=depth)) == branches
 
 
 def test_max_branches_is_said():

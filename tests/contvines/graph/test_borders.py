@@ -118,21 +118,6 @@ def test_start_beyond_a_border_is_refused():
     assert not graph["B1"].real and abs(graph["VG1"].value - 0.2) < 1e-13 and graph["B2"].real
 
 
-def test_a_margin_that_is_zero_all_along_ends_nothing():
-    """Zero but for rounding of either sign, as the distance from a wall that is touched all the time."""
-
-    class Touching(Line):
-        def margins(self, u, p):
-            return np.array([0.5 - p, 1e-15 * np.sin(1e6 * p)])
-
-    for max_step in (0.03, 0.003):
-        line = Touching("a", 0.0, 1.0, [-1.0, 1.0], [0.5, 0.0])
-        graph = cv.diagram(line, within=(0.0, 1.0), settings={"max_step": max_step})
-        assert graph["B1"].range == pytest.approx((0.0, 0.5), abs=1e-13)
-        assert [point.kind for point in graph.special.values()] == ["end", "velocity-graze"]
-        assert "VG1" in graph["B1"].ended[1]
-
-
 @pytest.mark.parametrize("slope", [1e-6, 1e-8])
 @pytest.mark.parametrize("max_step", [0.03, 0.0071, 0.003, 0.0013])
 def test_where_a_margin_is_flat_the_border_says_how_well_it_is_known(max_step, slope):
@@ -167,33 +152,6 @@ def test_where_the_parameter_turns_back_at_a_border_there_is_no_fold(max_step, b
     graph = cv.diagram(problem, within=(-1.0, 1.0), settings={"max_step": max_step})
     assert [point.kind for point in graph.special.values() if point.kind != "end"] == ["velocity-graze"]
     assert graph["VG1"].value == pytest.approx(-(behind**2), abs=1e-13)
-
-
-@pytest.mark.parametrize("max_step", [0.03, 0.007])
-@pytest.mark.parametrize("behind", [1e-3, 3e-6, 2e-6])
-def test_a_fold_just_before_a_border_is_one_where_a_multiplier_says_so(max_step, behind):
-    """p = -u^2 with the multiplier 1 - 2 u, as a smooth fold has it, and its border a little behind: stability changes at u = 0."""
-
-    class Folding(Line):
-        def equations(self, u, p):
-            return np.array([p + u[0] ** 2]), np.array([[2.0 * u[0]]]), np.array([1.0])
-
-        def margins(self, u, p):
-            return np.array([u[0] + behind])
-
-    problem = Folding("t", 0.0, 1.0, [1.0], [0.0])
-    problem.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, told_by_u)
-    problem.u0, problem.p0 = np.array([0.7]), -0.49
-    graph = cv.diagram(problem, within=(-1.0, 1.0), settings={"max_step": max_step})
-    kinds = [point.kind for point in graph.special.values() if point.kind != "end"]
-    assert kinds == ["fold", "velocity-graze"]
-    assert graph["LP1"].value == pytest.approx(0.0, abs=1e-13)
-    assert graph["VG1"].value == pytest.approx(-(behind**2), abs=1e-13)
-
-
-def told_by_u(data, u, p, work, row):
-    row[0], row[1] = 1.0 - 2.0 * u[0], 0.0
-    row[2:] = data.margins(u, p)
 
 
 class Vanishing(ProblemDefaults):

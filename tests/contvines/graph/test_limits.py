@@ -56,16 +56,6 @@ def test_limits_on_resume(tmp_path):
     assert str(again) == str(whole) and again.settings["bounds"] == {"u0": [-0.5, None]}
 
 
-def test_bounds_hold_where_a_graph_goes_on():
-    problem = cv.AlgebraicProblem(tree, [0.0], -1.0)
-    graph = cv.diagram(problem, within=(-1.0, 1.0), depth=0, bounds={"u0": (-0.5, 0.75)})
-    (label,) = cv.switch(graph, "BP1")
-    assert graph[label].range == pytest.approx((-0.5, 0.75))
-    other = cv.diagram(problem, within=(-1.0, 1.0), depth=0, bounds={"u0": (-0.5, 0.75)})
-    (label,) = cv.switch(other, "BP1", bounds={})
-    assert other[label].range == pytest.approx((-1.0, 1.0))
-
-
 def test_points_at_the_very_end_of_the_interval():
     """A branch point, a fold, and none of them a little inside."""
     line = cv.AlgebraicProblem(tree, [0.0], -1.0)

@@ -3,7 +3,6 @@
 import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
 
 from contvines.plots import plot_diagram
 from contvines.plots.style import LINES
@@ -89,12 +88,6 @@ def test_branches_without_the_measure_are_named_in_the_legend():
     assert "not drawn: B2, B3 (no impacts)" in {t.get_text() for t in axes.get_legend().get_texts()}
 
 
-def test_where_no_branch_has_the_measure_another_is_drawn():
-    axes = plot_diagram(impactless(("ss", "", "tt"), (np.nan,) * 3)).axes[0]
-    assert axes.get_ylabel() == "max abs w"
-    assert not any("not drawn" in t.get_text() for t in axes.get_legend().get_texts())
-
-
 def test_chosen_labels_only(graph):
     axes = plot_diagram(graph, labels=["BP1"]).axes[0]
     assert [t.get_text() for t in axes.texts] == ["BP1"]
@@ -102,32 +95,6 @@ def test_chosen_labels_only(graph):
         plot_diagram(graph, labels=["LP7"])
     with pytest.raises(ValueError, match="give True, False or a list"):
         plot_diagram(graph, labels="BP1")
-
-
-def test_marks_of_chosen_kinds(graph):
-    def marks(**options):
-        lines = plot_diagram(graph, inset=False, labels=False, **options).axes[0].lines
-        return [line.get_marker() for line in lines if line.get_marker() not in ("None", None, "")]
-
-    everything = marks()
-    branch_points = sum(point.kind == "branch-point" for point in graph.special.values())
-    assert 0 < branch_points < len(everything)
-    assert len(marks(marks=["BP"])) == len(marks(marks=["branch-point"])) == branch_points
-    assert marks(marks=False) == []
-    with pytest.raises(ValueError, match="there is no kind 'BX'"):
-        plot_diagram(graph, marks=["BX"])
-
-
-def test_styles_of_journals(graph):
-    from contvines.shared.figures import STYLES
-
-    assert {"aps", "elsevier", "springer", "grey", "slides"} <= set(STYLES)
-    for name in ("aps", "elsevier", "springer"):
-        assert plot_diagram(graph, style=name).get_size_inches()[0] < 3.6  # one column
-    grey = plot_diagram(graph, style="aps,grey").axes[0]
-    for line in grey.lines:
-        red, green, blue = to_rgb(line.get_color())
-        assert red == green == blue
 
 
 def test_colours_may_stand_for_stability_or_words(graph):

@@ -1,7 +1,5 @@
 """Figures: styles, sizes, files, notebooks; multipliers and portraits."""
 
-import itertools
-
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -27,12 +25,6 @@ def test_multipliers_are_drawn_with_the_unit_circle(graph):
         plot_multipliers(graph.branches["B2"])
 
 
-def test_small_multipliers_are_the_moduli_alone_and_taller_ones_have_both(graph):
-    small, tall = (plot_multipliers(graph.branches["B2"], figsize=size) for size in ((3.4, 2.4), (3.4, 4.6)))
-    assert len(small.axes) == 1 and small.axes[0].get_window_extent().height > 0.45 * 2.4 * small.dpi
-    assert len(tall.axes) == 3  # with the key of colours
-
-
 def test_portrait_asks_the_orbit_first():
     class Orbit:
         def plot(self):
@@ -54,24 +46,6 @@ def test_pictures_are_saved_and_the_users_settings_stay(graph, tmp_path):
 def test_a_picture_that_cannot_be_written_is_refused_before_work(tmp_path, name):
     with pytest.raises(ValueError, match=r"must end in|there is no folder"):
         check_picture(tmp_path / name)
-
-
-def test_colours_differ_in_grey():
-    """Neighbouring branches must be distinguished on a grey printer: by luminance (ITU-R BT.601)."""
-    style = mpl.rc_params_from_file(STYLE, use_default_template=False)
-    grey = [np.dot(mpl.colors.to_rgb(c["color"]), [0.299, 0.587, 0.114]) for c in style["axes.prop_cycle"]]
-    assert max(grey) < 0.55  # dark enough on white
-    assert min(abs(a - b) for a, b in itertools.pairwise(grey)) > 0.05
-
-
-def test_the_users_own_settings_come_before_ours(graph):
-    with mpl.rc_context({"axes.labelcolor": "#ff0000", "lines.linewidth": 5.0}):
-        axes = plot_diagram(graph).axes[0]
-        assert axes.xaxis.label.get_color() == "#ff0000"
-        assert max(line.get_linewidth() for line in axes.lines) > 5.0
-    axes = plot_diagram(graph, style={"axes.labelcolor": "#00ff00"}).axes[0]
-    assert axes.xaxis.label.get_color() == "#00ff00"
-    assert plot_diagram(graph, style="ggplot").axes[0].get_facecolor()[:3] == mpl.colors.to_rgb("#E5E5E5")
 
 
 def test_figures_do_not_pile_up_and_show_themselves_in_a_notebook(graph):

@@ -5,7 +5,6 @@ import pytest
 
 import contvines as cv
 import orbits
-from orbits.symbols import cos
 
 OF_MACHINES = ["w", "B", "phase", "amplitude", "friction", "frequency", "half_width", "max_abs_q1"]
 
@@ -31,26 +30,6 @@ def test_equations_of_the_users_own(fold):
     plain = name.replace("_", " ")
     assert labels(graph.plot()) == {plain, "u0"}
     assert labels(graph.plot(y=name)) == {plain}
-
-
-def test_a_page_with_names_of_a_built_in_machine():
-    machine = orbits.Machine(
-        name="oscillator",
-        states=("w", "w_rate"),
-        parameters={"amplitude": 0.5, "frequency": 1.2, "damping": 0.1},
-        phase_rate="frequency",
-        motion=lambda s, phase, p, contact: (
-            s.w_rate,
-            p.amplitude * cos(phase) - p.damping * s.w_rate - s.w,
-        ),
-        contacts=[
-            orbits.Wall("I", gap=lambda s, phase, p: 1.0 - s.w, push={"w_rate": -1.0}, restitution=0.8)
-        ],
-    )
-    figure = cv.basins(machine, "amplitude", at=0.5, plane=("w", "w_rate"), points=2).plot()
-    low, high = figure.axes[0].get_xlim()
-    assert low < high
-    assert labels(figure) == {"w", "w rate"}
 
 
 def test_a_built_in_machine_in_its_notation(tmp_path):

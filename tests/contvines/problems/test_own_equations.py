@@ -1,6 +1,5 @@
 """Equations of one's own: scales, corrupting functions, derivatives, symmetries, kinks, sparse Jacobians."""
 
-import math
 import re
 
 import numpy as np
@@ -53,14 +52,6 @@ def test_given_jacobians_are_checked():
         cv.AlgebraicProblem(ab, [0.1, 0.2], 0.05, jacobian=lambda u, p: np.zeros((3, 2)))
 
 
-def test_steep_functions():
-    steep = cv.AlgebraicProblem(lambda u, p: np.arctan(u / 1e-4) - p, [0.0], 0.0)
-    assert cv.diagram(steep, within=(-1.0, 1.0))["B1"].range == (-1.0, 1.0)
-    # real numbers only, so differences; p + v - exp(v) with v = u/1e-3 folds at p = 1
-    real = cv.AlgebraicProblem(lambda u, p: [p + u[0] / 1e-3 - math.exp(u[0] / 1e-3)], [0.0], 2.0)
-    assert of_kind(cv.diagram(real, within=(0.0, 3.0)), "fold") == pytest.approx([1.0], abs=1e-12)
-
-
 def test_a_continuous_symmetry_is_named_and_a_condition_helps():
     def circle(u, p):
         return p * u - u * (u @ u)
@@ -109,21 +100,6 @@ def test_outputs_are_measures():
     )
     branch = cv.diagram(problem, within=(-1.0, 1.0))["B1"]
     np.testing.assert_allclose(branch.measure("energy"), 0.5 * branch.values**4 + branch.values, atol=1e-12)
-
-
-def test_right_derivatives_are_not_doubted_where_they_vanish():
-    """At the ends of a circle on a line both derivatives are zero but for rounding."""
-    problem = cv.AlgebraicProblem(
-        lambda u, p: [(u[0] ** 2 + p**2 - 1e-4) * u[0]],
-        [0.0],
-        -1.0,
-        jacobian=lambda u, p: [[3.0 * u[0] ** 2 + p**2 - 1e-4]],
-        derivative=lambda u, p: [2.0 * p * u[0]],
-    )
-    graph = cv.diagram(problem, within=(-1.0, 1.0))
-    points = graph.of_kind("branch-point")
-    assert sorted(point.value for point in points) == pytest.approx([-0.01, 0.01], abs=1e-12)
-    assert all(point.location_error < 1e-12 and not point.remarks for point in points)
 
 
 @pytest.mark.parametrize("digits", [16, 8])

@@ -10,7 +10,6 @@ import pytest
 
 import contvines as cv
 from contvines.report.contents import contents
-from contvines.report.numbers import told_of
 from contvines.report.page import page, write_report
 from tests.contvines import fakes
 from tests.machines import ABSORBER
@@ -84,15 +83,3 @@ def test_names_cannot_break_out_of_the_page():
 def test_a_page_that_cannot_be_written_is_refused(graph, tmp_path, name, says):
     with pytest.raises(ValueError, match=says):
         write_report(graph, tmp_path / name, "x.vines")
-
-
-def test_where_a_page_of_python_lay_is_not_told():
-    told = told_of({"name": "stop", "page": "/home/somebody/work/stop.py", "gap": 0.1, "nested": {}})
-    assert told == {"name": "stop", "page": "stop.py", "gap": 0.1}
-
-
-def test_at_the_boundary_a_motion_is_neither_stable_nor_unstable():
-    """x' = p x - x^3 has its eigenvalue 0 at the branch point, whichever side rounding puts it."""
-    problem = cv.AlgebraicProblem(lambda u, p: p * u - u**3, [0.0], -1.0, spectrum="flow")
-    told = contents(cv.diagram(problem, within=(-1.0, 1.0)), "x.vines")
-    assert {p["kind"]: p["marginal"] for p in told["special"]} == {"branch-point": True, "end": False}

@@ -100,62 +100,6 @@ def test_generalized_henon_at_its_double_multipliers():
                 assert found[name] == pytest.approx(float(value), rel=1e-8), (kind, name)
 
 
-def carbon(v, q2, k, q4=0.0675):
-    x, y, s = v
-    z = 1 - x - y - s
-    return [5 * z * z - 2 * x * x - 10 * x * y, q2 * z - y / 10 - 10 * x * y, q4 * (z - k * s)]
-
-
-def test_the_cusp_of_carbon_oxidation():
-    """Bykov, Yablonskii and Kim; (q2, k) of all codimension-two points as BifurcationKit's test test/COModel.jl prints them."""
-    problem = cv.AlgebraicProblem(
-        lambda u, p: np.array([float(c) for c in carbon(u, p.q2, p.k)]),
-        [0.0016, 0.52, 0.1],
-        {"q2": 0.8, "k": 0.4},
-        parameter="q2",
-        spectrum="flow",
-        jacobian=lambda u, p: _jacobian(u, p),
-    )
-    graph = cv.diagram(problem, over="q2", within=(0.5, 2.0), depth=0)
-    fold = cv.locus(graph.of_kind("fold")[0], over="k", within=(0.05, 2.5), bounds=(0.5, 2.0))
-    points = [point for _, point in find(fold)]
-    doubles = sorted(point.value for point in points if point.kind == "bogdanov-takens")
-    assert doubles == [
-        pytest.approx((1.161199, 0.722339), abs=1e-6),
-        pytest.approx((1.417628, 0.971397), abs=1e-6),
-    ]
-    (cusp,) = [point for point in points if point.kind == "cusp"]
-    with mp.workdps(40):
-        at = Expansion(lambda v: carbon(v, *map(mp.mpf, map(float, cusp.value)), mp.mpf("0.0675")), cusp.u)
-        A = at.matrix()
-        q, p = null(A), null(A.T)
-        h = mp.lu_solve(_bordered(A, p, q), mp.matrix([*(-at(q, q)), 0]))
-        c = dot(p, at(q, q, q) + 3 * at(q, mp.matrix(list(h)[:3]))) / (6 * dot(p, q))
-        assert coefficients(cusp)["c"] == pytest.approx(float(c), rel=1e-8)
-
-
-def _bordered(A, b, c):
-    """A with a column and a row."""
-    M = mp.matrix(4)
-    for i in range(3):
-        M[i, 3], M[3, i] = b[i], c[i]
-        for j in range(3):
-            M[i, j] = A[i, j]
-    return M
-
-
-def _jacobian(u, p):
-    x, y, s = u
-    z = 1 - x - y - s
-    return np.array(
-        [
-            [-10 * z - 4 * x - 10 * y, -10 * z - 10 * x, -10 * z],
-            [-p.q2 - 10 * y, -p.q2 - 0.1 - 10 * x, -p.q2],
-            [-0.0675, -0.0675, -0.0675 * (1 + p.k)],
-        ]
-    )
-
-
 def lorenz(u, F, T):
     """Extended Lorenz-84 (Shilnikov, Nicolis and Nicolis 1995; Kuznetsov, Meijer and van Veen 2004), parameters of BifurcationKit's test."""
     X, Y, Z, U = u

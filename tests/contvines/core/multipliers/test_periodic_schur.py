@@ -5,8 +5,6 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from contvines.core.library import native
 from contvines.core.multipliers import periodic_qr
@@ -69,17 +67,6 @@ def test_random_factors(method, n, length):
 
 
 @BOTH
-def test_order_and_conjugate_pairs(method):
-    turn = np.array([[math.cos(1.0), -math.sin(1.0)], [math.sin(1.0), math.cos(1.0)]])
-    A = np.tile(0.9 * turn, (3, 1, 1))
-    found = compute(method, A)
-    assert found[0] == found[1].conjugate() and found[0].imag > 0.0
-    assert found[0] == pytest.approx(0.9**3 * np.exp(3j), rel=1e-13)
-    found = compute(method, np.diag([0.5, -2.0, 2.0, 0.0])[None])
-    assert list(found) == [2.0, -2.0, 0.5, 0.0]
-
-
-@BOTH
 def test_thousands_of_unstable_factors_neither_overflow_nor_lose_the_small_one(method):
     """One matrix repeated: lambda^L, where both powers leave the range of floats or nearly so."""
     A1 = np.array([[3.0, 1.0], [1.0, 0.5]])
@@ -105,60 +92,6 @@ def test_graded_factors_keep_small_multipliers(method):
         assert distance(compute(method, A), exact(A)) < 1e-8
         D = np.array([draw.normal(size=(n, n)) for _ in range(6)])
         assert distance(compute(method, D @ A, D), exact(D @ A, D)) < 1e-8
-
-
-@BOTH
-def test_growth_then_decay(method):
-    """A word that stretches one direction by 3e5 and shrinks it back: rounding grows by that much and no more."""
-    angle = 0.3
-    basis = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-    stretch = basis @ np.diag([8.0, 1.0]) @ basis.T
-    shrink = basis @ np.diag([0.125, 1.0]) @ basis.T
-    rest = np.array([[0.6, 0.2], [-0.1, 0.7]])
-    A = np.array([stretch] * 6 + [shrink] * 6 + [rest])
-    assert distance(compute(method, A), exact(A)) < 1e-9
-
-
-@BOTH
-@pytest.mark.parametrize("n", [2, 4])
-def test_a_stick_forgets_exactly(method, n):
-    draw = np.random.default_rng(n)
-    A, D = draw.normal(size=(2, 7, n, n))
-    A[3, 0] = 0.0
-    found = compute(method, A, D)
-    assert found[-1] == 0.0
-    assert distance(found[:-1], exact(A, D)[:-1]) < 1e-9
-    A[5, 0] = 0.0
-    assert compute(method, A, D)[-1] == 0.0
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 10**6), st.integers(1, 60), st.floats(-3.0, 3.0), st.sampled_from([2, 4]))
-def test_determinant_is_the_product_of_multipliers(seed, length, spread, n):
-    draw = np.random.default_rng(seed)
-    A, D = draw.normal(size=(2, length, n, n))
-    A *= 10.0 ** (spread * draw.normal(size=length))[:, None, None]
-    signs, logs = np.linalg.slogdet(A)
-    below_signs, below = np.linalg.slogdet(D)
-    for method in (multipliers, periodic_multipliers):
-        found = compute(method, A, D)
-        if np.all((np.abs(found) < 1e300) & (np.abs(found) > 1e-300)):
-            assert np.log(np.abs(found)).sum() == pytest.approx((logs - below).sum(), abs=1e-6)
-            assert np.prod(found / np.abs(found)).real == pytest.approx(
-                np.prod(signs * below_signs), abs=1e-6
-            )
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 10**6), st.integers(2, 40), st.booleans())
-def test_a_cycle_may_start_at_any_node(seed, length, four):
-    """Eigenvalues of a product do not change when its factors are rotated."""
-    draw = np.random.default_rng(seed)
-    n = 4 if four else 2
-    A = draw.normal(size=(length, n, n))
-    here, there = compute(multipliers, A), compute(multipliers, np.roll(A, draw.integers(length), axis=0))
-    for x in here:
-        assert min(abs(x - y) for y in there) <= 1e-6 * abs(x)
 
 
 def test_singular_second_block_gives_nan():

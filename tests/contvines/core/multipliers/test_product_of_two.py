@@ -39,14 +39,6 @@ def test_the_dominant_one_has_its_sign(twist, seed, length):
     assert abs(re[1] / mp.re(wanted[1]) - 1) < 1e-6
 
 
-def test_both_signs_are_met():
-    signs = {
-        np.sign(float(mp.re(exact(*np.random.default_rng(100 * seed).normal(size=(2, 1, 2, 2)), 1.0)[0])))
-        for seed in range(6)
-    }
-    assert signs == {-1.0, 1.0}
-
-
 @pytest.mark.parametrize("method", [multipliers, reference])
 def test_conjugate_pairs(method):
     angle, size = 0.7, 0.9
