@@ -20,6 +20,7 @@ from .table import (
     stable_text,
     title,
 )
+from .unresolved import sentences
 
 
 def graph_page(graph: Graph) -> str:
@@ -28,7 +29,7 @@ def graph_page(graph: Graph) -> str:
     parts = [about, branches_table(graph).html()]
     if graph.special:
         parts.append(special_table(graph).html())
-    parts += [f"<p>{html.escape(entry.sentence(graph.parameter))}</p>" for entry in graph.unresolved]
+    parts += [f"<p>{html.escape(line)}</p>" for line in sentences(graph.unresolved, graph.parameter)]
     if graph.attractors:
         parts += [attractors_table(graph).html(), f"<p>{html.escape(simulated(graph))}</p>"]
     return "".join(parts)

@@ -13,6 +13,7 @@ from ..shared.number_text import figures_in
 from ..text_table import Table, fitted, terminal_width
 from .proving import mark, told
 from .shortening import short_text, short_word, short_words
+from .unresolved import sentences
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -41,7 +42,7 @@ def table(graph: Graph, width: int | None = None) -> str:
     if graph.special:
         lines += ["", *special_table(graph).lines(width)]
     if graph.unresolved:
-        lines += ["", *(entry.sentence(graph.parameter) for entry in graph.unresolved)]
+        lines += ["", *sentences(graph.unresolved, graph.parameter)]
     if graph.attractors:
         lines += ["", *attractors_table(graph).lines(width), "", simulated(graph)]
     return "\n".join(lines)

@@ -2,10 +2,31 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from ..shared.number_text import number_text
+
+MOST = 10  # stretches of one branch that are listed
+
+
+def sentences(stretches: Sequence[Unresolved], parameter: str) -> list[str]:
+    """For people: each stretch; of branches with many the first ones, and how many more there are."""
+    lines, seen = list[str](), Counter[str]()
+    for stretch in stretches:
+        seen[stretch.branch] += 1
+        if seen[stretch.branch] <= MOST:
+            lines.append(stretch.sentence(parameter))
+    more = ((branch, count - MOST) for branch, count in seen.items() if count > MOST)
+    return [
+        *lines,
+        *(
+            f"unresolved on {branch}: {count} more stretches (graph.unresolved lists all)"
+            for branch, count in more
+        ),
+    ]
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 import pytest
 
 import contvines as cv
+from contvines.graph.unresolved import Unresolved, sentences
 
 
 def jumping(before, after, **settings):
@@ -33,3 +34,12 @@ def test_a_branch_whose_parts_are_spent_says_so():
     assert found.reason == "parts" and found.low <= 0.3 <= found.high
     assert found.high - found.low > 100.0 * (closely.high - closely.low)
     assert "settings.parts" in found.sentence("p") and {found.before, found.after} == {(0, 0, 0), (0, 1, 0)}
+
+
+def test_many_stretches_of_one_branch_are_counted():
+    stretches = [Unresolved(branch, 0.1, 0.2, k, "determinant") for branch in ("B1", "B2") for k in range(12)]
+    lines = sentences(stretches[:13], "p")
+    assert (
+        sum("on B1 at p" in line for line in lines) == 10 and sum("on B2 at p" in line for line in lines) == 1
+    )
+    assert lines[-1].startswith("unresolved on B1: 2 more")
