@@ -9,13 +9,10 @@ import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractors, sweep
 from orbits.machines.closed_forms.absorber import (
-    fold_beta,
     fold_square,
     friction_number,
     restitution_ratio,
     sliding_squares,
-    symmetric_square,
-    symmetry_breaking_beta,
     symmetry_breaking_square,
 )
 from orbits.starts.find import StartError
@@ -55,27 +52,6 @@ def test_closed_form_solves_the_maps(machine, above):
     assert orbit.symmetric
 
 
-@settings(max_examples=40, deadline=None)
-@given(machines)
-def test_half_multiplier_is_one_at_the_fold_and_minus_one_at_the_breaking(machine):
-    R, H = numbers(machine)
-    assume(R * H < 1.2 and machine.restitution < 0.98)  # elastic impacts make these multipliers multiple
-    for beta, wanted in ((fold_beta(R, H), 1.0), (symmetry_breaking_beta(R, H), -1.0)):
-        square = float(symmetric_square(beta, R, H))
-        orbit = machine.symmetric_orbit(np.sqrt(square) * (1 + 1e-15), stable=True)
-        # at the fold a multiplier is 1 + O(sqrt(rounding))
-        assert np.abs(orbit.half_multipliers - wanted).min() < (1e-5 if wanted > 0 else 1e-9)
-
-
-@settings(max_examples=40, deadline=None)
-@given(machines, st.floats(0.01, 0.8))
-def test_determinant_of_alternating_impacts(machine, above):
-    R, H = numbers(machine)
-    assume(R * H < 1.2)
-    orbit = machine.symmetric_orbit(np.sqrt(float(fold_square(R, H)) + above))
-    assert np.prod(orbit.multipliers) == pytest.approx(machine.restitution**4, rel=1e-9)
-
-
 def test_determinant_with_turns():
     """det A = prod r^2 over impacts * prod (|v''| - a)/(|v''| + a) over turns."""
     orbit = ABSORBER.orbit("LRtt", amplitude=0.95)
@@ -102,20 +78,6 @@ def test_long_words_lose_nothing(times):
     np.testing.assert_allclose(
         np.log(np.abs(long.multipliers)), times * np.log(np.abs(orbit.multipliers)), rtol=1e-11
     )
-    short, problem = orbit.problem("amplitude"), long.problem("amplitude", symmetric=False)
-    tangents = []
-    for each, source in ((short, orbit), (problem, long)):
-        u, p = source.seed(each)
-        border = np.zeros(each.dimension + 1)
-        border[-1] = 1.0
-        step, tangent = np.empty_like(border), np.empty_like(border)
-        work = each.workspace()
-        each.kernels.linearise(each.data, u, p, work)
-        each.kernels.bordered(each.data, work, border, 0.0, step, tangent)
-        tangents.append(tangent)
-    full = short.expand(np.r_[tangents[0][:-1]])
-    full[1, 0] -= short.shift
-    np.testing.assert_allclose(tangents[1][:-1], np.tile(full.ravel(), times), atol=1e-9)
 
 
 @settings(max_examples=25, deadline=None)
@@ -188,27 +150,6 @@ def test_a_guess_against_stated_directions_is_refused():
     orbit = ABSORBER.orbit("s+s-", amplitude=0.115)
     with pytest.raises(StartError, match="the other way"):
         ABSORBER.orbit("s-s+", amplitude=0.115, guess=orbit.nodes)
-
-
-def test_a_stick_slip_motion_is_pinned_in_the_middle_from_whichever_event_it_is_read():
-    orbit = ABSORBER.orbit("ss", amplitude=0.115)
-    for place in range(4):
-        turned = orbit.rotate(place)
-        moved = turned.nodes + [0.0, 0.05]
-        found = ABSORBER.orbit("ss", amplitude=0.115, guess=moved)
-        assert found.word == turned.word
-        assert found.nodes[:, 1] == pytest.approx(turned.nodes[:, 1], abs=1e-12)
-        assert sum(found.nodes[:, 1]) == pytest.approx(0.0, abs=1e-13)
-
-
-@pytest.mark.parametrize("written", ["LRLt", "LtLR", "RLtL", "tLRL", "LRtR", "RtRL"])
-def test_any_spelling_goes_with_any_reading_of_the_guess(written):
-    orbit = ABSORBER.orbit("LRLt", amplitude=1.2)
-    for place in range(4):
-        for guess in (orbit.rotate(place), orbit.rotate(place).mirror()):
-            found = ABSORBER.orbit(written, amplitude=1.2, guess=guess.nodes + 1e-3)
-            assert found.word == guess.word
-            assert found.events.w == pytest.approx(guess.events.w, abs=1e-10)
 
 
 def test_diagrams_sweeps_and_attractors_spell_a_motion_alike():

@@ -108,23 +108,6 @@ def test_slow_eigenvalues_are_the_limit_of_coupled_multipliers(settled):
     assert gaps[-1] < 1e-3 and np.all(np.abs(orders - 1) < 0.05)
 
 
-def test_sliding_states_too_are_limits_of_coupled_orbits():
-    """tt in the coupled machine at sigma = -2.58: amplitude to first order in eps."""
-    state = next(s for s in ms.equilibria(ms.SlowFlow(), -2.58) if s.manifold == "sliding")
-    gaps = []
-    for eps in (0.006, 0.003, 0.0015):
-        machine = Coupled(**STRONG, mass_ratio=eps, damping=0.9, forcing=2.47, frequency=1 - 2.58 * eps)
-        delta, c = state.turning_point, state.amplitude
-        assert delta is not None
-        phase = np.arctan2(delta, H) - state.phase + np.pi  # the word starts at the turn on the right, mode +
-        nodes = np.array([[phase, -delta, -delta, -H], [phase + np.pi, delta, delta, H]])
-        orbit = polish(Orbit(machine, Word.parse("tt"), 1, nodes, machine.vector({})))
-        assert orbit is not None
-        gaps.append(float(np.hypot(orbit.events.v[0], orbit.events.v_rate[0] / machine.frequency)) - c)
-    orders = np.log2(np.array(gaps[:-1]) / np.array(gaps[1:]))
-    assert np.all(np.abs(orders - 1) < 0.03)
-
-
 def test_printed_resonance_frequency_has_no_dimension():
     """The corrected one gives the same hertz in metres and millimetres; the printed one does not."""
     c, low = ms.coefficients(ms.SlowFlow()), ms.SlowFlow().activation.amplitude

@@ -2,8 +2,7 @@
 
 Machine: r = 0.76, mu = 0.5, g = 0.211, eps = 0.006, damping 1. The integration (scipy's DOP853 over flights of given
 length, so that no event is interpolated; Newton's method with differences of fourth order) takes its equations of motion
-from `tests/orbits/machines/coupled/test_against_ode.py`, which knows nothing of the package; see there for a second way, by
-return maps with events, to the symmetry breakings, the Neimark-Sacker point and the folds.
+from `tests/orbits/machines/coupled/equations_of_motion.py`, which knows nothing of the package.
 """
 
 import numpy as np
@@ -178,53 +177,18 @@ def test_integrated_wall_grazes(value):
     assert z[3] == pytest.approx(value, abs=2e-11)
 
 
-# ---------------------------------------------------------------------- the closed branch
-def around(pieces):
-    """The pieces put end to end, as (branch, forward); checks that they form one smooth closed curve."""
-    left, chain = list(pieces), []
-    here = None
-    while left:
-        for branch in left if here is not None else left[:1]:
-            for forward in (True, False):
-                points, values = branch.points, branch.values
-                along = branch.tangents if forward else -branch.tangents
-                order = slice(None) if forward else slice(None, None, -1)
-                begin = (points[order][0], values[order][0], along[order][0])
-                if here is None or joined(here, begin):
-                    break
-            else:
-                continue
-            break
-        else:
-            raise AssertionError(f"nothing goes on from frequency = {here[1]}")
-        chain.append((branch, forward))
-        left.remove(branch)
-        here = (points[order][-1], values[order][-1], along[order][-1])
-    first, forward = chain[0]
-    assert forward and joined(here, (first.points[0], first.values[0], first.tangents[0]))
-    return chain
-
-
-def joined(one, other):
-    """Whether a piece that begins with `other` goes smoothly on from the end `one`."""
-    gap = one[0] - other[0]
-    gap[::4] -= 2.0 * np.pi * np.round(gap[::4] / (2.0 * np.pi))
-    return (
-        max(np.abs(gap).max(), abs(one[1] - other[1])) < 1e-9
-        and np.abs(one[2] - other[2]).max() < 1e-6 * np.abs(one[2]).max()
-    )
-
-
-def test_the_symmetric_response_is_one_closed_curve():
+# ---------------------------------------------------------------------- the branches
+def test_the_symmetric_response_from_graze_to_graze():
     """Real from graze to graze, virtual in between; folds, breakings, Neimark-Sacker points and borders as integrated."""
     graph = cv.diagram(
         COUPLED.orbit("LR", frequency=1.01), over="frequency", within=WITHIN, depth=0, virtual=True
     )
     pieces = [b for b in graph if b.description["word"] == "LR" and b.description["symmetric"]]
-    chain = around(pieces)
-    assert [branch.real for branch, _ in chain] == [True, False, True, False]
-    real = sorted((branch for branch, _ in chain if branch.real), key=lambda b: b.range)
-    virtual = sorted((branch for branch, _ in chain if not branch.real), key=lambda b: b.range)
+    real, virtual = (
+        sorted((branch for branch in pieces if branch.real == kind), key=lambda b: b.range)
+        for kind in (True, False)
+    )
+    assert len(real) == len(virtual) == 2
     below, above = real
     assert below.range == pytest.approx((FOLDS[0], VELOCITY_GRAZES[0]), abs=1e-11)
     assert above.range == pytest.approx((VELOCITY_GRAZES[1], FOLDS[1]), abs=1e-11)
@@ -236,7 +200,7 @@ def test_the_symmetric_response_is_one_closed_curve():
     assert virtual[1].range == pytest.approx(VELOCITY_GRAZES, abs=1e-11)
 
     def values(kind):
-        labels = {branch.label for branch, _ in chain}
+        labels = {branch.label for branch in pieces}
         return sorted(p.value for p in graph.of_kind(kind) if p.branch in labels)
 
     assert values("fold") == pytest.approx(FOLDS, abs=1e-11)

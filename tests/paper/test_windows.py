@@ -56,36 +56,6 @@ def test_window_of_three_impacts(three):
     assert np.abs(impacts).min() < 1e-10
 
 
-def test_window_of_three_impacts_by_simulation(three):
-    """What the simulator finds on either side of the stable window's ends."""
-    points = points_of(three)
-    beside = points["fold"].value + 1e-5
-    orbit = min((three["B1"].orbit(int(i)) for i in np.flatnonzero(three["B1"].stable)), key=_amplitude)
-    start = {
-        "phase": orbit.events.phase[0] % 6.283185307179586,
-        "w": orbit.events.w[0],
-        "w_rate": orbit.events.rate_post[0],
-    }
-    inside = find_attractor(ABSORBER, start, amplitude=beside, transient=3000)
-    assert (inside.impacts, inside.periods) == (3, 1)
-    outside = find_attractor(
-        ABSORBER, start, amplitude=points["fold"].value - 1e-5, transient=3000, patience=1
-    )
-    assert (outside.impacts, outside.periods) != (3, 1)
-    below, above = (
-        find_attractor(
-            ABSORBER, {"w_rate": 0.2}, amplitude=points["period-doubling"].value + side, transient=5000
-        )
-        for side in (-1e-3, 1e-3)
-    )
-    assert (below.impacts, below.periods) == (3, 1)
-    assert (above.impacts, above.periods) == (6, 2)
-
-
-def _amplitude(orbit):
-    return orbit.parameters["amplitude"]
-
-
 def test_window_of_four_impacts(four):
     """Symmetric, two impacts at each wall: from a fold to a velocity graze in both long flights at once."""
     points = points_of(four)
@@ -110,35 +80,3 @@ def test_ends_of_the_windows_in_eighty_digits(three, four):
                 there = exact(point.orbit)
                 assert abs(there.shift) < 1e-12
                 assert np.abs(there.multipliers - (-1.0 if kind == "period-doubling" else 1.0)).min() < 1e-7
-
-
-def test_beyond_each_graze_the_bare_maps_leave_the_simulation(three, four):
-    """On the real side the simulator follows the orbit; beyond the border it does not, and follows the new word."""
-    for graph in (three, four):
-        point = points_of(graph)["velocity-graze"]
-        target = next(graph[s.target] for s in graph.switches if s.point == point.label)
-        for sign, real in ((-1.0, True), (1.0, False)):
-            moved = point.problem.orbit(*_stepped(point, sign * 1e-4))
-            assert moved.residual < 1e-12
-            assert moved.real == real
-            assert (moved.replay() < 1e-7) == real
-        inner = target.orbit(len(target) // 2)
-        assert inner.word.text.count("s") > 0
-        assert inner.replay() < 1e-9
-
-
-def _stepped(point, distance):
-    """The solution of the same word at another amplitude."""
-    from orbits.starts.find import polish
-
-    problem = point.problem
-    u = point.u + distance / point.tangent[-1] * point.tangent[:-1]
-    orbit = polish(problem.orbit(u, point.value + distance))
-    return problem.reduce(orbit.nodes), point.value + distance
-
-
-def test_three_goes_on_to_turns_and_back_to_four(three, four):
-    """The branch of P_4^1 reaches P_3^1 by a wall graze: both diagrams list the same points of it."""
-    mine = {round(p.value, 9) for p in three.special.values() if p.kind == "stick" and p.real}
-    others = {round(p.value, 9) for p in four.special.values() if p.kind == "stick" and p.real}
-    assert {1.992038958, 2.019117107} <= mine & others

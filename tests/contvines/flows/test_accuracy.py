@@ -5,8 +5,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contvines as cv
-from contvines.flows import mesh
-from contvines.flows.newton import solved
 from tools.flow_demos import fields
 
 pytestmark = pytest.mark.slow
@@ -39,29 +37,6 @@ def expected():
         )
         v, period = v + step[0], period + step[1]
     return period, float(np.linalg.det(matrix))
-
-
-def on_even_mesh(degree, count):
-    flow = cv.FlowProblem(brusselator, [1.0, 2.0], {"b": B}, degree=degree, error=0.5)
-    orbit = flow.attractor()
-    problem = orbit._problem
-    x, period, widths = problem.parts(orbit.u, B)
-    even = np.full(count, 1.0 / count)
-    u = np.concatenate([mesh.onto(problem.rule, widths, x, even).ravel(), [period], even])
-    problem = problem.with_unknowns(u, B, count, 1)
-    u = solved(problem, u, B)
-    return problem.orbit(u, B), problem.accuracy(u, B)
-
-
-@pytest.mark.parametrize(("degree", "coarse"), [(2, 40), (3, 40), (4, 20), (5, 16), (6, 12), (7, 10)])
-def test_periods_converge_with_twice_the_degree(degree, coarse, expected):
-    period, multiplier = expected
-    found = [on_even_mesh(degree, count) for count in (coarse, 2 * coarse)]
-    errors = [abs(orbit.period - period) / period for orbit, _ in found]
-    for (orbit, stated), error in zip(found, errors):
-        assert error < stated + 1e-11  # rounding of the reference
-        assert abs(orbit.multipliers[0].real - multiplier) < stated + 1e-10
-    assert errors[1] < 0.5 ** (2 * degree - 1) * errors[0] + 1e-11
 
 
 @pytest.mark.parametrize("error", [1e-3, 1e-5, 1e-6])
@@ -109,30 +84,6 @@ def test_a_saddle_node_on_the_circle_ends_a_branch():
     assert np.abs(branch.measure("period")[inner] / exact - 1.0).max() < 1e-9
     assert abs(end.value - 1.0) < end.location_error
     assert end.note.startswith("saddle-node on the cycle")
-
-
-def test_cycles_spiral_into_a_shilnikov_orbit():
-    """x''' + x'' + 3 x' = m x - x^3: the saddle-focus at 0 has eigenvalues of l^3 + l^2 + 3 l = m; the divergence is -1."""
-    flow = cv.FlowProblem(
-        lambda x, p: [x[1], x[2], -x[2] - 3.0 * x[1] + p.m * x[0] - x[0] ** 3],
-        [2.0, 0.0, 0.0],
-        {"m": 4.0},
-        mirror=lambda x: -x,
-    )
-    graph = cv.diagram(flow, over="m", within=(1.0, 8.0), depth=1, settings={"max_branches": 2})
-    (end,) = graph.of_kind("homoclinic")
-    assert "saddle-focus at (0, 0, 0)" in end.note
-    folds = sorted((p for p in graph.of_kind("fold") if p.branch == "B2"), key=lambda p: p.orbit.period)
-    # Shilnikov, as Glendinning and Sparrow 1984 have it: every other fold is one turn of the saddle-focus later, asymptotically
-    turn = 2.0 * np.pi / np.abs(np.roots([1.0, 1.0, 3.0, -end.value]).imag).max()
-    periods = np.array([fold.orbit.period for fold in folds])
-    assert len(periods) > 8
-    assert np.allclose(periods[5:8] - periods[3:6], turn, rtol=0.03)
-    for point in folds[1:4]:
-        orbit = point.orbit
-        assert np.abs(orbit.multipliers - 1.0).min() < 1e-6
-        determinant = np.exp(-orbit.period)  # of the divergence -1 (Liouville); the trivial one is 1
-        assert np.prod(orbit.multipliers).real == pytest.approx(determinant, rel=1e-5)
 
 
 def test_a_canard_explosion_is_one_stable_branch():

@@ -150,16 +150,3 @@ def test_relaxation_oscillations_in_one_branch():
     assert start.replay() < 1e-4
     large = (3.0 - 2.0 * np.log(2.0)) * 60.0 + 7.0143 * 60.0 ** (-1 / 3)
     assert periods[-1] == pytest.approx(large, rel=5e-3)
-
-
-def test_a_closed_branch_of_cycles():
-    def f(x, p):
-        square, turn = x[0] ** 2 + x[1] ** 2, 1.0 + 0.3 * x[0]
-        growth = 1.0 - (square - 2.0) ** 2 - p.m**2
-        return [growth * x[0] - turn * x[1], turn * x[0] + growth * x[1]]
-
-    graph = cv.diagram(cv.FlowProblem(f, [1.7, 0.0], {"m": 0.0}).attractor(), over="m", within=(-2.0, 2.0))
-    assert graph["B1"].closed
-    assert sorted(p.value for p in graph.of_kind("fold")) == pytest.approx([-1.0, 1.0], abs=1e-10)
-    radius = graph["B1"].measure("norm") ** 2
-    assert np.abs((radius - 2.0) ** 2 + graph["B1"].values ** 2 - 1.0).max() < 1e-6

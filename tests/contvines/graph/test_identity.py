@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 import contvines as cv
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.graph.identity import Register, parts_further_on, same_form
-from tests.machines import ABSORBER
+from contvines.graph.identity import Register, same_form
 
 
 def logistic(x, r):
@@ -57,23 +56,3 @@ def test_the_end_of_a_branch_belongs_to_it():
         beyond = float(branch.values[i]) * (1.0 + 1e-8)
         assert register.find(branch.problem, np.array([np.sqrt(1 - beyond**2)]), beyond) is branch
         assert register.find(branch.problem, np.array([-np.sqrt(1 - beyond**2)]), beyond) is None
-
-
-def test_a_symmetric_branch_does_not_part_from_itself():
-    """Its motions are compared as whole cycles, of which the unknowns are a half."""
-    machine = ABSORBER
-    problem = machine.symmetric_orbit(amplitude=0.6).problem("amplitude")
-    graph = cv.diagram(machine.symmetric_orbit(amplitude=0.6), over="amplitude", within=(0.55, 0.65), depth=0)
-    engine = Engine(problem, (0.55, 0.65), Settings())
-    point = engine.start(problem.reduce(machine.symmetric_orbit(amplitude=0.6001).nodes), 0.6001)
-    aside = point._replace(u=point.u + 1e-8)  # further off than rounding
-    assert len(engine.problem.canonical(point.u, point.p)[1]) > engine.n
-    assert not parts_further_on(graph["B1"], engine, engine, point)
-    assert not parts_further_on(graph["B1"], engine, engine, aside)
-    full = machine.symmetric_orbit(amplitude=0.6001)
-    unhalved = full.problem("amplitude", symmetric=False)
-    whole = Engine(unhalved, (0.55, 0.65), Settings())
-    same = whole.start(*full.seed(unhalved))
-    assert whole.n > engine.n
-    assert not parts_further_on(graph["B1"], engine, whole, same)
-    assert not parts_further_on(graph["B1"], engine, whole, same._replace(u=same.u + 1e-8))

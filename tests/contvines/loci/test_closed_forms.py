@@ -91,40 +91,6 @@ def test_fitzhugh_nagumo():
     these(chart, {"cusp": [(0.7, 1.0)], "bogdanov-takens": [(current(v, 2.0), 2.0), (current(-v, 2.0), 2.0)]})
 
 
-@pytest.mark.slow
-def test_double_hopf_of_two_oscillators():
-    """Two rotations, sheared: growth p + q - 1 and p - 2 q + 1/2, so both vanish at p = q = 1/2; cubic damping with known ratios."""
-    rng = np.random.default_rng(4)
-    S = np.eye(4) + 0.3 * rng.standard_normal((4, 4))
-    back = np.linalg.inv(S)
-    P = np.array([[-0.5, 0.3], [0.2, -0.8]])
-
-    def f(u, p):
-        y = back @ u
-        r = (y[0] * y[0] + y[1] * y[1], y[2] * y[2] + y[3] * y[3])
-        one = p.p + p.q - 1 + P[0, 0] * r[0] + P[0, 1] * r[1]
-        two = p.p - 2 * p.q + 0.5 + P[1, 0] * r[0] + P[1, 1] * r[1]
-        return S @ np.array(
-            [
-                one * y[0] - y[1],
-                y[0] + one * y[1],
-                two * y[2] - 1.7 * y[3],
-                1.7 * y[2] + two * y[3],
-            ]
-        )
-
-    problem = cv.AlgebraicProblem(f, np.zeros(4), {"p": -1.0, "q": 0.3}, parameter="p", spectrum="flow")
-    graph = cv.diagram(problem, over="p", within=(-1.5, 1.5), depth=0)
-    assert sorted(point.value for point in graph.of_kind("hopf")) == pytest.approx([0.1, 0.7], abs=1e-11)
-    for point in graph.of_kind("hopf"):
-        locus = cv.locus(point, over="q", within=(0.0, 0.9), bounds=(-2.0, 2.0))
-        (met,) = [p for _, p in find(locus)]
-        assert met.kind == "double-hopf" and met.value == pytest.approx((0.5, 0.5), abs=1e-9)
-        found = coefficients(met)
-        ratios = sorted([found["theta"], found["delta"]])
-        assert ratios == pytest.approx(sorted([P[0, 1] / P[1, 1], P[1, 0] / P[0, 0]]), abs=1e-7)
-
-
 def test_generalized_period_doubling_at_a_known_place():
     """w -> -(1 + p + q^2) w + (q - p) w^3 + 0.7 w^5 in x = 1 + sinh w: c and the flip vanish together at p = q = 0."""
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.coexistence.basins import Basins
 from contvines.graph.attractor import Attractor
 from contvines.plots import (
     plot_atlas,
@@ -187,40 +186,3 @@ def test_a_legend_can_be_left_out_or_put_somewhere(functions, name):
     for legend in legends(legend="lower left"):
         box, frame = legend.get_window_extent(), legend.axes.get_window_extent()
         assert box.x0 - frame.x0 < frame.x1 - box.x1 and box.y0 - frame.y0 < 12
-
-
-def test_a_transient_has_its_impacts_at_the_lower_edge_and_the_bare_motion_behind():
-    hits = np.array([0.2, 0.4, 0.9])
-    axes = plot_transient(DECAY, hits).axes[0]
-    lines = {line.get_label(): line for line in axes.lines}
-    assert list(lines) == ["with absorber", "without absorber", "impacts"]
-    assert np.array_equal(lines["impacts"].get_xdata(), hits)
-    assert lines["impacts"].get_transform().transform((0.2, 0.0))[1] == pytest.approx(axes.bbox.y0)
-    assert lines["without absorber"].zorder < lines["with absorber"].zorder
-    relative = [*DECAY, ("relative", "mm", TIME)]
-    assert len(plot_transient(relative).axes[0].lines) == 2
-    assert plot_transient(ENERGY).axes[0].get_yscale() == "log"
-
-
-def test_a_calibration_shows_the_data_and_what_is_left_over():
-    left = 1e-5 * np.sin(9 * TIME)
-    shown = plot_calibration(TIME, left, xlabel="time", ylabel=LATE).axes[0].lines
-    assert np.array_equal(shown[-1].get_ydata(), -left)  # residuals are computed less measured
-    data, computed = plot_calibration(TIME, left, TIME**2, xlabel="p", ylabel=LARGEST).axes[0].lines
-    assert np.array_equal(data.get_ydata(), TIME**2) and data.get_linestyle() == "None"
-    assert np.array_equal(computed.get_ydata(), TIME**2 + left)
-
-
-def test_each_mirror_image_is_named_by_its_motion():
-    attractors = [
-        Attractor(value=1.0, word=w, periods=1, kind="periodic", branch=None, share=0.5, mirror_share=0.2)
-        for w in ("LRtt", "LRLt")
-    ]
-    index = np.array([[0, 1], [1, 0]])
-    ends, plane = np.array([0.0, 1.0]), ("w", "w_rate")
-    basins = Basins("p", 1.0, plane, ends, ends, {}, index, index > 5, attractors)
-    for size in (None, (3.4, 2.4)):
-        figure = plot_basins(basins, figsize=size)
-        legend = figure.axes[0].get_legend() or figure.legends[0]
-        texts = [text.get_text() for text in legend.get_texts()]
-        assert texts == ["LRtt: 50.0%", "LRtt, mirror image", "LRLt: 50.0%", "LRLt, mirror image"]

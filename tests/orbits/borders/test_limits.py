@@ -144,26 +144,3 @@ def test_at_a_graze_a_multiplier_is_infinite_and_the_other_one_is_none():
     beside = [machine.orbit("LR", 1, end.nodes, amplitude=graph["WG1"].value - off) for off in (1e-5, 1e-7)]
     sizes = [orbit.multipliers[0].real * orbit.margin**2 for orbit in beside]
     assert sizes[1] == pytest.approx(sizes[0], rel=1e-2) and sizes[1] > 0.0
-
-
-def test_where_more_impacts_graze_at_once_multipliers_are_numbers_too():
-    """In a level cavity with unlike walls LRtR begins where sliding fills the cavity: all its three impacts have no speed there."""
-    machine = Cavity(
-        restitution_left=0.046107453902862604,
-        restitution_right=0.1,
-        friction=0.9142422514851505,
-        gravity=0.718742981349811,
-        mass_ratio=0.05,
-        frequency=1.0389352329136874,
-        distance_left=1.1506578211480742,
-        distance_right=1.1250669831007722,
-    )
-    sticking = find_attractor(machine, {"w_rate": 1.0}, amplitude=1.54).orbit
-    graph = cv.diagram(sticking, over="amplitude", within=(1.43, 1.56), depth=1)
-    branch = next(branch for branch in graph if branch.description["word"] == "LRtR")
-    assert not np.isnan(branch.multipliers).any()
-    end = next(i for i, label in branch.marks if label == branch.seed)
-    grown, gone = branch.orbit(end).multipliers
-    beside = branch.multipliers[1 if end == 0 else end - 1]
-    assert abs(grown.real) == np.inf and np.sign(grown.real) == np.sign(beside[0].real)
-    assert abs(gone) < 1e-12

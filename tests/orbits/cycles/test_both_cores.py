@@ -145,19 +145,3 @@ def test_newton_finds_what_the_reference_finds():
         assert residual < 1e-13 and p == system.began
         found.append(u)
     np.testing.assert_allclose(found[0], found[1], atol=1e-12)
-
-
-def test_data_and_workspaces_that_are_copied_have_memory_of_their_own():
-    import copy
-    import pickle
-
-    model, given_ = MACHINES["coupled"]
-    system = Equations(model, Word.parse("LR"), 1, "frequency", model.vector(given_), False)
-    kernels = NativeKernels(native_table(TABLES["coupled"]))
-    u = np.linspace(0.1, 0.8, 8)
-    work = system.workspace()
-    expected = kernels.linearise(system.data, u, 0.98, work)
-    for again in (copy.deepcopy, copy.copy, lambda thing: pickle.loads(pickle.dumps(thing))):
-        data, own = again(system.data), again(work)
-        assert kernels.linearise(data, u, 0.98, own) == expected
-        assert own.F.tobytes() == work.F.tobytes() and not np.shares_memory(own.F, work.F)

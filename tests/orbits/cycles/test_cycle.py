@@ -91,20 +91,6 @@ def test_descriptions_of_every_version_open(name):
     assert isinstance(again, OrbitProblem) and again.parameter == "frequency" and len(again.word) == 0
 
 
-@pytest.mark.parametrize("periods", [1, 2, 3])
-def test_reading_from_another_event_keeps_the_order_of_time(periods):
-    cycle = drawn(ABSORBER, "LRLRs", periods, 5)
-    n = len(cycle.word)
-    for places in range(-n, 2 * n + 1):
-        other = cycle.rotate(places)
-        assert np.allclose(other.durations, np.roll(cycle.durations, -places))
-        assert np.isclose(
-            other.nodes[0, 0], cycle.nodes[places % n, 0] + 2.0 * np.pi * periods * (places // n)
-        )
-    assert np.isclose(cycle.period, 2.0 * np.pi * periods / cycle.parameters["frequency"])
-    assert np.allclose(cycle.mirror().nodes[:, 0] - cycle.nodes[:, 0], np.pi)
-
-
 def test_half_a_cycle_that_takes_another_time_is_no_root():
     """The second pair comes a forcing period after the first, the first again two after the second."""
     nodes = np.array([[0.5, 1.0], [2.0, -1.0], [0.5 + 2.0 * np.pi, 1.0], [2.0 + 2.0 * np.pi, -1.0]])

@@ -56,22 +56,22 @@ BAD = {
         "friction 'floor' and wall 't' share the letter 't'; give one of them another",
     ),
     "push": ({"contacts": [wall(push={"x": 1.0})]}, "wall 'R': an impulse along push .* does not change the rate of its gap"),
-    "pushed": ({"contacts": [wall(push={"w": 1.0})]}, "wall 'R': push names 'w'; say how an impulse changes the states, of x, v"),
-    "moved": ({"contacts": [wall(push={"x": 1.0, "v": -1.0})]}, "wall 'R': the impulse moves the gap itself; push rates of positions"),
+
+
     "restitution": ({"contacts": [wall(restitution=1.5)]}, "wall 'R': restitution = 1.5 is out of range; give a number above 0"),
-    "named": ({"contacts": [wall(restitution="bounce")]}, "the restitution of wall 'R' = 'bounce' is no parameter"),
+
     "rate": ({"phase_rate": "omega"}, "phase_rate = 'omega' is no parameter; name the forcing's frequency"),
-    "phase": ({"phase_rate": None}, "a self-excited machine .phase_rate=None. has no forcing phase"),
+
     "mirror": ({"mirror": {}}, "mirror: the gap of wall 'R' is not the mirror image: at x = .*set mirror=None"),
-    "strangers": ({"mirror": {"R": "L"}}, "'L' is no contact; there are R"),
-    "number": ({"parameters": {"forcing": "one", "frequency": 1.0, "gap": 1.0}}, "forcing = 'one' is not a number"),
+
+
     "state": ({"motion": lambda s, ph, p, c: (s.speed, -s.x)}, "state.speed: there is no state of this name; the states are x, v"),
-    "contact": ({"motion": rubbing}, "contact.floor: the machine declares no such contact; it has none"),
+
     "list": ({"contacts": wall()}, r"contacts = Wall.* must be a list, for example \[Wall"),
-    "stranger": ({"contacts": ["R"]}, "contacts has 'R'; it may have Wall, DryFriction and Switch"),
-    "pushes": ({"contacts": [wall(push=[0.0, -1.0])]}, "wall 'R': push = .* must say how an impulse changes the states by name"),
-    "bounce": ({"contacts": [wall(restitution=None)]}, "wall 'R': restitution = None must be a number or the name of a parameter"),
-    "letter": ({"contacts": [wall(1)]}, "wall 1: 1 is no letter of a word; use letters and digits"),
+
+
+
+
     "twins": ({"motion": rubbing, "contacts": [floor(), Switch("floor", lambda s, ph, p: s.x)]}, "share a name; give one of them another"),
     "same": (
         {"motion": lambda s, ph, p, c: (s.v, c.floor + c.rail - s.x),
@@ -83,10 +83,7 @@ BAD = {
         "friction 'floor' and switch 'up' change together; leave the switch out.*limit=lambda",
     ),
     "idle": ({"contacts": [Switch("stop", lambda s, ph, p: s.x)]}, "switch 'stop': motion ignores contact.stop; use it where"),
-    "constant": (
-        {"motion": lambda s, ph, p, c: (s.v, -c.stop), "contacts": [Switch("stop", lambda s, ph, p: p.gap)]},
-        "switch 'stop': its surface is a constant; give a function of the states",
-    ),
+
     "negative": (
         {"motion": rubbing, "contacts": [DryFriction("floor", lambda s, ph, p: s.v, -0.2)]},
         "friction 'floor': the limit is -0.2; give the largest force, 0 or above",
@@ -96,10 +93,10 @@ BAD = {
         "motion's rate of v does not have the period 2 pi in the phase: at phase = .*lowest frequency",
     ),
     "both": ({"parameters": {"v": 1.0, "frequency": 1.0}}, "'v' is a state and a parameter; give one of them another name"),
-    "reserved": ({"parameters": {"phase": 1.0, "frequency": 1.0}}, "phase is the name of the forcing's phase"),
+
     "nothing": ({"motion": lambda s, ph, p, c: None}, "motion returns nothing; return one rate per state"),
-    "formula": ({"motion": "x"}, "motion is 'x'; give a function, for example lambda state, phase, p, contact"),
-    "pairs": ({"mirror": "LR"}, "mirror = 'LR' must say which contacts change places"),
+
+
 }  # fmt: skip
 
 

@@ -53,36 +53,3 @@ def test_the_fold_of_the_dragged_bounce(machine):
     assert start.word.text == "B up-" and start.orbit.real and start.orbit.replay() < 1e-10
     graph = cv.diagram(start, over="amplitude", within=(0.02, 0.09), depth=0)
     assert [p.value for p in graph.of_kind("fold")] == pytest.approx([exact], abs=1e-10)
-
-
-def test_a_crossing_that_comes_out_of_an_impact():
-    """Drag beyond a speed `level`: the impact leaves the speed e v; where that is the level, the jump over it becomes a crossing."""
-    machine = Machine(
-        name="between",
-        states=("x", "v"),
-        parameters={"forcing": 0.5, "frequency": 2.4, "damping": 0.1, "level": 0.3, "drag": 0.2},
-        phase_rate="frequency",
-        motion=lambda s, phase, p, c: (
-            s.v,
-            p.forcing * cos(phase) - p.damping * s.v - s.x + p.drag * (s.v + p.level) ** 2 * (1 - c.side) / 2,
-        ),
-        contacts=[
-            Wall("R", lambda s, phase, p: 0.1 - s.x, {"v": -1.0}, 0.7),
-            Switch("side", surface=lambda s, phase, p: s.v + p.level),
-        ],
-    )
-    graph = cv.diagram(machine.attractor(level=0.16), over="level", within=(0.15, 0.25), depth=0)
-    notes = [switch.note for switch in graph.switches]
-    assert [note.split(":")[0] for note in notes] == [
-        "a crossing of a switch falls into an impact",
-        "an impact leaves a switch to be crossed",
-    ]
-    assert all("persistence" in note for note in notes)
-    assert all(branch.stable.all() for branch in graph.branches.values())
-    for point in graph.of_kind("switch-graze"):
-        orbit = graph.branches[point.branch].problem.orbit(point.u, point.value)
-        speeds = [-row[2] for row, event in zip(orbit.nodes, orbit.word.events) if event == "R"]
-        assert (
-            min(abs(speed - point.value) for speed in speeds) < 1e-10
-        )  # the speed after an impact is the level
-        assert point.replay < 1e-6

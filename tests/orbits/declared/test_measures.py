@@ -13,17 +13,6 @@ def orbit():
     return found
 
 
-def test_times_count_in_the_forcing_s_period(orbit):
-    period = 2.0 * np.pi * orbit.periods / orbit.parameters["frequency"]
-    assert orbit.period == pytest.approx(period, rel=1e-12)
-    assert orbit.measure("period") == pytest.approx(period, rel=1e-12)
-    assert orbit.measure("rate") == pytest.approx(2.0 * np.pi / period, rel=1e-12)
-    path = orbit.sample(2000)
-    assert path["time"][0] == 0.0 and path["time"][-1] == pytest.approx(period, rel=1e-9)
-    turns = (path["phase"] - path["phase"][0]) / orbit.parameters["frequency"]
-    np.testing.assert_allclose(turns, path["time"], atol=1e-9)
-
-
 def test_extremes_and_strobes_are_those_of_the_path(orbit):
     path = orbit.sample(40000)
     strobe = 2.0 * np.pi * np.ceil(path["phase"][0] / (2.0 * np.pi))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits import Machine, Wall, Word
+from orbits import Word
 from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import Stepper
 from tests.machines import ABSORBER
@@ -83,24 +83,6 @@ def test_the_exponent_of_a_chaotic_bouncing_ball():
     expected = ball_exponent(0.2, 0.1, 0.8, 400)
     assert value > 5 * error > 0.0
     assert abs(value - expected) < 5 * error + 0.03  # the written-out one scatters, too
-
-
-def test_starts_lie_outside_the_walls_and_in_the_ranges_of_the_page():
-    machine = Machine(
-        name="between",
-        states=("x", "v"),
-        parameters={"gap": 0.1, "damping": 0.1},
-        motion=lambda s, phase, p, contact: (s.v, -s.x - p.damping * s.v),
-        contacts=[Wall("R", gap=lambda s, phase, p: p.gap - s.x, push={"v": -1.0}, restitution=0.5)],
-        starts={"x": (-1.0, 1.0), "v": (-3.0, 2.0)},
-    )
-    population = machine.population("gap")
-    starts = population.starts(100, 0, 0.1)
-    assert starts.shape == (100, 2) and np.all(starts[:, 0] <= 0.1)
-    assert starts[:, 1].min() < -2.5 and starts[:, 1].max() > 1.5
-    assert np.array_equal(starts, population.starts(100, 0, 0.1))
-    motions, index, _ = population.settle(np.array([[0.5, 0.0], [0.0, 1.0]]), 0.1)
-    assert [m.kind for m in motions] == ["impossible", "stuck"] and list(index) == [0, 1]
 
 
 @pytest.mark.parametrize("way", ["in the chaos", "by Newton's method"])

@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import contvines as cv
 from orbits import Absorber, Cavity
-from orbits.attractors import find_attractor
 from orbits.machines.closed_forms.absorber import (
     friction_number,
     restitution_ratio,
@@ -127,76 +125,6 @@ def test_a_ball_on_a_sinusoidal_table_folds_and_doubles_at_closed_form_values(re
     found = {s.kind: s.value for s in graph.special.values()}
     assert abs(found["fold"] - fold) < 1e-12 * fold
     assert abs(found["period-doubling"] - flip) < 1e-12 * flip
-
-
-# ---------------------------------------------------------------------------------------------- everything at once
-UNLIKE = Cavity(
-    restitution_left=0.7,
-    restitution_right=0.85,
-    friction_left=0.3,
-    friction_right=0.15,
-    gravity=0.4,
-    slope=0.12,
-    distance_left=0.9,
-    distance_right=1.2,
-    mass_ratio=0.01,
-    frequency=1.1,
-)
-
-
-def integrated(machine, amplitude, orbit):
-    """One period from the first node by Runge-Kutta, written from the equations of motion; the events' letters and the last node."""
-    g, omega = machine.gravity * (1 + machine.mass_ratio), machine.frequency
-    normal, along = g * math.cos(machine.slope), g * math.sin(machine.slope)
-    left, right = machine.distance_left, -machine.distance_right
-    psi, second = orbit.nodes[0]
-    letter = orbit.word.events[0]
-    assert letter in "LR"
-    state = np.array([left if letter == "L" else right, amplitude * omega * math.cos(psi) - second])
-    sign, time, end = (-1 if letter == "L" else 1), psi / omega, (psi + 2 * math.pi * orbit.periods) / omega
-    letters = []
-    while time < end - 1e-9:
-        mu = machine.friction_left if sign > 0 else machine.friction_right
-
-        def motion(t, y, sign=sign, mu=mu):
-            return [y[1], -amplitude * omega**2 * math.sin(omega * t) - along - sign * mu * normal]
-
-        def hit(t, y, sign=sign):
-            return (left - y[0]) if sign > 0 else (y[0] - right)
-
-        def turn(t, y, sign=sign, begin=time):
-            return sign * y[1] if t > begin + 1e-6 else 1.0
-
-        hit.terminal = turn.terminal = True
-        hit.direction = turn.direction = -1
-        run = solve_ivp(
-            motion, (time, end + 1.0), state, "DOP853", events=[hit, turn], rtol=1e-12, atol=1e-13
-        )
-        time, state = run.t[-1], run.y[:, -1].copy()
-        if len(run.t_events[0]):
-            letters.append("L" if sign > 0 else "R")
-            state[1] *= -(machine.restitution_left if sign > 0 else machine.restitution_right)
-        else:
-            letters.append("t")
-            state[1] = 0.0
-        sign = -sign
-    return "".join(letters), time * omega - psi, state
-
-
-@pytest.mark.parametrize("amplitude", [0.6, 0.9, 1.2])
-def test_an_attractor_of_the_unlike_cavity_is_what_runge_kutta_finds(amplitude):
-    found = find_attractor(UNLIKE, amplitude=amplitude)
-    orbit = found.orbit
-    place = next(i for i, letter in enumerate(orbit.word.events) if letter in "LR")
-    orbit = orbit.rotate(place)
-    assert set(orbit.word.events) <= set("LRt")
-    assert orbit.real and orbit.residual < 1e-12 and orbit.replay() < 1e-10 and not found.symmetric
-    assert np.abs(np.sort(np.abs(orbit.multipliers)) - np.sort(np.abs(found.multipliers))).max() < 1e-6
-    letters, turned, state = integrated(UNLIKE, amplitude, orbit)
-    n = len(orbit.word)
-    assert letters[:n] == "".join(orbit.word.events[1:] + orbit.word.events[:1])
-    assert abs(turned - 2 * math.pi * orbit.periods) < 1e-8
-    assert abs(state[1] - orbit.events.rate_post[0]) < 1e-8
 
 
 def test_an_inclined_cavity_has_no_symmetry_breaking():

@@ -63,58 +63,6 @@ def test_no_root_no_proof():
             enclose(system, [[ball("0.0000001")]], [], 160)
 
 
-# ------------------------------------------------------------------ beneath
-def random_system(random, length, k, m):
-    def block(*shape):
-        return random.normal(size=shape)
-
-    return (
-        block(length, k, k),
-        block(length, k, k),
-        block(length, k, m),
-        block(length, k),
-        block(m, k),
-        block(m, m),
-        block(m),
-    )
-
-
-@pytest.mark.parametrize("length", [1, 2, 3, 7])
-@pytest.mark.parametrize("m", [0, 1, 2])
-def test_elimination_encloses_the_dense_solution(length, m):
-    random = np.random.default_rng(length * 10 + m)
-    k = 2
-    A, D, E, b, rows, corner, c = random_system(random, length, k, m)
-    reads = [int(random.integers(length)) for _ in range(m)]
-    dense = np.zeros((length * k + m, length * k + m))
-    for i in range(length):
-        following = (i + 1) % length
-        dense[i * k : i * k + k, i * k : i * k + k] += A[i]
-        dense[i * k : i * k + k, following * k : following * k + k] += D[i]
-        dense[i * k : i * k + k, length * k :] = E[i]
-    for j in range(m):
-        dense[length * k + j, reads[j] * k : reads[j] * k + k] = rows[j]
-        dense[length * k + j, length * k :] = corner[j]
-    expected = np.linalg.solve(dense, np.concatenate([b.ravel(), c]))
-
-    def balls(array):
-        return [balls(part) for part in array] if np.ndim(array) else ball(float(array))
-
-    with precision(120):
-        system = Blocks(
-            balls(A),
-            balls(D),
-            balls(E),
-            balls(b),
-            [{reads[j]: balls(rows[j])} for j in range(m)],
-            balls(corner),
-            balls(c),
-        )
-        nodes, extras = solve(system)
-        found = np.array([float(v) for node in nodes for v in node] + [float(v) for v in extras])
-    assert found == pytest.approx(expected, rel=1e-9, abs=1e-10)
-
-
 def test_a_singular_system_is_refused():
     one = [[ball("1"), ball("2")], [ball("2"), ball("4")]]
     zero = [[ball("0")] * 2] * 2

@@ -121,37 +121,6 @@ def test_an_ordinary_orbit_is_no_special_point(graph):
         branch.problem.prove("stick", branch.points[i], float(branch.values[i]))
 
 
-# ------------------------------------------------------------------ pieces
-def test_a_piece_of_the_symmetric_branch_is_stable_and_real(graph):
-    proof = graph.prove("B1", within=(0.58, 0.6))["B1"]
-    stable = [piece for piece in proof.pieces if piece.stable]
-    (piece,) = stable
-    assert piece.existence and piece.real is True
-    assert piece.covered == ("0.58", "0.6")
-    assert verified(proof)
-    wrong = json.loads(json.dumps(piece.certificate()))
-    for change in (
-        lambda c: c["boxes"].pop(1),
-        lambda c: c["boxes"].pop(2),
-        lambda c: c["claims"].__setitem__("stable", False),
-        lambda c: c["claims"].__setitem__("real", False),
-        lambda c: c["boxes"][1]["nodes"][0][0].__setitem__(2, "1e-12"),
-        lambda c: c["boxes"][1].__setitem__("kind", "fold"),
-        lambda c: c["boxes"][3].__setitem__("half_width", "1"),
-        lambda c: c["parameters"].__setitem__("restitution", ["0.8", "0", "0"]),
-        lambda c: c["parameters"].__setitem__("distance_left", ["1", "0", "0"]),
-        lambda c: c["claims"].__setitem__("existence", None),
-        lambda c: c["boxes"][2]["parameter"].__setitem__(2, "1e-40"),
-        lambda c: c.__setitem__("covered", ["0", "1"]),
-        lambda c: c["boxes"][0].__setitem__("remark", "said by nobody"),
-        lambda c: c["boxes"].clear(),
-    ):
-        copy = json.loads(json.dumps(wrong))
-        change(copy)
-        with pytest.raises(Refused):
-            check(copy)
-
-
 def test_an_inequality_is_left_out_only_at_its_border():
     """To name a margin does not excuse an orbit from it."""
     virtual = ABSORBER.orbit("tt", 1, amplitude=0.18).prove()

@@ -60,16 +60,6 @@ def test_flights_between_events_hold_no_event():
             assert np.all(state[3] * out[:, 1] > 0.0)
 
 
-def test_the_mirror_image_of_a_run_is_the_run_of_the_mirror_image():
-    machine = COUPLED.changed(frequency=1.0)
-    start = {"phase": 0.4, "w": 0.3, "w_rate": -0.2, "v": 0.7, "v_rate": 0.1}
-    image = {key: (value + np.pi if key == "phase" else -value) for key, value in start.items()}
-    one, two = simulate(machine, start, events=40), simulate(machine, image, events=40)
-    assert two.letters == one.letters.translate(str.maketrans("LR", "RL"))
-    np.testing.assert_allclose(two.phases - np.pi, one.phases, atol=1e-9)
-    np.testing.assert_allclose(two.rows[:, 2:], -one.rows[:, 2:], atol=1e-9)
-
-
 @pytest.mark.parametrize(("frequency", "word"), [(0.985, "LR"), (0.99, "LRtt"), (1.0, "LRtR")])
 def test_attractors_become_orbits(frequency, word):
     found = find_attractor(COUPLED, {"q1": 1.0, "q2": 1.0}, frequency=frequency)

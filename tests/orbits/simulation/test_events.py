@@ -124,19 +124,6 @@ def test_flight_after_a_slip():
         assert run.rows[1, 2] == pytest.approx(float(reach), rel=1e-14)
 
 
-def test_without_friction_a_flight_reverses_without_an_event():
-    """The limit of small friction has the same impacts, with turns between those on one wall."""
-    start = {"w_rate": 1.0}
-    free = simulate(Absorber(restitution=0.5, friction=0.0, gravity=0.2), start, events=20, amplitude=2.0)
-    slow = simulate(Absorber(restitution=0.5, friction=1e-12, gravity=0.2), start, events=60, amplitude=2.0)
-    hits = slow.codes < 2
-    assert "LL" in free.letters
-    assert "t" in slow.letters
-    assert "t" not in free.letters
-    assert np.array_equal(slow.codes[hits][:20], free.codes)
-    assert slow.phases[hits][:20] == pytest.approx(free.phases, abs=1e-7)
-
-
 def test_chatter_ends_in_contact_and_contact_in_release():
     """Impacts pile up at the limit of their geometric sequence; the wall lets go when the shaking turns round."""
     C, mu, g = 8.0, 0.2, 0.2

@@ -6,7 +6,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contvines.core.library import native
-from orbits.attractors import batches
 from orbits.machines.catalogue import model_class, reference_stepper, stepper
 from orbits.machines.stepping import MODE, PSI, RATE, REST, TIME_REACHED, TURNS, V_RATE, V, W
 from orbits.simulation.driver import collect
@@ -87,11 +86,11 @@ HARD = [
     ("absorber", absorber(1.006 * 0.5 * 0.211 * (1 + 1e-9)), start(0.0, 0.3, 0.0)),  # ... and barely not
     ("absorber", absorber(0.55), start(4.2, 1.0, -1e-9)),  # a flight of 1e-9
     ("absorber", absorber(1.0, 1.0, 0.0, 1.0), start(0.0, 0.0, 0.0)),  # at rest when nothing pushes
-    ("absorber", absorber(1.0, 1.0, 0.0, 1.0), start(0.0, -1.0, 0.0)),
+
     ("absorber", absorber(0.0, 1.0, 0.0, 0.2), start(0.0, 0.0, 0.5)),  # free drift
-    ("absorber", absorber(0.0, 1.0, 0.0, 0.2), start(0.0, 0.0, 0.0)),  # nothing moves
+
     ("cavity", np.array([0.5, 0.7, 0.6, 0.1, 0.1, 2.0, 0.1, 1.0, 0.6, 1.0, 0.8]), start(0.3, 0.2, 0.0)),  # slides down
-    ("coupled", np.array([2.47, 0.985, 0.9, 0.006, 0.76, 0.5, 0.211, 1.0, 0.0]), start(0.0, 0.0, 0.0, 1.0)),
+
     ("coupled", np.array([3.0, 0.9, 0.3, 0.3, 0.3, 0.2, 0.2, 1.0, 0.0]), start(0.0, 1.0, -1e-8, 2.0)),  # impacts pile up
     ("coupled", np.array([0.0, 1.0, 0.0, 0.2, 0.5, 0.0, 0.0, 1.0, 0.0]), start(0.0, 0.3, 0.0, 0.0)),  # nothing moves
     ("coupled", np.array([0.1, 1.0, 0.9, 0.1, 0.5, 1.0, 1.0, 1.0, 0.0]), start(0.0, 0.3, 0.0, 0.1)),  # sticks for ever
@@ -146,23 +145,3 @@ def test_a_long_run_is_followed_in_slices():
     assert status == TIME_REACHED
     assert len(codes) == int((60_000 * 2 * np.pi * 1e-4 - 1.0) // 2.0) + 1
     np.testing.assert_allclose(instants, 1e4 * (1.0 + 2.0 * np.arange(len(codes))), rtol=1e-12)
-
-
-@pytest.mark.parametrize("name, params", [("absorber", absorber(0.55)), ("coupled", HARD[9][1])])
-def test_many_starts(name, params, monkeypatch):
-    generator = np.random.default_rng(3)
-    engine = stepper(name)
-    states = np.zeros((4, engine.state))
-    states[:, [PSI, W, RATE]] = generator.uniform([0, -1, -1], [6, 1, 1], (4, 3))
-    kept, results = [], []
-    for use in (True, False):
-        monkeypatch.setattr(batches, "native", lambda use=use: use)
-        monkeypatch.setattr(batches, "machine", stepper if use else reference_stepper)
-        now = states.copy()
-        results.append(
-            batches.settle_all(name, now, params, transients=(6.0,), longest=3, tolerance=1e-2, workers=1)
-        )
-        kept.append(now)
-    assert np.array_equal(results[0]["outcome"], results[1]["outcome"])
-    assert np.array_equal(results[0]["impacts"], results[1]["impacts"])
-    np.testing.assert_allclose(*kept, atol=1e-9)

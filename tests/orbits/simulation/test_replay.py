@@ -63,20 +63,6 @@ def test_a_wrong_event_list_is_refused():
     assert told.motion < 1e-12  # the same motion, told with other events
 
 
-def test_a_wrong_node_shows_in_the_error():
-    found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.6))
-    nodes = found.nodes + np.array([[0.0, 0.0], [1e-5, 0.0]])
-    told = replay_nodes(MACHINE, found.params, found.codes, found.modes, nodes, 1)
-    assert told.error == pytest.approx(1e-5, rel=1e-6)
-
-
-def test_stuck_and_slipping():
-    empty = np.empty(0, np.int8)
-    for amplitude, ok in ((0.1, True), (0.11, False)):
-        params = MACHINE.vector({"amplitude": amplitude})
-        assert replay_nodes(MACHINE, params, empty, empty, np.empty((0, 2)), 1).matches is ok
-
-
 @pytest.mark.parametrize("c2", [0.012, 0.03, 0.1, 0.5, 0.74, 0.75, 0.9])
 def test_every_event_can_be_the_first(c2):
     found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(c2))

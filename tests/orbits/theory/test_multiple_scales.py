@@ -175,22 +175,3 @@ def test_free_decay_in_closed_form_is_the_integrated_flow(r, mu, lam, start):
     share = -0.5 * flow.mass_ratio * rate(0, np.array([start**2]))[0] / start**2
     assert ms.damping_ratio(flow, start) == pytest.approx(share, rel=1e-10)
     assert ms.damping_ratio(flow) == pytest.approx(ms.damping_ratio(flow, 1e7), rel=1e-5)
-
-
-def test_response_curves_hold_every_equilibrium_and_their_own_folds():
-    flow = ms.SlowFlow()
-    for kind in ("impacting", "sliding"):
-        curves = ms.frequency_response(flow, kind)
-        for curve in curves:
-            rates = flow.rates(curve.position, curve.phase, curve.detuning, kind)
-            assert np.max(np.abs(rates)) < 1e-10
-        for sigma in (-4.7, -2.58, 0.3, 2.0, 4.5):
-            crossings = sum(int(np.sum(np.diff(np.sign(c.detuning - sigma)) != 0)) for c in curves)
-            assert crossings == sum(s.manifold == kind for s in ms.equilibria(flow, sigma))
-    (curve,) = ms.frequency_response(flow, points=4000)
-    folds = [p.state for p in ms.special_points(curve) if p.kind == "fold"]
-    turns = np.nonzero(np.diff(np.sign(np.diff(curve.detuning))))[0]
-    assert len(folds) == 2
-    assert sorted(s.detuning for s in folds) == pytest.approx(sorted(curve.detuning[turns + 1]), abs=1e-4)
-    hopf = [p.state for p in ms.special_points(curve) if p.kind == "hopf"]
-    assert all(abs(v.real) < 1e-8 and abs(v.imag) > 0 for s in hopf for v in s.eigenvalues)

@@ -1,15 +1,12 @@
 """The motion from a state on in closed form, against its equations of motion in forty digits."""
 
 import mpmath as mp
-import numpy as np
 import pytest
 
-from orbits.machines.reference.law import coupled
-from orbits.machines.reference.oscillation import Oscillation, oscillation
+from orbits.machines.reference.oscillation import Oscillation
 
 OMEGA, ALPHA, BETA = 1.07, 0.03, 0.98
 START = (0.21, -0.34, 0.55, 0.17)  # harmonic h and its rate, oscillation z and its rate
-PARAMS = np.array([2.1, 0.97, 0.8, 0.15, 0.7, 0.4, 0.3, 0.6, 0.2])
 
 
 def exact(order, tau):
@@ -42,21 +39,3 @@ def test_small_differences_keep_their_digits(tau):
         ]  # a series of order 8 has fewer terms left for them
         for value, w, relative in zip(found, wanted, near):
             assert abs(value - w) < (relative * abs(w) if tau < 0.03 else 1e-14)
-
-
-@pytest.mark.parametrize("mode", [-1.0, 0.0, 1.0])
-def test_a_leg_starts_at_its_state_with_the_acceleration_of_newton(mode):
-    """(1 + eps [stuck]) q1'' = -q1 - eps lambda q1' + eps G (sin Psi + chi eps lambda Omega cos Psi) - eps q2''; q2'' = s mu g cos(slope) + g sin(slope) [sliding]."""
-    G, Omega, lam, eps, _, mu, g, chi, slope = PARAMS
-    pull = mode * mu * g * np.cos(slope) + g * np.sin(slope) if mode else 0.0
-    psi, w, rate, v, v_rate = 0.9, 0.25, 0.4 * mode, 0.3, -0.2
-    q = oscillation(np.array([psi, w, rate, mode, 0.0, 0.0, v, v_rate]), coupled(PARAMS))
-    q1, q1_rate = (v + eps * w) / (1 + eps), (v_rate + eps * rate) / (1 + eps)
-    offset = -eps * pull
-    assert q.h0 + q.z0 + offset == pytest.approx(q1, abs=1e-15)
-    assert q.h1 + q.z1 == pytest.approx(q1_rate, abs=1e-15)
-    assert q.q2_rate == pytest.approx((v_rate - rate) / (1 + eps)) and q.q2_pull == pytest.approx(pull)
-    acceleration = -(Omega**2) * q.h0 - 2 * q.alpha * q.z1 - q.kappa * q.z0
-    base = mp.sin(psi) + chi * eps * lam * Omega * mp.cos(psi)
-    right = -q1 - eps * lam * q1_rate + eps * G * base - eps * pull
-    assert acceleration * (1.0 if mode else 1.0 + eps) == pytest.approx(float(right), abs=1e-14)
