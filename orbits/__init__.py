@@ -49,6 +49,15 @@ __all__ = [
     "words",
 ]
 
+FACTORIES = {
+    "orbits.flows.page.smooth:rebuild": "orbits.flows.page.smooth:rebuild",
+    "orbits.problem:rebuild": "orbits.problem:rebuild",
+    "orbits.cycles.stuck_problem:rebuild": "orbits.problem:rebuild",
+    "orbits.stuck_problem:rebuild": "orbits.problem:rebuild",
+    "orbits.declared.stored:rebuild": "orbits.problem:rebuild",
+    "orbits.machines.declared.stored:rebuild": "orbits.problem:rebuild",
+}
+"""Functions that rebuild problems from their descriptions: name in a file -> where the function is; names of earlier versions stay, for their files."""
 _ROOMS = ("attractors", "design", "machines", "multiple_scales", "simulation", "symbols", "theory", "words")
 __getattr__ = on_demand(
     __name__,

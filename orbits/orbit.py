@@ -9,7 +9,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from contvines.shared.near_arguments import hinting
+from contvines.shared.near_names import hinting
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import deviation
 from orbits.flows.protocol import Equations

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..continuation.chunk import Chunk
+from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
-from ..continuation.status import Status
 from .branch_jumps import inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicious, turns_twice
 from .kinks import kinked, nearest, pointed

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..continuation.hints import hinted
+from ..continuation.settings import hinted
 
 if TYPE_CHECKING:
     from ..continuation.aims import Aim

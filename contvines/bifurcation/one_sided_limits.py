@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
-from ..continuation.solved import solved_point
+from ..continuation.layout import solved_point
 from .locate import Root
 from .segment import Segment
 

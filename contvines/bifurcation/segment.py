@@ -9,8 +9,7 @@ import numpy as np
 
 from ..continuation.aims import Aim
 from ..continuation.engine import Engine, Hit, Solved
-from ..continuation.layout import Found
-from ..continuation.solved import solved_point, solved_points
+from ..continuation.layout import Found, solved_point, solved_points
 from .multiplier_counts import counts
 
 FAR = 3.0  # decades between a multiplier and the circle

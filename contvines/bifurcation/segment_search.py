@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,9 @@ from .point_on_branch import PointOnBranch
 from .scan import spectra
 from .segment import Segment
 from .symmetry_test import SymmetryTest
-from .user_functions import own_tests
+
+if TYPE_CHECKING:
+    from .user_functions import Own
 
 TINY = float(np.finfo(float).tiny)
 PLACES = np.arange(1, 8) / 8.0  # of a segment at which its inside is looked at
@@ -61,7 +63,11 @@ class SegmentSearch:
         scale = None if engine.plain else engine.scale[:-1]
         self.symmetries = [SymmetryTest(s, engine.n, engine.shift, scale) for s in engine.problem.symmetries]
         self.parts = 0  # of segments that were searched along the branch that is followed
-        self.own = own_tests(engine, kinds, functions or {}, tuple(stops), BY_NAME["user"])
+        self.own: list[Own] = []
+        if functions or any(kind.test is not None for kind in kinds):
+            from .user_functions import own_tests
+
+            self.own = own_tests(engine, kinds, functions or {}, tuple(stops), BY_NAME["user"])
 
     def search(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
         """The special points of one segment (positions in [0, 1])."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS
-from ..continuation.hints import hinted
+from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
 from .ending import Ending

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bifurcation.located import Located
+from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
-from ..continuation.status import Status
 
 
 class Piece(NamedTuple):

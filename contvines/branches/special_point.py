@@ -2,16 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS
-from ..continuation.hints import hinted
+from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
-from .lazy_field import Later
+
+
+class Later:
+    """A field of a dataclass that is a number or None, or is set to a function without arguments that returns one.
+
+    The function is called once. Coefficients of normal forms and simulations of special points are a good part of the cost of a
+    diagram, and surveys of many diagrams look at neither.
+    """
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.place = "_" + name
+
+    def __get__(self, instance: Any, owner: type | None = None) -> float | None:
+        if instance is None:
+            return None  # the default
+        value: Any = vars(instance)[self.place]
+        if callable(value):
+            value = vars(instance)[self.place] = value()
+        return value
+
+    def __set__(self, instance: Any, value: float | Callable[[], float | None] | None) -> None:
+        vars(instance)[self.place] = value
+
 
 TRANSCRITICAL = "transcritical"  #: a remark: the parameter changes along the branch that leaves, so it is neither super- nor subcritical
 
@@ -88,8 +111,8 @@ class SpecialPoint:
     location_error: float = 0.0
     real: bool = True
     criticality: str | None = None
-    coefficient: Later = Later()  # noqa: RUF009  (a descriptor)
-    replay: Later = Later()  # noqa: RUF009
+    coefficient: Later = Later()
+    replay: Later = Later()
     multipliers_beyond: np.ndarray | None = field(default=None, repr=False)
     mirror: bool = False
     name: str = ""

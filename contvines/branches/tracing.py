@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Role
+from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
-from ..continuation.status import Status
 from ..continuation.trace import Retrace, chunks
 from ..journal import NullJournal
 from .half_branch import HalfBranch, Piece, piece_of, single

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..continuation.hints import hinted
+from ..continuation.settings import hinted
 from ..shared.number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..branches.special_point import SpecialPoint
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..interrupts import listening
 from ..problems.abilities import notation_of
 from ..problems.registry import without_problem

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..continuation.hints import hinted, hinting
+from ..continuation.settings import hinted, hinting
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..graph.shortening import short_word

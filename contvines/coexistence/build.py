@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..bifurcation.kind import Kind
-from ..continuation.hints import hinting
-from ..continuation.settings import Settings
+from ..continuation.settings import Settings, hinting
 from ..graph.automatic import new_run
 from ..graph.builder import finish, leave_waiting
 from ..graph.graph import Graph

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..graph.attractor import Attractor
 from ..graph.run import Run
-from .effort import recall_work
-from .population import Population
+from .population import Population, recall_work
 
 if TYPE_CHECKING:
     from ..journal import Journal

@@ -80,9 +80,3 @@ class Effort:
             count, seconds = self._took.get(search, (1, mean))
             left += pieces * seconds / count
         return min(left, (monotonic() - self.started) * (1.0 / max(self.share, 1e-9) - 1.0))
-
-
-def recall_work(population: Any, work: float) -> None:
-    """Count work that an earlier run has done and that is not done again."""
-    if work:
-        population.work = getattr(population, "work", 0.0) + work

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..branches.branch import Branch
-from ..continuation.hints import hinted, hinting
+from ..continuation.settings import hinted, hinting
 from ..graph.shortening import short_word
 from ..graph.table import with_unit
 from ..problems.abilities import notation_of

@@ -109,3 +109,9 @@ def population_of(thing: Any, over: str | None = None, **parameters: float) -> P
             f"{type(thing).__name__} cannot be simulated from many starts: give a machine, one of its orbits, or a map"
         )
     return thing.population(over, **parameters)
+
+
+def recall_work(population: Any, work: float) -> None:
+    """Count work that an earlier run has done and that is not done again."""
+    if work:
+        population.work = getattr(population, "work", 0.0) + work

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..circles.section import section_of
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..graph.shortening import short_word
 from ..problems.abilities import Gauged
 from ..shared.number_text import figures

@@ -15,8 +15,8 @@ from ..graph.graph import Graph
 from ..graph.run import Run
 from ..journal import Part
 from .census import Counted
-from .effort import Effort, recall_work
-from .population import Population
+from .effort import Effort
+from .population import Population, recall_work
 from .roots import add_root
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from contvines.command.amounts import inside
-from contvines.command.frame import check_plot, draw, tell
-from contvines.command.options import JsonOption, PlotOption, SizeOption, StudyArgument
+from contvines.command.frame import JsonOption, PlotOption, SizeOption, StudyArgument, check_plot, draw, tell
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.frame import check_plot, draw, tell
-from contvines.command.options import JsonOption, PlotOption, SizeOption
+from contvines.command.frame import JsonOption, PlotOption, SizeOption, check_plot, draw, tell
 from contvines.command.study_data import Sort, Study
 from contvines.shared.number_text import figures
 from contvines.text_table import fitted

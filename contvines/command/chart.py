@@ -8,6 +8,13 @@ import typer
 
 from contvines.command.amounts import interval
 from contvines.command.frame import (
+    FileArgument,
+    FreshOption,
+    LabelArgument,
+    PlotOption,
+    QuietOption,
+    TrustOption,
+    VirtualOption,
     check_plot,
     check_special,
     draw,
@@ -19,15 +26,6 @@ from contvines.command.frame import (
     refuse_unfinished,
     say,
     working,
-)
-from contvines.command.options import (
-    FileArgument,
-    FreshOption,
-    LabelArgument,
-    PlotOption,
-    QuietOption,
-    TrustOption,
-    VirtualOption,
 )
 
 if TYPE_CHECKING:

@@ -5,8 +5,18 @@ from typing import Annotated
 import typer
 
 from contvines.command.amounts import amount
-from contvines.command.frame import check_plot, draw, load_file, refuse_detached, tell
-from contvines.command.options import FileArgument, JsonOption, PlotOption, SizeOption, TrustOption
+from contvines.command.frame import (
+    FileArgument,
+    JsonOption,
+    PlotOption,
+    SizeOption,
+    TrustOption,
+    check_plot,
+    draw,
+    load_file,
+    refuse_detached,
+    tell,
+)
 
 
 def circle(

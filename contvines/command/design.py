@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from contvines.command.frame import check_plot, tell
+from contvines.command.frame import JsonOption, StudyArgument, check_plot, tell
 from contvines.command.frame import draw as draw_in
-from contvines.command.options import JsonOption, StudyArgument
 from contvines.command.study_data import Sort, Study
 from contvines.shared.number_text import figures
 

@@ -8,8 +8,7 @@ from typing import Any
 
 import typer
 
-from contvines.command.frame import tell
-from contvines.command.options import JsonOption
+from contvines.command.frame import JsonOption, tell
 from contvines.shared.extras import pip_install
 
 EXTRAS = {

@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from contvines.command.frame import beside, load_file, say_state
-from contvines.command.options import FileArgument, TrustOption
+from contvines.command.frame import FileArgument, TrustOption, beside, load_file, say_state
 
 
 class Format(StrEnum):

@@ -6,8 +6,16 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.frame import check_plot, draw, load_file, say, tell
-from contvines.command.options import JsonOption, PlotOption, TrustOption
+from contvines.command.frame import (
+    JsonOption,
+    PlotOption,
+    TrustOption,
+    check_plot,
+    draw,
+    load_file,
+    say,
+    tell,
+)
 from contvines.shared.number_text import complex_figures, figures
 from contvines.text_table import fitted
 

@@ -8,8 +8,16 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.compare import check_compared, compared
-from contvines.command.frame import beside, check_plot, load_file, say_state
-from contvines.command.options import CompareOption, FileArgument, SizeOption, TrustOption
+from contvines.command.frame import (
+    CompareOption,
+    FileArgument,
+    SizeOption,
+    TrustOption,
+    beside,
+    check_plot,
+    load_file,
+    say_state,
+)
 
 
 class Picture(StrEnum):

@@ -7,8 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.amounts import interval
-from contvines.command.frame import held, interruptible, load_file
-from contvines.command.options import JsonOption, TrustOption
+from contvines.command.frame import JsonOption, TrustOption, held, interruptible, load_file
 from contvines.shared.extras import pip_install
 from contvines.text_table import fitted
 

@@ -8,8 +8,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.frame import beside, check_plot, draw, held, interruptible, refuse_source, say, tell
-from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption, SizeOption
+from contvines.command.frame import (
+    FreshOption,
+    JsonOption,
+    PlotOption,
+    QuietOption,
+    SizeOption,
+    beside,
+    check_plot,
+    draw,
+    held,
+    interruptible,
+    refuse_source,
+    say,
+    tell,
+)
 from contvines.command.recommendation import Recommendation
 
 if TYPE_CHECKING:

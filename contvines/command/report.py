@@ -5,8 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.frame import beside, load_file, say
-from contvines.command.options import TrustOption
+from contvines.command.frame import TrustOption, beside, load_file, say
 
 
 def report(

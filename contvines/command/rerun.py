@@ -7,13 +7,17 @@ import typer
 
 from contvines.command.chart import chart_of, fingerprint_of
 from contvines.command.frame import (
+    FileArgument,
+    FreshOption,
+    JsonOption,
+    QuietOption,
+    TrustOption,
     held,
     load_file,
     place_of,
     refuse_unfinished,
     say,
 )
-from contvines.command.options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOption
 from contvines.command.run import graph_of
 from contvines.command.study_data import Study
 

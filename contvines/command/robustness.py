@@ -5,8 +5,17 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.amounts import inside
-from contvines.command.frame import check_plot, draw, load_file, tell
-from contvines.command.options import FileArgument, JsonOption, PlotOption, SizeOption, TrustOption
+from contvines.command.frame import (
+    FileArgument,
+    JsonOption,
+    PlotOption,
+    SizeOption,
+    TrustOption,
+    check_plot,
+    draw,
+    load_file,
+    tell,
+)
 
 
 def robustness(

@@ -6,8 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.compare import check_compared
 from contvines.command.frame import (
+    CompareOption,
+    FileArgument,
+    FreshOption,
+    LabelArgument,
+    PlotOption,
+    QuietOption,
+    StudyArgument,
+    TrustOption,
     check_plot,
     check_special,
     draw,
@@ -19,16 +26,6 @@ from contvines.command.frame import (
     refuse_unfinished,
     say,
     working,
-)
-from contvines.command.options import (
-    CompareOption,
-    FileArgument,
-    FreshOption,
-    LabelArgument,
-    PlotOption,
-    QuietOption,
-    StudyArgument,
-    TrustOption,
 )
 
 if TYPE_CHECKING:
@@ -182,7 +179,10 @@ def _run(
     check_axes(study, {"-x": x, "-y": y}, plot)
     check_bounds(study, command)
     check_shaken(study)
-    check_compared(compare, plot is not None)
+    if compare:
+        from contvines.command.compare import check_compared
+
+        check_compared(compare, plot is not None)
     target = place_of(output, path, ".vines" if command == "diagram" else f"-{command}.vines")
     check_plot(plot)
     with held(target, quiet, fresh):
@@ -267,11 +267,15 @@ def _picture(
         from contvines.plots.atlas import plot_atlas
 
         return plot_atlas(graph, x, y)
-    from contvines.command.compare import compared
+    if compare:
+        from contvines.command.compare import compared
 
-    # beside other machines it is the responses that matter, not how branches hang together
-    look: dict[str, Any] = {"marks": [], "labels": False, "color": "stability"} if compare else {}
-    figure = compared(graph, compare, x, y, **look)
+        # beside other machines it is the responses that matter, not how branches hang together
+        figure = compared(graph, compare, x, y, marks=[], labels=False, color="stability")
+    else:
+        from contvines.plots.diagram import plot_diagram
+
+        figure = plot_diagram(graph, x, y)
     if graph.looked and x in (None, graph.parameter) and _shows_oscillator(graph, y):
         _add_simulated(figure.axes[0], graph, study)
     return figure

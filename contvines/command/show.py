@@ -2,8 +2,7 @@
 
 import typer
 
-from contvines.command.frame import load_file, say_state, tell
-from contvines.command.options import FileArgument, JsonOption
+from contvines.command.frame import FileArgument, JsonOption, load_file, say_state, tell
 
 
 def show(file: FileArgument, json: JsonOption = False) -> None:

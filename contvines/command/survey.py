@@ -5,8 +5,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.frame import beside, check_plot, draw, refuse_source, tell
-from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption
+from contvines.command.frame import (
+    FreshOption,
+    JsonOption,
+    PlotOption,
+    QuietOption,
+    beside,
+    check_plot,
+    draw,
+    refuse_source,
+    tell,
+)
 
 if TYPE_CHECKING:
     from contvines.survey import Survey

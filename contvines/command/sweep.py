@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from contvines.command.frame import (
+    FreshOption,
     Interrupted,
+    JsonOption,
+    PlotOption,
+    QuietOption,
+    SizeOption,
     beside,
     check_plot,
     draw,
@@ -16,7 +21,6 @@ from contvines.command.frame import (
     say,
     tell,
 )
-from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption, SizeOption
 from contvines.shared.modulation import BAND
 from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width

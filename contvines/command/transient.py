@@ -7,8 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from contvines.command.frame import check_plot, draw, say, tell
-from contvines.command.options import JsonOption, PlotOption, SizeOption
+from contvines.command.frame import JsonOption, PlotOption, SizeOption, check_plot, draw, say, tell
 from contvines.command.page_transient import frequency_on_line, of_page, time_on_line
 from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import Told, loads_rows

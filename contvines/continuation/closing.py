@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .chunk import Chunk
+from .chunk import Chunk, Status
 from .engine import Engine, Solved
-from .status import Status
 
 SAME = 1e-5  # of two solutions on different meshes
 NEAR = 1.5  # distances of neighbours from the start at which a branch may close

@@ -12,12 +12,11 @@ from ..problems.abilities import Adaptive, Nearing, Rough
 from ..problems.protocol import Problem
 from . import layout
 from .aims import NO_COLUMNS, NOTHING, Aim
-from .layout import Found, Metric, Scratch
+from .layout import Found, Metric, Scratch, solved_point
+from .layout import Hit as Hit
+from .layout import Solved as Solved
 from .rows import Rows
 from .settings import Settings
-from .solved import Hit as Hit
-from .solved import Solved as Solved
-from .solved import solved_point
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
 ONE = np.zeros(1)  # a single place: the chord's first end

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
-from contvines.shared.near_arguments import hinted
+from contvines.shared import near_names
 from contvines.shared.near_names import did_you_mean
 
 from .step_rule import BY_ANGLE, StepRule
@@ -59,7 +59,7 @@ WHOLE = (
 )
 
 
-@hinted
+@near_names.hinted
 @dataclass(frozen=True)
 class Settings:
     """Settings of the continuation. Lengths are in the metric in which the parameter interval has length 1 and u its rms norm.
@@ -248,3 +248,27 @@ class Settings:
             field.name: getattr(self, field.name) for field in fields(self) if field.name != "step_rule"
         }
         return values if self.step_rule is BY_ANGLE else {**values, "step_rule": self.step_rule.name}
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+T = TypeVar("T")
+
+
+def hinting(function: Callable[P, R]) -> Callable[P, R]:
+    """The function; an argument that it does not have is refused with the names that it has.
+
+    The names of its settings are known, too: they belong into ``settings``.
+    """
+    return near_names.hinting(function, _setting)
+
+
+def hinted(thing: type[T]) -> type[T]:
+    """The class; its public methods, and what makes it, are `hinting`."""
+    return near_names.hinted(thing, _setting)
+
+
+def _setting(name: str, value: object, known: Sequence[str]) -> str:
+    if "settings" not in known or name not in [field.name for field in fields(Settings)]:
+        return ""
+    return f"it is a setting: use settings={{{name!r}: {value!r}}}"

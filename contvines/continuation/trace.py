@@ -13,13 +13,11 @@ from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem
 from . import layout
-from .chunk import Chunk
+from .chunk import Chunk, Status
 from .closing import Closing
 from .engine import Engine, Solved
-from .hints import hinting
 from .reach import Reach
-from .settings import Settings
-from .status import Status
+from .settings import Settings, hinting
 from .step_rule import BY_ANGLE
 
 if TYPE_CHECKING:

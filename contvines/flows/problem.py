@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.near_arguments import hinting
+from contvines.shared.near_names import hinting
 
 from ..problems.images import image_map
 from ..problems.parameters import ParameterSet

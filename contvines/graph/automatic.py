@@ -8,8 +8,7 @@ from typing import Any
 
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import checked
-from ..continuation.hints import hinting
-from ..continuation.settings import Settings
+from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval, problem_and_start
 from ..interruptible import Asked, OnInterrupt, carried_out
 from ..journal import Journal, NullJournal

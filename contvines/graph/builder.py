@@ -15,17 +15,16 @@ from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
 from ..branches.opening import from_border, on_this_side
 from ..branches.tracing import trace_half
+from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..continuation.starts import solve_start, told_start
-from ..continuation.status import Status
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .identity import parts_further_on
 from .label_special_points import mark, origin_index
 from .match_borders import is_border, same_border, tie_borders
-from .queue import Origin, Pending
-from .run import Run
+from .run import Origin, Pending, Run
 from .schedule_branches import SWITCHING, leave, tell_dead_end
 
 if TYPE_CHECKING:

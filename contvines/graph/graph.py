@@ -10,10 +10,9 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import LABELS, RENAMED, kind_named
-from ..continuation.hints import hinted
+from ..continuation.settings import hinted
 from ..interrupts import Resumable
 from ..problems.abilities import notation_of
-from ..shared.extras import pip_install
 from .attractor import Attractor
 from .unresolved import Unresolved
 
@@ -256,6 +255,8 @@ class Graph(Resumable):
         try:
             import networkx
         except ImportError:
+            from ..shared.extras import pip_install
+
             raise ValueError(
                 f"this needs networkx, which is not installed: {pip_install('tables')}"
             ) from None

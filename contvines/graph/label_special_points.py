@@ -27,8 +27,7 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from .identity import UNSTATED, Place, same_form, same_value, turns_at
 from .match_borders import is_border
-from .queue import Origin, Pending
-from .run import Run
+from .run import Origin, Pending, Run
 from .unresolved import Unresolved
 
 TURNING_KINDS = ("branch-point", "symmetry-breaking")

@@ -24,8 +24,7 @@ from ..problems.abilities import Adaptive, Onward
 from ..problems.protocol import Problem
 from ..problems.registry import UnknownFactory, rebuild
 from .graph import Graph
-from .queue import Origin, Pending
-from .run import Run
+from .run import Origin, Pending, Run
 
 DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
 SLANTED = 0.1  # change of the parameter, in its unit and per amplitude, of a branch that goes through a point without turning there

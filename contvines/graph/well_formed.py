@@ -12,8 +12,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from ..branches.branch import Branch
-from ..branches.lazy_field import Later
-from ..branches.special_point import SpecialPoint
+from ..branches.special_point import Later, SpecialPoint
 from .graph import Graph
 
 DEEPEST = 60  # levels of nested values

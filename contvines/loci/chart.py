@@ -10,9 +10,8 @@ from typing import Any
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import CODIMENSION_TWO
-from ..continuation.hints import hinted
-from ..graph.old_names import renamed
-from ..graph.persistence import branch_of, content_of
+from ..continuation.settings import hinted
+from ..graph.persistence import branch_of, content_of, renamed
 from ..graph.well_formed import check_branch, check_fields, fits
 from ..interrupts import Resumable
 from ..problems.abilities import notation_of

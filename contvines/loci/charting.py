@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..branches.special_point import SpecialPoint
-from ..continuation.hints import hinting
-from ..continuation.settings import Settings
+from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
 from ..interruptible import Asked, OnInterrupt, carried_out

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
+from ..continuation.layout import Solved
 from ..continuation.settings import Settings
-from ..continuation.solved import Solved
 from ..problems.abilities import Attracting
 from .layout import BRANCH, FOLD
 from .locus import Locus

@@ -10,8 +10,7 @@ import numpy as np
 from ..bifurcation.kind import Kind
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
-from ..continuation.hints import hinted
-from ..continuation.settings import Settings
+from ..continuation.settings import Settings, hinted
 from .plane_point import PlanePoint
 
 

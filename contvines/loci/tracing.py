@@ -18,11 +18,10 @@ from ..branches.ending import Ending
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
 from ..branches.tracing import trace_half
+from ..continuation.chunk import Status
 from ..continuation.engine import Solved
-from ..continuation.hints import hinting
-from ..continuation.settings import Settings
+from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
-from ..continuation.status import Status
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..graph.shortening import short_word
 from .basins import COLORS
 from .diagram import draw_diagram

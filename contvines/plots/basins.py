@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..graph.shortening import short_word
 from ..shared.number_text import figures
 from .figures import LOW, Size, Style, drawing

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..graph.shortening import short_word
 from ..shared.modulation import MODULATIONS
 from .figures import LOW, Size, Style, freeze, new_axes, settle, styled, thin_ticks

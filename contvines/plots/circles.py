@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from .figures import Size, Style, given_axes, new_figure, settle, styled, thin_ticks
 from .legends import place_legend
 from .style import axis_label

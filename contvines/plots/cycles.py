@@ -9,7 +9,7 @@ import numpy as np
 
 from contvines.shared.animations import animated, check_animation, pictures
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from .figures import Size, Style, new_figure, root, styled
 from .style import STATE_COLORS, STATE_OF
 

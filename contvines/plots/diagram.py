@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..graph.measures import default_measure
 from .figures import LOW, Size, Style, freeze, lay_out, new_axes, root, settle, styled, thin_ticks
 from .insets import Region

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..problems.abilities import notation_of
 from .figures import Size, Style, given_axes, new_figure, root, settle, styled, thin_ticks
 from .legends import place_legend

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..graph.shortening import short_word
 from .figures import Size, Style, freeze, new_axes, settle, styled
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from .figures import Size, Style, given_axes, new_axes, new_figure, pixels, settle, styled, thin_ticks
 from .legends import NARROW, place_legend
 from .style import axis_label

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from .diagram import draw_diagram
 from .figures import LOW, Size, Style, new_axes, settle, styled, thin_ticks
 from .legends import NARROW, Key, draw_legend

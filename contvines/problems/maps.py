@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.near_arguments import hinting
+from contvines.shared.near_names import hinting
 
 from .callables import CallableProblem
 from .cycle_measures import CycleMeasures

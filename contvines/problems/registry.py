@@ -22,7 +22,7 @@ FACTORIES = {
     "contvines.map_problem:from_description": "contvines.problems.maps:from_description",
 }
 #: Module of another package that lists its own, as ``FACTORIES``.
-PROVIDER = "orbits.factories"
+PROVIDER = "orbits"
 
 _added: dict[str, Callable[..., Any]] = {}
 _callables: dict[str, Callable] = {}

@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar, overload
 
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..interrupts import Resumable
 from .database import Store
 from .header import TAILS, check_header

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..continuation.hints import hinted
+from ..continuation.settings import hinted
 from ..graph.table import with_unit
 from ..interrupts import Resumable
 from ..shared.number_text import figures

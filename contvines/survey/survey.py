@@ -14,7 +14,7 @@ from typing import Any
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
-from ..continuation.hints import hinting
+from ..continuation.settings import hinting
 from ..interruptible import OnInterrupt, check_interrupt
 from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors.settled import Settled
+from orbits.attractors.motion import Settled
 from orbits.cycles.cycle import Cycle
 from orbits.machines.stepping import Machine
 from orbits.orbit import Orbit

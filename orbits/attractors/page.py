@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contvines.shared.modulation import BAND, SILENT, modulation_of
-from orbits.attractors.motion import wandering
-from orbits.attractors.settled import Settled
+from orbits.attractors.motion import Settled, wandering
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.cycle_equations import SOLVED

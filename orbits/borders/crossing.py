@@ -32,15 +32,14 @@ from orbits.borders.neighbours import (
 )
 from orbits.borders.rewriting import edits_at
 from orbits.borders.rounds import derivative, rounds_at
-from orbits.borders.settling import settled
 from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
 from orbits.cycles.identity import canonical, size_of_one
 from orbits.cycles.rounds import MOST, choices, escape
 from orbits.flows.solving import solved_at
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem, Seed
-from orbits.words.edit import Edit
 from orbits.words.margins import approaches_of
+from orbits.words.rewriting import Edit
 
 if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
@@ -245,6 +244,8 @@ def _simulated(
     problem: CycleProblem, u: np.ndarray, p: float
 ) -> Iterator[tuple[CycleProblem, np.ndarray, float, None, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
+    from orbits.borders.settling import settled
+
     orbit = problem.orbit(u, p)
     here = _key(orbit)
     for away, side in product(AWAY, (1.0, -1.0)):

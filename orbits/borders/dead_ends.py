@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.borders.holding import parameter_unit
-from orbits.borders.settling import settled
 from orbits.contacts.letters import HIT, STICK, TURN
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
@@ -88,6 +87,8 @@ def _nearly_vanishing(orbit: Orbit) -> str:
 
 def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
     """Where simulation from the border orbit goes, a little to both sides of it."""
+    from orbits.borders.settling import settled
+
     told = {}
     for side, name in ((1.0, "above"), (-1.0, "below")):
         found, kind = settled(orbit, problem.values(p + side * AWAY * parameter_unit(problem, p)))

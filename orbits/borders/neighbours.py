@@ -16,7 +16,7 @@ from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, SLIP, STICK
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem
-from orbits.words.edit import Edit
+from orbits.words.rewriting import Edit
 
 # of what grows beyond the border: ways to try
 SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))

@@ -10,9 +10,8 @@ import numpy as np
 from orbits.contacts.changes import Spot
 from orbits.flows.protocol import FIRST
 from orbits.orbit import Orbit
-from orbits.words.edit import Edit
 from orbits.words.margins import place_of
-from orbits.words.rewriting import applied, changes_at, spliced
+from orbits.words.rewriting import Edit, applied, changes_at, spliced
 from orbits.words.word import Word
 
 LEAST = 1e-6  # duration of a flight of a guess

@@ -8,7 +8,7 @@ from orbits.borders.holding import Held
 from orbits.borders.neighbours import SIZES, Place
 from orbits.cycles.rounds import Rounds, derived, judged
 from orbits.protocol import CycleProblem
-from orbits.words.edit import Edit
+from orbits.words.rewriting import Edit
 
 
 def rounds_at(border: Place, edit: Edit, unchanged: list[tuple[np.ndarray, float] | None]) -> Rounds | None:

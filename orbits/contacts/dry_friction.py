@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import NamedTuple
 
-from contvines.shared.near_arguments import hinted
+from contvines.shared.near_names import hinted
 from orbits.contacts.changes import CLOSE, SHORT, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
 

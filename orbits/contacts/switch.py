@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from contvines.shared.near_arguments import hinted
+from contvines.shared.near_names import hinted
 from orbits.contacts.changes import CLOSE, Change, Grows, Site, Spot, What
 from orbits.contacts.letters import SWITCH, Letter
 from orbits.contacts.riding import touched, withdrawn

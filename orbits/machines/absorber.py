@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from contvines.shared.near_arguments import hinting
+from contvines.shared.near_names import hinting
 from orbits.machines.base import Model
 from orbits.machines.closed_forms import absorber as closed_forms
 from orbits.machines.parameters import FREQUENCY, FRICTION, GRAVITY, NOT_NEGATIVE, RESTITUTION, Parameter

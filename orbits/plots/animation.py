@@ -10,7 +10,7 @@ import numpy as np
 
 from contvines.shared.animations import animated, check_animation, pictures
 from contvines.shared.figures import new_figure, styled
-from contvines.shared.near_arguments import hinting
+from contvines.shared.near_names import hinting
 from orbits.plots.portrait import title
 from orbits.plots.scene import scene
 from orbits.plots.shown import LINE

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contvines.shared.figures import new_figure, styled
-from contvines.shared.near_arguments import hinting
+from contvines.shared.near_names import hinting
 from orbits.plots import panels as panel
 from orbits.plots.shown import quantities, shown
 

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors.low_discrepancy import low_discrepancy
 from orbits.attractors.motion import SOLVED, Motion, distinct
 from orbits.population.native import NativeStarts
-from orbits.population.sorting import Sorting
+from orbits.population.sorting import Sorting, low_discrepancy
 from orbits.problem import rebuild
 
 if TYPE_CHECKING:

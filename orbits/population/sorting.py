@@ -82,3 +82,27 @@ class Sorting:
         here &= self.index < 0
         self.mirrored[here] = np.broadcast_to(mirrored, here.shape)[here]
         self.index[here] = k
+
+
+def low_discrepancy(dimension: int, count: int, seed: int, first: int = 0) -> np.ndarray:
+    """Points of the unit cube, shape (count, dimension): an additive recurrence, shifted by the seed.
+
+    Parameters
+    ----------
+    dimension, count : int
+    seed : int
+        Of the shift (Cranley and Patterson 1976); each seed is another, equally even, set of points.
+    first : int
+        Points of the sequence to leave out at its start, so that draws can go on.
+
+    Notes
+    -----
+    Point n is ``shift + n (1/g, 1/g^2, ...) mod 1`` with ``g^(d+1) = g + 1`` (M. Roberts 2018; in one dimension the golden
+    ratio, whose gaps have at most three lengths for every count: the three-distance theorem).
+    """
+    root = 2.0
+    for _ in range(60):
+        root = (1.0 + root) ** (1.0 / (dimension + 1))
+    shift = np.random.default_rng(seed).random(dimension)
+    steps = root ** -np.arange(1.0, dimension + 1)
+    return (shift + np.arange(first + 1, first + count + 1)[:, None] * steps) % 1.0

@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors.search import find_attractor
 from orbits.cycles.deviation import BACKWARD
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError
 from orbits.flows.solving import solved_at
 from orbits.orbit import Orbit
-from orbits.starts.reading import DirectionError, directed, readings
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
@@ -123,6 +121,8 @@ def find(
         nodes = check_guess(reading, model.node_names, guess)
         centred(model, reading, nodes)
         if reading.alphabet.alone is not None:
+            from orbits.starts.reading import DirectionError, directed
+
             try:
                 reading = directed(word, reading, nodes)
             except DirectionError as error:
@@ -182,6 +182,8 @@ def centred(model: Varying, word: Word, nodes: np.ndarray) -> None:
 def _from_guess(first: Orbit) -> Orbit | None:
     """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
     mirrored = first.model.has_mirror(first.params, first.model.default_parameter)
+    from orbits.starts.reading import readings
+
     others = [replace(first, word=reading) for reading in readings(first.word, mirrored)]
     better = [orbit for orbit in others if orbit.residual < min(NEARBY, BETTER * first.residual)]
     virtual = None
@@ -249,6 +251,8 @@ def _proper(orbit: Orbit) -> bool:
 def _simulated(model: Varying, word: Word, periods: int, params: np.ndarray) -> tuple[Orbit | None, str]:
     """An attractor with this word, or the description of the one whose word is nearest."""
     mirrored = model.has_mirror(params)
+    from orbits.attractors.search import find_attractor
+
     target = word.canonical(mirrored)
     values: dict[str, Any] = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
     nearest, distance = "", np.inf

@@ -10,7 +10,6 @@ import numpy as np
 
 from orbits.contacts.dry_friction import ABSENT, STUCK, Beat, CannotFollow, FrictionLaw
 from orbits.contacts.letters import HIT, NAMES, SLIP, STICK, Letter
-from orbits.contacts.switch import NotAlternating, SwitchLaw
 from orbits.contacts.wall import FREE, WallLaw
 from orbits.words.alphabet import Alphabet
 
@@ -194,7 +193,11 @@ def _modes(
                 )
             flips = [alphabet.flips.get((letter.contact, j)) for letter in letters]
             columns.append([ABSENT if j in absent else int(sign or 0) for sign in flips])
-        elif isinstance(contact, SwitchLaw):
+        elif isinstance(contact, FrictionLaw):
+            columns.append(_directions(j, letters, signs, alphabet, noted, usual, shown))
+        else:
+            from orbits.contacts.switch import NotAlternating
+
             hits = {
                 i: alphabet.flips[letter.contact, j]
                 for i, letter in enumerate(letters)
@@ -208,8 +211,6 @@ def _modes(
                     f"word {shown}: the crossings of switch {contact.name!r} must alternate, "
                     f"{contact.letters[0]} and {contact.letters[1]}{between}"
                 ) from None
-        else:
-            columns.append(_directions(j, letters, signs, alphabet, noted, usual, shown))
     return tuple(columns[0]) if alphabet.alone is not None else tuple(zip(*columns))
 
 

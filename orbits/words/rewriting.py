@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -102,3 +102,22 @@ def spliced(
     for change, new in sorted(zip(changes, placed), key=lambda pair: pair[0].start, reverse=True):
         rows[change.start : change.stop] = list(new)
     return np.array(rows) if rows else nodes[:1]
+
+
+class Edit(NamedTuple):
+    """A change of the word, and the nodes of its new events, a row each: phase or clock first, then what is held there."""
+
+    change: Change
+    nodes: np.ndarray
+
+    def later(self, rounds: int, problem: Any, p: float) -> Edit:
+        """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
+        if rounds == 0:
+            return self
+        turned = problem.symmetric and rounds % 2 == 1
+        nodes = -self.nodes if turned else self.nodes.copy()
+        nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
+        if turned and (middle := problem.middle(p)):  # images are taken about the middle between the walls
+            letters = problem.word.alphabet.letters
+            nodes[[letters[text].kind != HIT for text in self.change.events], 1] += 2.0 * middle
+        return Edit(later(self.change, rounds * problem.length, problem.word.alphabet, turned), nodes)

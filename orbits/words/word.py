@@ -15,11 +15,33 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
 from orbits.words.alphabet import SHAKEN, Alphabet, shaken
-from orbits.words.cyclic import least_rotation, power
 from orbits.words.reading import WordError, bracket, read
 
 if TYPE_CHECKING:
     from orbits.contacts.changes import Mode
+
+
+def least_rotation(items: Sequence[Any]) -> int:
+    """Where the smallest rotation of a cyclic sequence begins; the first such place. Two pointers, linear time."""
+    n, i, j, k = len(items), 0, 1, 0
+    while i < n and j < n and k < n:
+        a, b = items[(i + k) % n], items[(j + k) % n]
+        if a == b:
+            k += 1
+            continue
+        if a > b:
+            i += k + 1
+        else:
+            j += k + 1
+        j += i == j
+        k = 0
+    return min(i, j)
+
+
+def power(items: Sequence[Any]) -> int:
+    """How often the shortest root is written in a sequence."""
+    n = len(items)
+    return next(n // r for r in range(1, n + 1) if n % r == 0 and items[r:] == items[: n - r])
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 
 from ...continuation.aims import SORTS, aim_at_multiplier
+from ...problems.abilities import Adaptive
 from ..kind import Classified, Kind, Test
 from ..located import Located
 from ..normal_forms.criticality import pair_form, strong_resonance
@@ -45,20 +46,20 @@ def classify_pair(point: PointOnBranch) -> Classified:
     a map, from the problem's own form.
     """
     problem = point.problem
-    if point.engine.adaptive and problem.spectrum == "map":
-        return _of_cycle(point)
+    if isinstance(problem, Adaptive) and problem.spectrum == "map":
+        return _of_cycle(problem, point)
     if problem.spectrum not in ("map", "flow"):
         return Classified()
     form = pair_form(problem, point.u, point.value, point.engine.spectrum(point.solved.row))
     return Classified(form.criticality, form.coefficient, (form.note,) if form.note else ())
 
 
-def _of_cycle(point: PointOnBranch) -> Classified:
+def _of_cycle(problem: Adaptive, point: PointOnBranch) -> Classified:
     upper = point.multipliers[np.imag(point.multipliers) > 0.0]
     if not len(upper):
         return Classified()
     multiplier = complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))])
-    form = point.problem.normal_form("neimark-sacker", point.u, point.value, multiplier)
+    form = problem.normal_form("neimark-sacker", point.u, point.value, multiplier)
     resonance = strong_resonance(multiplier)
     remarks = (f"near the strong resonance {resonance}",) if resonance else ()
     if form is None:

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...continuation.aims import aim_at_multiplier
 from ...continuation.engine import Engine, Solved
-from ...continuation.solved import solved_points
+from ...continuation.layout import solved_points
 
 STEP = 1e-3
 LENGTH = (

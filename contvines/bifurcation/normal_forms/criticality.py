@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...problems.nearness import is_large
 from ...problems.protocol import Problem
 from .coefficients import Forms
 
@@ -53,6 +52,8 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
     flow = problem.spectrum == "flow"
     if problem.kernels.matrix is None:
         return Pitch(None, None, "")
+    from ...problems.nearness import is_large
+
     try:
         if is_large(problem):
             from .sparse_pair import sparse_lyapunov

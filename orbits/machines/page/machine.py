@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines.shared.near_arguments import hinting
-from contvines.shared.near_names import no_parameter
+from contvines.shared.near_names import hinting, no_parameter
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT
 from orbits.contacts.switch import Switch

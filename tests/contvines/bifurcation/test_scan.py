@@ -10,10 +10,9 @@ from hypothesis.extra.numpy import arrays
 
 from contvines.bifurcation.scan import NativeScan, with_arrays
 from contvines.bifurcation.symmetry_test import SymmetryTest
-from contvines.continuation.chunk import Chunk
+from contvines.continuation.chunk import Chunk, Status
 from contvines.continuation.layout import Metric
 from contvines.continuation.rows import Rows
-from contvines.continuation.status import Status
 from contvines.core.library import native
 
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.continuation.chunk import Status
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from contvines.continuation.starts import solve_start
-from contvines.continuation.status import Status
 from contvines.continuation.trace import chunks
 from contvines.core.library import native
 from contvines.problems.protocol import Kernels, ProblemDefaults

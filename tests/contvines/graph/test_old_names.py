@@ -1,6 +1,6 @@
 """Entries of files in which the border at which an event vanishes was called chatter and labelled CH."""
 
-from contvines.graph.old_names import renamed
+from contvines.graph.persistence import renamed
 
 
 def test_kinds_and_labels_of_a_graph():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.attractors.low_discrepancy import low_discrepancy
+from orbits.population.sorting import low_discrepancy
 
 
 @pytest.mark.parametrize("count", [2, 7, 50, 613])

@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orbits import Cavity, Coupled, Orbit, OrbitProblem, Word
+from orbits import FACTORIES, Cavity, Coupled, Orbit, OrbitProblem, Word
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.identity import canonical
-from orbits.factories import FACTORIES
 from orbits.problem import rebuild
 from tests.machines import ABSORBER
 
