@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from orbits import Absorber, Coupled
-from orbits.words.margins import PER_NODE
 
 STRONG = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
 HERE = Path(__file__).parent
@@ -48,7 +47,7 @@ def main():
     edge = h * np.sqrt(1 + 4 / np.pi**2)
     border = reduced.orbit("tt", 1, amplitude=float(edge))
     problem = border.problem("amplitude", symmetric=True)
-    turn = PER_NODE * 0 + 1
+    turn = 1  # the turn is the second margin of the first event
     proofs["pure sliding begins"] = problem.prove("stick", *border.seed(problem), margin=turn)
     proofs["sliding above the printed bound"] = reduced.orbit("tt", 1, amplitude=0.18).prove()
     proofs["stick-slip above the printed bound"] = reduced.orbit("s-s+", 1, amplitude=0.18).prove()
