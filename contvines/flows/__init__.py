@@ -6,5 +6,6 @@ from .auto_files import AutoSolution, read_auto
 from .compiled import CompiledRates
 from .files import read_ode
 from .problem import FlowProblem
+from .settings import FlowSettings
 
-__all__ = ["AutoSolution", "CompiledRates", "FlowProblem", "read_auto", "read_ode"]
+__all__ = ["AutoSolution", "CompiledRates", "FlowProblem", "FlowSettings", "read_auto", "read_ode"]

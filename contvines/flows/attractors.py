@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -11,14 +11,9 @@ from .simulation import rates
 if TYPE_CHECKING:
     from .field import Field
 
-RECURS = 1e-4  # distance of two returns, relative to the size of the motion, that count as one
-NEARLY = 1e-2  # ... after which it is worth simulating more exactly
-LEAST = 1e-2  # of the largest range: a state that moves less is as good as still
-STILL = 1e-9  # size of a motion, relative to the state, that is rest
 SAMPLES = 400  # states of a period that are handed over
 FIRST = 50.0  # time scales of the first transient
 DOUBLINGS = 12  # of the transient
-BESIDE = 1e-3  # of a state: distance from an equilibrium at which a motion begins instead of there
 
 
 class AtRest(ValueError):
@@ -68,14 +63,15 @@ def _run(
 ) -> Any:
     from scipy.integrate import solve_ivp
 
-    size: Any = (1e-8 if rough else 1e-12) * (field.lengths + np.abs(x))
+    s = field.settings
+    relative, absolute = (s.rough_relative, s.rough_absolute) if rough else (s.relative, s.absolute)
     found = solve_ivp(
         rates(field, p),
         (start, stop),
         x,
         method="LSODA",
-        rtol=1e-6 if rough else 1e-10,
-        atol=size,
+        rtol=relative,
+        atol=cast("float", absolute * (field.lengths + np.abs(x))),
         dense_output=dense,
         events=field.events.crossings(field, p) or None,
     )
@@ -86,7 +82,7 @@ def _run(
         raise Stopped(
             f"the event {name} stops the motion at {np.array2string(found.y[:, -1], precision=6)}; begin elsewhere, or with other parameters"
         )
-    if not found.success or not np.isfinite(found.y[:, -1]).all() or np.abs(found.y[:, -1]).max() > 1e12:
+    if not found.success or not np.isfinite(found.y[:, -1]).all() or np.abs(found.y[:, -1]).max() > s.endless:
         raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {found.t[-1]:.6g}")
     return found
 
@@ -94,7 +90,7 @@ def _run(
 def _forced(
     field: Field, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
 ) -> tuple[np.ndarray, np.ndarray, int]:
-    period = float(field.length_of_period(p))
+    period, s = float(field.length_of_period(p)), field.settings
     count = 100 if transient is None else max(1, int(np.ceil(transient / period)))
     for _ in range(doublings if transient is None else 1):
         x = _run(field, p, x, 0.0, count * period, rough=True).y[:, -1]
@@ -105,7 +101,7 @@ def _forced(
             points.append(run.y[:, -1])
             low, high = np.minimum(low, run.y.min(axis=1)), np.maximum(high, run.y.max(axis=1))
             own = (high - low) / field.lengths
-            near = RECURS * np.maximum(own, LEAST * own.max()) + STILL
+            near = s.recurs * np.maximum(own, s.least * own.max()) + s.still
             if (np.abs(points[-1] - points[0]) <= near * field.lengths).all():
                 whole = _run(field, p, points[0], 0.0, k * period, dense=True)
                 times = np.linspace(0.0, k * period, SAMPLES * k + 1)
@@ -121,29 +117,29 @@ def _forced(
 def _free(
     field: Field, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
 ) -> tuple[np.ndarray, np.ndarray, int]:
-    rate = rates(field, p)
+    rate, s = rates(field, p), field.settings
     matrix = field.jacobian(x[None, :], p)[0]
     fastest = float(np.abs(np.linalg.eigvals(matrix)).max())
     span = transient if transient is not None else FIRST / (fastest if fastest > 0.0 else 1.0)
     if not rate(0.0, x).any():
-        x = x + BESIDE * field.lengths / np.arange(
+        x = x + s.beside * field.lengths / np.arange(
             1.0, len(x) + 1
         )  # upwards: concentrations may be zero there
     x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
     for _ in range(doublings):
         run = _run(field, p, x, 0.0, span, dense=True, rough=True)
         ranges = np.ptp(run.y, axis=1)
-        if (ranges <= STILL * (field.lengths + np.abs(x))).all():
+        if (ranges <= s.still * (field.lengths + np.abs(x))).all():
             raise AtRest(x)
         # a plane across the motion where it is fastest, in units of its size
         own = ranges / field.lengths
-        unit = field.lengths * np.maximum(own, LEAST * own.max())
+        unit = field.lengths * np.maximum(own, s.least * own.max())
         speeds = np.linalg.norm([rate(0.0, y) / unit for y in run.y.T], axis=1)
         place = run.y[:, int(np.argmax(speeds))]
         normal = rate(0.0, place) / unit**2
-        if _returned(run, normal, place, NEARLY * unit, longest) is not None:
+        if _returned(run, normal, place, s.nearly * unit, longest) is not None:
             exact = _run(field, p, place, 0.0, span, dense=True)
-            found = _returned(exact, normal, place, RECURS * unit, longest)
+            found = _returned(exact, normal, place, s.recurs * unit, longest)
             if found is not None:
                 period, start = found
                 whole = _run(field, p, start, 0.0, period, dense=True)

@@ -30,16 +30,10 @@ from .witness import Witnessed
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
 
-SAME = 1e-7  # points closer than this, in units of the scale, are one
-AT_REST = 1e-7  # a cycle of a smaller size, in units of the scale, is an equilibrium
-NEARLY_AT_REST = 1e-3  # ... and where a branch comes to an end there, known to fewer digits, of this size
+TINY = np.finfo(float).tiny
 ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
-CLOSE = 1e-6  # distance from an equilibrium, relative to the size of the cycle, at which a branch counts as homoclinic
-LONGEST = 1e3  # times the first period: a branch whose period has grown so much ends as a homoclinic orbit
 MOST = 1280  # intervals
-SENSIBLE = 1e-3  # errors of the trivial multiplier
 ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
-TOUCH = 1e-4  # of differences at an event, in units of the size of the cycle
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
@@ -346,9 +340,10 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
     def _missed(self, u: np.ndarray, p: float, k: int) -> float:
         """By how much the smallest value of an event may be off: the curve is known less well between the mesh points than there."""
         (x, when), sizes = self.touching(u, p, k), self._sizes(self._curve(u)[0])
-        moved = x + TOUCH * np.concatenate([np.diag(sizes), -np.diag(sizes)])
+        touch = self.flow.settings.touch
+        moved = x + touch * np.concatenate([np.diag(sizes), -np.diag(sizes)])
         values = self.flow.events(moved, self.values.at(p), np.full(len(moved), when))[:, k].reshape(2, -1)
-        return float(self.estimated_error(u) * np.abs(values[0] - values[1]).sum() / (2.0 * TOUCH))
+        return float(self.estimated_error(u) * np.abs(values[0] - values[1]).sum() / (2.0 * touch))
 
     def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, float]:
         """The state in which the cycle comes closest to event k, and when."""
@@ -360,7 +355,9 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         """By how much the parameter at which a cycle touches an event may be off."""
         k = int(point.margin_index) - 2 * self.free_period
         missed = self._missed(point.u, float(point.value), k)
-        step = TOUCH / max(float(np.abs(point.tangent[:-1] / self.column_scale).max()), 1e-300)
+        step = self.flow.settings.touch / max(
+            float(np.abs(point.tangent[:-1] / self.column_scale).max()), TINY
+        )
         ends = [
             self._closest(
                 point.u + s * step * point.tangent[:-1], point.value + s * step * point.tangent[-1]
@@ -372,8 +369,8 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
 
     def _from_homoclinic(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
         x = u[: self.states].reshape(-1, self.node) / self.node_scale
-        size = float(np.ptp(x, axis=0).max())
-        short = float(np.log10(LONGEST * self.clock / max(float(u[self.states]), 1e-300)))
+        size, s = float(np.ptp(x, axis=0).max()), self.flow.settings
+        short = float(np.log10(s.longest * self.clock / max(float(u[self.states]), TINY)))
         _, _, jacobian, f = work.along
         closeness = distance_to_rest(jacobian, f, self.node_scale) if work.core is not None else None
         if work.sparse is not None:
@@ -383,7 +380,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
             closeness = _distance_to_rest(scaled, f / self.node_scale)
         if not size > 0.0 or not np.isfinite(closeness):
             return np.array([np.inf, short])
-        return np.array([float(np.log10(max(closeness / size, 1e-300) / CLOSE)), short])
+        return np.array([float(np.log10(max(closeness / size, TINY) / s.homoclinic)), short])
 
     def margin_kind(self, j: int) -> str:
         """A cycle that comes near to an equilibrium ends as a homoclinic orbit; else it touches an event."""
@@ -414,9 +411,9 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         return x, u[self.states + self.free_period :]
 
     def _sizes(self, x: np.ndarray) -> np.ndarray:
-        ranges = np.ptp(x.reshape(-1, self.node), axis=0)
+        ranges, s = np.ptp(x.reshape(-1, self.node), axis=0), self.flow.settings
         return np.maximum(
-            ranges, 1e-6 * self.node_scale * (ranges / self.node_scale).max() + 1e-12 * self.node_scale
+            ranges, s.same * self.node_scale * (ranges / self.node_scale).max() + s.solved * self.node_scale
         )
 
     def accuracy(self, u: np.ndarray, p: float) -> float:
@@ -430,7 +427,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
                 missed = 0.0
         own = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.uncertainty())
         # the trivial multiplier tells more, unless its system is singular, as of nearly homoclinic orbits
-        return max(own, missed) if missed < SENSIBLE else own
+        return max(own, missed) if missed < self.flow.settings.sensible else own
 
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
         """How far the parameter may be from that of an infinite period: of a saddle-node p - p* is as 1 / T^2 to first order, taken twice; of a saddle less is left."""
@@ -440,7 +437,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
     def adapted(self, u: np.ndarray) -> Callable[[np.ndarray], np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
         x, widths = self._curve(u)
-        if np.ptp(x.reshape(-1, self.node) / self.node_scale, axis=0).max() < AT_REST:
+        if np.ptp(x.reshape(-1, self.node) / self.node_scale, axis=0).max() < self.flow.settings.same:
             return None
         new = mesh.equidistributed(self.rule, widths, x, self._sizes(x), self.copies)
         if new is None:
@@ -498,7 +495,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
     def _kind_at(self, u: np.ndarray) -> str:
         """Whether a cycle that is equal to itself half a period later is an equilibrium or a cycle of half the period."""
         y = u[: self.states].reshape(-1, self.node) / self.node_scale
-        return "hopf" if np.ptp(y, axis=0).max() < NEARLY_AT_REST else "period-doubling"
+        return "hopf" if np.ptp(y, axis=0).max() < self.flow.settings.at_rest else "period-doubling"
 
     def _half_later(self, u: np.ndarray) -> np.ndarray:
         v = np.array(u, dtype=float)
@@ -513,14 +510,14 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         return v
 
     def _root(self, u: np.ndarray) -> tuple[Any, np.ndarray]:
-        return self.root(u, self.p0, loose=1e-3) or (self, u)
+        return self.root(u, self.p0, self.flow.settings.at_rest) or (self, u)
 
-    def root(self, u: np.ndarray, p: float, loose: float = SAME) -> tuple[Any, np.ndarray] | None:
+    def root(self, u: np.ndarray, p: float, loose: float | None = None) -> tuple[Any, np.ndarray] | None:
         """The equilibrium, or the cycle of half the period, that a solution only repeats; else None."""
         x, widths = self._curve(u)
         y = x.reshape(-1, self.node)
-        still = AT_REST if loose == SAME else NEARLY_AT_REST
-        if (np.ptp(y, axis=0) <= still * self.node_scale).all() and self.free_period:
+        near = self.flow.settings.same if loose is None else loose
+        if (np.ptp(y, axis=0) <= near * self.node_scale).all() and self.free_period:
             return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p}), y.mean(
                 axis=0
             )
@@ -528,7 +525,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         if self.copies % 2 or (self.free_period == 0 and self.rounds % 2):
             return None
         apart = np.abs(x[:half] - x[half:]).max(axis=(0, 1)) / self.node_scale
-        if not (apart <= loose * (1.0 + np.abs(y).max(axis=0) / self.node_scale)).all():
+        if not (apart <= near * (1.0 + np.abs(y).max(axis=0) / self.node_scale)).all():
             return None
         period = u[self.states] / 2.0 if self.free_period else 0.0
         shorter = np.concatenate(
@@ -621,7 +618,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         if self.flow.mirror is not None:
             forms.append(self._mirrored(u)[: self.states].reshape(x.shape))
         found = [self._means(form, widths, period) for form in forms]
-        best = min(found, key=in_order(np.full(len(found[0]), SAME)))
+        best = min(found, key=in_order(np.full(len(found[0]), self.flow.settings.same)))
         scale = np.resize(self.column_scale, len(best))
         return ("cycle", self.rounds if not self.free_period else 0, self.node), best * scale
 
@@ -635,7 +632,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         mean = share @ points
         rest = points - mean
         size = np.sqrt(share @ rest**2)
-        moves = size > SAME * size.max()  # what stands still has no shape
+        moves = size > self.flow.settings.same * size.max()  # what stands still has no shape
         unit = np.where(moves, rest / np.where(moves, size, 1.0), 0.0)
         second = np.einsum("i,ia,ib->ab", share, rest, unit)
         area = np.einsum("i,ia,ib->ab", turns, unit, slopes)

@@ -17,7 +17,6 @@ from .witness import Witnessed
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
 
-CRITICAL = 1e-8  # real part of an eigenvalue, relative to the largest one, that is zero
 FIRST = 20  # intervals of a cycle that has just been born
 
 
@@ -115,7 +114,9 @@ class Equilibria(Witnessed, AlgebraicProblem):
             return []
         distances, size = np.abs(values[upper].real), float(np.abs(values).max())
         order = np.argsort(distances, kind="stable")
-        critical = [upper[k] for k in order if k == order[0] or distances[k] < CRITICAL * size]
+        critical = [
+            upper[k] for k in order if k == order[0] or distances[k] < self.flow.settings.critical * size
+        ]
         return [cycles_at(self, u, p, float(values[k].imag), vectors[:, k]) for k in critical]
 
     def population(self, over: str | None = None, **options: Any):

@@ -15,6 +15,7 @@ from ..problems.large.colouring import Colouring
 from ..problems.parameters import ParameterSet
 from .compiled import CompiledRates
 from .events import Events
+from .settings import FlowSettings
 from .sparse import LARGE, found_sparsity
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so 1e-14 of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
-AGREE = 1e-10  # relative difference between a call with many points and calls with one
 
 
 class Field:
@@ -40,6 +40,7 @@ class Field:
     values : ParameterSet
     period : callable, optional
         p -> period of f in t; None for autonomous flows.
+    settings : FlowSettings, optional
 
     Raises
     ------
@@ -55,7 +56,9 @@ class Field:
         start: np.ndarray,
         values: ParameterSet,
         period: Callable | None = None,
+        settings: FlowSettings | None = None,
     ) -> None:
+        self.settings = settings or FlowSettings()
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
         self.events = Events(None, period is not None, start, values)
         self.values, self.period, self.node = values, period, len(start)
@@ -169,7 +172,8 @@ class Field:
             together = self._stacked(f, x, parameters, t, shape)
         except Exception:  # a function of one point may fail in any way when it is called with many
             return False
-        return bool(np.allclose(single, together, rtol=AGREE, atol=AGREE * np.abs(single).max(initial=0.0)))
+        agree = self.settings.agree
+        return bool(np.allclose(single, together, rtol=agree, atol=agree * np.abs(single).max(initial=0.0)))
 
     def _find_sparsity(self, start: np.ndarray) -> Colouring | None:
         """Where df/dx has entries, at places beside the start."""

@@ -120,6 +120,7 @@ def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
         name=description["name"],
         degree=about["degree"],
         error=about["error"],
+        settings=about.get("settings"),
         period=period,
         scale=about["scale"],
         states=about.get("states"),

@@ -25,7 +25,7 @@ from scipy.sparse.linalg import splu
 
 from . import mesh
 
-NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
+NEAR = 0.001  # distance along the critical direction at which the third derivative counts
 LARGEST = 100_000  # unknowns of one return up to which there are normal forms
 STEP = 0.02  # of differences of Jacobians, in lengths over which the right-hand side bends
 FIRST = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))

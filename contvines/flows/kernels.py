@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from .collocation import Rule
 
 LARGEST = 707.0  # logarithms of multipliers are clamped here, where floats end
-STILL = 1e-12  # speeds of a cycle that is an equilibrium
 
 
 class Collocated(Protocol):
@@ -206,7 +205,7 @@ def spectrum(data: Collocated, work: CycleWork) -> tuple[np.ndarray, float]:
     points, p, _, _ = work.along
     speeds = data.field(points, p) / data.node_scale
     sizes = np.linalg.norm(speeds, axis=1)
-    if not sizes.min() > STILL * (1.0 + sizes.max()):
+    if not sizes.min() > data.field.settings.solved * (1.0 + sizes.max()):
         values = multipliers_of(
             left, right
         )  # a cycle that is an equilibrium: all motions are as slow as none
@@ -227,7 +226,7 @@ def _trivial_missed(data: Collocated, work: CycleWork, left: np.ndarray, right: 
     points, p, _, _ = work.along
     speeds = data.field(points, p) / data.node_scale
     sizes = np.linalg.norm(speeds, axis=1)
-    if not sizes.min() > STILL * (1.0 + sizes.max()):
+    if not sizes.min() > data.field.settings.solved * (1.0 + sizes.max()):
         return 0.0
     return abs((planes if work.core is None else across)(left, right, speeds)[1] - 1.0)
 

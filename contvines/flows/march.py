@@ -9,9 +9,10 @@ from scipy.integrate import RK45
 
 from ..problems.functions import NotEvaluable
 from .field import Field
+from .settings import FlowSettings
 
-RELATIVE = 1e-7  # error of a step, relative to the state
-ABSOLUTE = 1e-9  # ... and relative to the size of the box
+FIRST = 0.001  # step at first, in times after which a motion has gone its size
+ROUNDING = 64 * np.finfo(float).eps  # a step of this size does not move the time
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 TABLEAU = RK45.A[:, :5], RK45.B, RK45.C, RK45.E
 
@@ -21,6 +22,8 @@ class Rates(Protocol):
 
     @property
     def forced(self) -> bool: ...
+    @property
+    def settings(self) -> FlowSettings: ...
     def __call__(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray: ...
 
 
@@ -41,7 +44,7 @@ class March:
         self.x, self.t = np.array(x, dtype=float), np.zeros(len(x))
         self.slope = self._rates(self.x, self.t)
         speed = np.abs(self.slope / size).max(axis=1)
-        self.h = 1e-3 / np.where(np.isfinite(speed) & (speed > 0.0), speed, 1.0)
+        self.h = FIRST / np.where(np.isfinite(speed) & (speed > 0.0), speed, 1.0)
         self.steps = 0
         self.stopped = np.zeros(len(x), dtype=bool)  # by an event of the flow
         self._stop(np.arange(len(x)))
@@ -73,6 +76,7 @@ class March:
     def go(self, rows: np.ndarray, steps: int, until: float = np.inf, far: float = np.inf) -> None:
         """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN."""
         a, b, c, e = TABLEAU
+        relative, absolute = self.field.settings.rough_relative, self.field.settings.rough_absolute
         for _ in range(steps):
             rows = rows[np.isfinite(self.x[rows, 0]) & (self.t[rows] < until)]
             if not rows.size:
@@ -86,7 +90,7 @@ class March:
                 new = x + h[:, None] * np.einsum("j,jnd->nd", b, k[:6])
                 k[6] = self._rates(new, t + h)
                 wrong = h[:, None] * np.einsum("j,jnd->nd", e, k)
-                allowed = ABSOLUTE * self.size + RELATIVE * np.maximum(np.abs(x), np.abs(new))
+                allowed = absolute * self.size + relative * np.maximum(np.abs(x), np.abs(new))
                 error = np.sqrt(np.mean((wrong / allowed) ** 2, axis=1))
                 factor = np.clip(SAFETY * error**-0.2, SHRINK, GROW)
             good = error <= 1.0
@@ -98,7 +102,7 @@ class March:
                 scaled = np.where(whole | ~good, h * factor, self.h[rows])
             self.h[rows] = np.where(np.isfinite(error), scaled, SHRINK * h)
             lost = (np.abs(self.x[rows]) > far * self.size).any(axis=1) | (
-                h < 1e-14 * np.maximum(1.0, np.abs(t))
+                h < ROUNDING * np.maximum(1.0, np.abs(t))
             )
             self.x[rows[lost]] = np.nan
             self.steps += len(rows)

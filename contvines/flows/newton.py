@@ -9,7 +9,6 @@ import numpy as np
 from .kernels import bordered, linearise
 
 SWEEPS = 40
-EXACT = 1e-12  # last correction, in units of the scale
 ROUNDS = 8  # of a mesh that is adapted
 
 
@@ -18,17 +17,17 @@ def solved(problem: Any, u: np.ndarray, p: float) -> np.ndarray | None:
     n, work = problem.dimension, problem.workspace()
     border, step, tangent = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
     border[n] = 1.0
-    u, before = np.array(u, dtype=float), np.inf
+    u, before, s = np.array(u, dtype=float), np.inf, problem.field.settings
     for _ in range(SWEEPS):
         if not linearise(problem, u, p, work) < np.inf:
             return None
         bordered(problem, work, border, 0.0, step, tangent)
         size = float((np.abs(step[:n]) / (problem.column_scale + np.abs(u))).max())
-        if not np.isfinite(size) or size > 1e6:
+        if not np.isfinite(size) or size > s.diverged:
             return None
         # far from a solution a part of the step leads further than all of it
         u += step[:n] * min(1.0, 0.5 / size if size > 0.0 else 1.0)
-        if size < EXACT or (size < 1e-9 and size > 0.3 * before):
+        if size < s.solved or (size < s.rounded and size > 0.3 * before):
             return u
         before = size
     return None

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
-SPREAD = 1e4  # ratio of growths in one simulation: twelve digits of the integrator leave eight of the least
 
 
 class CycleOrbit:
@@ -158,7 +157,7 @@ class CycleOrbit:
     def simulated_multipliers(self) -> np.ndarray:
         """Multipliers from the variational equations, integrated along simulations (scipy's DOP853), the trivial one included; largest first.
 
-        Each simulation begins on the cycle and lasts until one perturbation has grown 1e4 times as much as another, at most an eighth of the period;
+        Each simulation begins on the cycle and lasts until one perturbation has grown `spread` times as much as another (:class:`FlowSettings`), at most an eighth of the period;
         the multipliers are those of the product of all, from its factors. So 1e+30 and 1e-30 are right beside each other. Of sparse flows growth alone ends
         a simulation: their multipliers below 1e-8 are not known.
 
@@ -183,7 +182,7 @@ class CycleOrbit:
                 f"the simulation from t = {times[0]:.6g} on the cycle fails; orbit.multipliers has the multipliers by collocation"
             )
         spread = np.linalg.norm if self._problem.sparse is not None else np.linalg.cond
-        if spread(matrix * scale / scale[:, None]) < SPREAD:
+        if spread(matrix * scale / scale[:, None]) < field.settings.spread:
             return [matrix]
         half = len(times) // 2
         if len(times) == 2:

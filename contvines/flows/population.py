@@ -12,6 +12,7 @@ from ..problems.registry import rebuild
 from .attractors import AtRest, Escaped, Irregular, Stopped
 from .field import Field
 from .march import March
+from .settings import FlowSettings
 
 BLOCK, STEPS = (
     200,
@@ -22,8 +23,6 @@ MOST_STEPS = 20000  # in so many periods
 PER_PERIOD = 30  # steps that count as a period in the budget of an atlas
 LONGEST = 16  # returns, or periods of the forcing, after which a motion is taken to be irregular
 DOUBLINGS = 4  # of the transient of a motion that is looked at by itself
-NEAR = 2e-3  # a state so near to a motion, relative to its size, belongs to it
-FAR = 1e4  # times the box: escaped
 BRIEF = (3, 12)  # values, and starts at each, of a brief look
 TRIED = (4, 2, 2)  # motions that recur nowhere, after which no others are looked at by themselves
 NEWTON = 30
@@ -31,9 +30,9 @@ GOLDEN = 60  # steps to the root
 GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
 BLOCKS = 20
 FEW = 8  # motions at least, copies of those there are ...
-BESIDE = 1e-3  # ... begun so far from them, in units of the box
 SIGMAS = 3.0
-SAME = 1e-6  # equilibria, relative to the box
+RANK = 512 * np.finfo(float).eps  # singular values below this part of the largest one are zero
+TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +60,11 @@ class WithVectors:
     def forced(self) -> bool:
         """Whether f depends on time."""
         return self.field.forced
+
+    @property
+    def settings(self) -> FlowSettings:
+        """Of the field."""
+        return self.field.settings
 
     def __call__(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """Rates, shape (n, 2 d)."""
@@ -152,10 +156,10 @@ class FlowPopulation:
             for _ in range(steps if period is None else periods):
                 left = np.flatnonzero(index < 0)
                 if period is None:
-                    march.go(left, BLOCK, far=FAR)
+                    march.go(left, BLOCK, far=self.field.settings.far)
                 else:
                     rounds += BLOCK_PERIODS
-                    march.go(left, MOST_STEPS, until=rounds * period, far=FAR)
+                    march.go(left, MOST_STEPS, until=rounds * period, far=self.field.settings.far)
                 gone = left[~np.isfinite(march.x[left]).all(axis=1)]
                 for kind, which in (
                     ("escaped", gone[~march.stopped[gone]]),
@@ -202,7 +206,8 @@ class FlowPopulation:
 
     def _on(self, x: np.ndarray, curve: np.ndarray) -> np.ndarray:
         """Which states lie on a curve, of one point or of many that follow each other round it (in forced flows: apart)."""
-        size = np.maximum(np.ptp(curve, axis=0), 1e-3 * self.size)
+        s = self.field.settings
+        size = np.maximum(np.ptp(curve, axis=0), s.smallest * self.size)
         near = np.zeros(len(x), dtype=bool)
         apart = self.field.forced or len(curve) == 1
         ahead = (curve if apart else np.roll(curve, -1, axis=0)) - curve
@@ -212,7 +217,7 @@ class FlowPopulation:
             gap = (state - curve) / size
             share = np.clip((gap * unit).sum(axis=1) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
             distance = np.sqrt(((gap - share[:, None] * unit) ** 2).sum(axis=1))
-            near[i] = distance.min() <= NEAR * np.sqrt(self.node)
+            near[i] = distance.min() <= s.near * np.sqrt(self.node)
         return near
 
     def _recognise(
@@ -260,7 +265,11 @@ class FlowPopulation:
         """The equilibrium or cycle on which the motion from a state settles; None where it is neither, or not soon."""
         if not self.field.forced:
             rest = self._rest(x, p)
-            if rest is not None and np.abs((rest - x) / self.size).max() <= NEAR and self._attracts(rest, p):
+            if (
+                rest is not None
+                and np.abs((rest - x) / self.size).max() <= self.field.settings.near
+                and self._attracts(rest, p)
+            ):
                 return self._equilibrium(rest, p)
         known = {self.parameter: p}
         try:
@@ -304,9 +313,9 @@ class FlowPopulation:
                     return None
             if not (np.isfinite(rate).all() and np.isfinite(matrix).all()):
                 return None
-            step = np.linalg.lstsq(matrix * self.size, -rate, rcond=1e-13)[0] * self.size
+            step = np.linalg.lstsq(matrix * self.size, -rate, rcond=RANK)[0] * self.size
             x = x + step
-            if np.abs(step / self.size).max() < 1e-12:
+            if np.abs(step / self.size).max() < self.field.settings.solved:
                 return x
         return None
 
@@ -318,14 +327,14 @@ class FlowPopulation:
         d, count = self.node, max(len(x), FEW)
         states = x[np.arange(count) % len(x)]
         rng = np.random.default_rng(2)
-        states[len(x) :] += BESIDE * self.size * rng.standard_normal((count - len(x), d))
+        states[len(x) :] += self.field.settings.beside * self.size * rng.standard_normal((count - len(x), d))
         try:
             first = np.zeros(1) if self.field.forced else None
             speed = float(np.abs(np.linalg.eigvals(self.field.jacobian(x[:1], p, first)[0])).max())
             span = (
                 float(self.field.length_of_period(p)) * 10.0
                 if self.field.forced
-                else GROWTH / BLOCKS / max(speed, 1e-12)
+                else GROWTH / BLOCKS / max(speed, TINY)
             )
             vectors = self.size * rng.standard_normal((count, d))
             march = March(WithVectors(self.field), p, np.hstack([states, vectors]), np.tile(self.size, 2))
@@ -359,7 +368,11 @@ class FlowPopulation:
         for start in np.asarray(starts, dtype=float):
             x = self._rest(start, p)
             inside = x is not None and ((x >= self._box[:, 0]) & (x <= self._box[:, 1])).all()
-            if x is not None and inside and not any((np.abs(x - y) <= SAME * self.size).all() for y in found):
+            if (
+                x is not None
+                and inside
+                and not any((np.abs(x - y) <= self.field.settings.same * self.size).all() for y in found)
+            ):
                 found.append(x)
         return [(self._equilibrium(x, p).problem, x) for x in found]
 

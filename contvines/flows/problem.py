@@ -15,7 +15,7 @@ from ..problems.protocol import Seed
 from ..problems.registry import addresses
 from ..problems.scales import flat_start, given_scale
 from . import mesh
-from .attractors import STILL, Stopped, recurrence
+from .attractors import Stopped, recurrence
 from .collocation import rule
 from .compiled import CompiledRates
 from .cycles import CycleProblem
@@ -26,7 +26,8 @@ from .field import Field
 from .names import OF_STATES, checked_names
 from .newton import settled
 from .orbit import CycleOrbit
-from .population import FlowPopulation
+from .population import RANK, TINY, FlowPopulation
+from .settings import FlowSettings
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
 
 INTERVALS = 40  # of a cycle from data, to begin with
-MIRRORED = 1e-8
 FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to its slowest point is the one to which it is homoclinic
 
 
@@ -63,9 +63,11 @@ class FlowProblem:
         df/dp, shape (d,); of several parameters by name.
     degree : int
         Of the collocation polynomials, 2 to 7.
-    error : float
+    error : float, optional
         Largest error of a cycle between its mesh points, relative to its size; intervals are halved where it is larger. Periods,
         parameters and multipliers have the square of that, nearly.
+    settings : FlowSettings or mapping of str to float, optional
+        Other tolerances than the defaults; see :class:`contvines.flows.settings.FlowSettings`.
     scale : float or array_like of shape (d,), optional
         What counts as large in each coordinate.
     states : sequence of str, optional
@@ -95,7 +97,8 @@ class FlowProblem:
         jacobian: Callable | None = None,
         derivative: Callable | Mapping[str, Callable] | None = None,
         degree: int = 4,
-        error: float = 1e-6,
+        error: float | None = None,
+        settings: FlowSettings | Mapping[str, float] | None = None,
         scale: ArrayLike | None = None,
         states: Sequence[str] | None = None,
         events: Mapping[str, Callable] | None = None,
@@ -105,9 +108,10 @@ class FlowProblem:
         if not callable(f):
             raise ValueError(f"f = {f!r} must be a function of (x, p), or of (x, p, t) with period=")
         rule(degree)
-        if not (isinstance(error, (int, float)) and 0.0 < error < 1.0):
+        self.settings = FlowSettings.of(settings)
+        self.error = self.settings.error if error is None else error
+        if not (isinstance(self.error, (int, float)) and 0.0 < self.error < 1.0):
             raise ValueError(f"error = {error!r} must be a number between 0 and 1")
-        self.error = float(error)
         self.x0, self.degree, self.name = flat_start(x0), int(degree), name
         if isinstance(f, CompiledRates):
             names = list(ParameterSet(params, parameter).values)
@@ -125,7 +129,9 @@ class FlowProblem:
         self.mirror_shifted = False
         self.origin: tuple[str, str, str] | None = None  # file, name and digest, of a flow that a study names
         self.sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles
-        self.field = Field(f, jacobian, derivative, self.x0, self.values, _period(period, self.values))
+        self.field = Field(
+            f, jacobian, derivative, self.x0, self.values, _period(period, self.values), self.settings
+        )
         self.events = self.field.events = Events(events, self.field.forced, self.x0, self.values)
         if self.field.forced:
             self.field.length_of_period(self.values.start)
@@ -197,10 +203,10 @@ class FlowProblem:
         images = np.array([self.mirror(y) for y in x])
         still = self.mirror(np.zeros(len(self.x0)))
         wanted = np.array([self.mirror(y) - still for y in self.field(x, p, t)])
-        size = 1e-300 + np.abs(wanted).max()
+        size = TINY + np.abs(wanted).max()
         for shifted in (True, False):
             found = self.field(images, p, t + (0.5 * period if shifted else 0.0))
-            if np.abs(found - wanted).max() <= MIRRORED * size:
+            if np.abs(found - wanted).max() <= self.settings.agree * size:
                 self.mirror_shifted = shifted
                 return
         raise ValueError(
@@ -332,8 +338,9 @@ class FlowProblem:
         field, d = self.field.against(parameters), len(self.x0)
         ranges = np.ptp(states, axis=0)
         given = given_scale(self.given_scale, d)
-        moves = (ranges > STILL * field.lengths).any()
-        own = np.maximum(ranges, 1e-3 * ranges.max()) if moves else field.lengths
+        s = self.settings
+        moves = (ranges > s.still * field.lengths).any()
+        own = np.maximum(ranges, s.smallest * ranges.max()) if moves else field.lengths
         scale = own if given is None else given
         copies = 1 if field.forced and rounds % 2 else 2
         count = INTERVALS * (rounds if field.forced else 1)
@@ -349,7 +356,7 @@ class FlowProblem:
             )
         cycles, u = found
         # rest of a forced flow is a motion with the period of its forcing
-        if not field.forced and np.ptp(u[: cycles.states].reshape(-1, d) / scale, axis=0).max() < 1e-6:
+        if not field.forced and np.ptp(u[: cycles.states].reshape(-1, d) / scale, axis=0).max() < s.same:
             raise ValueError("Newton's method leads from these states to an equilibrium, not to a cycle")
         name = cycles.crossed(u, parameters.start)
         if name is not None:
@@ -456,18 +463,18 @@ class FlowProblem:
         """A sentence on the equilibrium near which a cycle of a long period stays longest."""
         values = values.against(values.varying, {values.varying: p})
         field = self.field.against(values)
-        speed = np.linalg.norm(field(x, p) / np.maximum(np.ptp(x, axis=0), 1e-300), axis=1)
+        speed = np.linalg.norm(field(x, p) / np.maximum(np.ptp(x, axis=0), TINY), axis=1)
         slowest = x[int(np.argmin(speed))]
         y, size, settled = slowest.copy(), np.ptp(x, axis=0), False
         for _ in range(20):
             matrix = field.jacobian(y[None, :], p)[0]
-            step = np.linalg.lstsq(matrix, -field(y[None, :], p)[0], rcond=1e-14)[0]
+            step = np.linalg.lstsq(matrix, -field(y[None, :], p)[0], rcond=RANK)[0]
             y = y + step
             if not (np.abs(y - slowest) <= FAR * size).all():
                 break
-            settled = bool((np.abs(step) <= 1e-9 * size).all())
+            settled = bool((np.abs(step) <= self.settings.rounded * size).all())
         found = np.linalg.eigvals(field.jacobian((y if settled else slowest)[None, :], p)[0])
-        place = ", ".join(f"{v:.6g}" for v in np.where(np.abs(y) > 1e-9 * size, y, 0.0))
+        place = ", ".join(f"{v:.6g}" for v in np.where(np.abs(y) > self.settings.rounded * size, y, 0.0))
         values_there = ", ".join(_shortly(value) for value in np.sort_complex(found))
         if not settled or (found.real < 0.0).all() or (found.real > 0.0).all():
             place = ", ".join(f"{v:.6g}" for v in slowest)
@@ -482,6 +489,7 @@ class FlowProblem:
         return {
             "degree": self.degree,
             "error": self.error,
+            **({"settings": self.settings.changed()} if self.settings.changed() else {}),
             "period": period if not callable(period) else where["period"],
             "x0": self.x0.tolist(),
             "scale": None if scale is None else scale.tolist(),

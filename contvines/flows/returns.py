@@ -20,9 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 SWEEPS = 20  # of Newton's method in an interval
-EXACT = 1e-14  # corrections, in units of the scale and of the state, below which it has converged
+EXACT = 64 * np.finfo(float).eps  # corrections, in units of the scale and of the state: converged to rounding
 QUICK = 0.1  # part of the last correction above which slopes are renewed
-ROUNDED = 1e-9  # ... below which they are rounding where they shrink no more
 
 
 class Step(NamedTuple):
@@ -209,7 +208,7 @@ class ReturnMap:
         """
         d, m, count = self.node, self.rule.degree, len(x)
         nodes, last, inverse = np.array(guess), np.full(count, np.inf), np.empty(0)
-        slow = beside is None
+        slow, rounded = beside is None, self.field.settings.rounded
         for sweep in range(SWEEPS):
             whole = np.concatenate([x[:, None, :], nodes], axis=1)
             if slow or sweep == 0:
@@ -224,11 +223,11 @@ class ReturnMap:
             change = -np.matmul(inverse, residual.reshape(count, m * d, 1)).reshape(count, m, d)
             nodes = nodes + change
             size = np.abs(change / (self.scale + np.abs(nodes))).max(axis=(1, 2))
-            done = (size < EXACT) | ((size < ROUNDED) & (size > 0.3 * last)) | ~np.isfinite(size)
+            done = (size < EXACT) | ((size < rounded) & (size > 0.3 * last)) | ~np.isfinite(size)
             slow, last = bool((size > QUICK * last)[~done].any()), size
             if done.all():
                 break
-        nodes[~(last < ROUNDED)] = np.nan
+        nodes[~(last < rounded)] = np.nan
         return nodes
 
     @staticmethod

@@ -15,9 +15,11 @@ from . import mesh
 from .returns import ReturnMap
 from .simulation import rates
 
-SOLVED = 1e-13  # change of the place at which a cycle passes the plane, in units of the period
+SOLVED = (
+    512 * np.finfo(float).eps
+)  # change of the place at which a cycle passes the plane, in units of the period
+STEP = np.cbrt(np.finfo(float).eps)  # of a central difference
 SWEEPS = 30
-RELATIVE, ABSOLUTE = 1e-10, 1e-12  # errors of the simulation, the second in units of the cycle's states
 AWAY, LATEST = 0.5, 1.6  # periods after which, and until when, the next passage is looked for
 
 
@@ -64,7 +66,7 @@ class FlowSection:
         x, _, widths = problem.parts(u, self.p)
         if not self.free:
             return mesh.evaluate(problem.rule, widths, x, np.arange(problem.rounds) / problem.rounds)
-        place, h = 0.0, 1e-6
+        place, h = 0.0, STEP
         for _ in range(SWEEPS):
             here, ahead, back = mesh.evaluate(
                 problem.rule, widths, x, np.array([place, place + h, place - h])
@@ -80,7 +82,8 @@ class FlowSection:
         from scipy.integrate import solve_ivp
 
         r, field, start = self.returns, self.returns.field, self._states(np.asarray(x, dtype=float))
-        options: dict[str, Any] = {"method": "DOP853", "rtol": RELATIVE, "atol": ABSOLUTE * r.scale}
+        s = field.settings
+        options: dict[str, Any] = {"method": "DOP853", "rtol": s.relative, "atol": s.absolute * r.scale}
         rate, lost = rates(field, self.p), np.full(len(self.kept), np.nan)
         if not np.isfinite(start).all():
             return lost

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from .field import Field
-
-TIGHT = {"rtol": 1e-12, "method": "DOP853"}
 
 
 def rates(field: Field, p: float) -> Callable[[float, np.ndarray], np.ndarray]:
@@ -35,8 +33,9 @@ def integrated(field: Field, p: float, x: np.ndarray, start: float, stop: float)
     """The state at another time; NaN where the integrator fails."""
     from scipy.integrate import solve_ivp
 
-    size: Any = 1e-13 * (1e-3 * field.lengths + np.abs(x))
-    found = solve_ivp(rates(field, p), (start, stop), x, atol=size, **TIGHT)
+    s = field.settings
+    size = cast("float", s.exact_absolute * (s.smallest * field.lengths + np.abs(x)))
+    found = solve_ivp(rates(field, p), (start, stop), x, method="DOP853", rtol=s.exact_relative, atol=size)
     return found.y[:, -1] if found.success else np.full(len(x), np.nan)
 
 
@@ -54,6 +53,9 @@ def variational(
         return np.concatenate([field(state, p, time)[0], (matrix @ y[d:].reshape(d, d)).reshape(-1)])
 
     begin = np.concatenate([x, np.eye(d).reshape(-1)])
-    found = solve_ivp(rate, (start, stop), begin, atol=1e-13, **TIGHT)
+    s = field.settings
+    found = solve_ivp(
+        rate, (start, stop), begin, method="DOP853", rtol=s.exact_relative, atol=s.exact_absolute
+    )
     end = found.y[:, -1] if found.success else np.full(len(begin), np.nan)
     return end[:d], end[d:].reshape(d, d)

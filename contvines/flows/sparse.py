@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 LARGE = 30  # states from which on entries that are zero are looked for
 DENSE = 0.25  # part of the entries from which on a Jacobian counts as full
 LEADING = 10  # multipliers
+ROUNDING = 64 * np.finfo(float).eps  # relative, of a shift of singular matrices
 ACCURATE = 1e-11  # of multipliers, relative
-SMALL = 1e-8  # size of the border rows: they are chosen as pivots last, and the factors stay sparse
+SMALL = ROUNDING**0.5  # size of the border rows: they are chosen as pivots last, and the factors stay sparse
 
 
 def found_sparsity(jacobian: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> Colouring | None:
@@ -118,7 +119,7 @@ def solve_bordered(
     sides[n:] *= SMALL
     whole = sp.block_array([[matrix, columns], [SMALL * rows, SMALL * corner]], format="csc")
     top = float(np.abs(matrix.data).max(initial=1.0))
-    for shift in (0.0, 1e-14 * top):
+    for shift in (0.0, ROUNDING * top):
         shifted = whole + shift * sp.identity(len(sides), format="csc") if shift else whole
         try:
             factors = SuperLUFactors(shifted.tocsc(), "COLAMD")

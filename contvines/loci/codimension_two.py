@@ -192,7 +192,9 @@ def solved(
     residual = plane.at(place)
     if not _holds(kind, plane):
         return None
-    margins = plane.row[2 * plane.m :]
+    margins, problem = plane.row[2 * plane.m :], locus.at(place.q)
+    if isinstance(problem, Adaptive):
+        error = max(error, problem.accuracy(place.u, place.p))
     zero = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < END))
     return PlanePoint(
         label="",
@@ -205,7 +207,7 @@ def solved(
         error=error,
         residual=residual,
         margins=zero,
-        problem=locus.at(place.q),
+        problem=problem,
     )
 
 

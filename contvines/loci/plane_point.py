@@ -27,7 +27,7 @@ class PlanePoint:
         Of the full period.
     real : bool
     error : float
-        Last correction of Newton's method, relative.
+        Of both values, relative: the last correction of Newton's method, of cycles on a mesh also what the mesh leaves.
     residual : float
     margins : tuple of int
         Places of the margins that vanish there.

@@ -17,7 +17,7 @@ from . import witness
 from .listed import DEMOS, CycleDemo
 
 TABLE = Path(__file__).with_name("table.json")
-PATIENCE = 30.0  # seconds of processor time for the witness's solve of a point
+PATIENCE = 120.0  # seconds of processor time for the witness's solve of a point
 
 
 def points_of(graph: Any) -> list[Any]:

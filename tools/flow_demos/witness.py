@@ -68,8 +68,8 @@ class Shooting:
 
     def jacobian(self, x: np.ndarray, p: float, *t: float) -> np.ndarray:
         """df/dx by the complex step."""
-        steps = x + 1e-30j * np.eye(self.d)
-        return np.array([np.imag(self.rates(s, p, *t)) for s in steps]).T / 1e-30
+        columns = x[:, None] + 1e-30j * np.eye(self.d)  # all at once
+        return np.array([np.imag(row) * np.ones(self.d) for row in self.rates(columns, p, *t)]) / 1e-30
 
     def part(self, x: np.ndarray, p: float, start: float, stop: float) -> tuple[np.ndarray, np.ndarray]:
         """State and its derivative after a part."""
@@ -143,12 +143,12 @@ def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
     return condition
 
 
-def newton(residual: Any, y: np.ndarray, scale: np.ndarray, known: Any = None) -> np.ndarray:
-    """A root, with derivatives by central differences (the rows that ``known`` gives are not differenced); the chord method at the end."""
+def newton(residual: Any, y: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """A root, by the chord method with derivatives by central differences, which are renewed every fourth step."""
     matrix: Any = None
-    for step in range(14):
+    for step in range(16):
         value = residual(y)
-        if step < 3 or step % 3 == 0:
+        if step % 4 == 0:
             columns = []
             for j in range(len(y)):
                 e = np.zeros(len(y))
