@@ -217,7 +217,7 @@ def still(run: PageTrajectory) -> bool:
     """Whether a self-excited motion has come to rest, without a wall that holds it."""
     if run.machine.forced or run.events or run.held:
         return False
-    states = run.sample(np.linspace(max(run.clocks[0], run.end - TWO_PI), run.end, LATE))
+    states = run.onwards(np.linspace(0.0, TWO_PI, LATE))
     return bool((np.ptp(states, axis=0) <= SETTLED * (1.0 + np.abs(states).max(axis=0))).all())
 
 
@@ -299,6 +299,7 @@ def of_record(record: Record, first: int, last: int, periods: int, far: float) -
         run.modes[:stop],
         run.events[:last],
         float(run.clocks[last]),
+        run.states[last],
         run.status,
     )
     return solved(part, last - first, periods, far)

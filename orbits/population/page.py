@@ -219,7 +219,7 @@ class PageFleet:
         """A self-excited motion that comes to rest: at an equilibrium, where one is found."""
         from orbits.flows.page.smooth import rest_near
 
-        rest = rest_near(self.machine, run.modes[-1], run.params, run.sample(np.array([run.end]))[0])
+        rest = rest_near(self.machine, run.modes[-1], run.params, run.last)
         if rest is None:
             return sorting.plain(i, "stuck", state=_start(self.stepper))
         place, problem, u = sorting.known(rest, "stuck", 0)

@@ -39,6 +39,8 @@ class PageTrajectory:
     events : list of (contact, kind, sign), m entries
     end : float
         Clock at which the run ended.
+    last : float array (n,)
+        State then.
     status : int
         REACHED the wanted time; FULL: as many events as were asked for; STILL: nothing happened for very long.
     """
@@ -50,6 +52,7 @@ class PageTrajectory:
     modes: list[tuple[int, ...]]
     events: list[tuple[int, int, int]]
     end: float
+    last: np.ndarray
     status: int
 
     def __len__(self) -> int:
@@ -98,6 +101,12 @@ class PageTrajectory:
     def coordinates(self, times: np.ndarray) -> np.ndarray:
         """The states at these times (forcing periods, or time over 2 pi), shape (m, n)."""
         return self.sample(TWO_PI * times)
+
+    def onwards(self, clocks: np.ndarray) -> np.ndarray:
+        """States, shape (m, n), so long after the end of a run of a self-excited machine, in its last mode and without events."""
+        compiled, mode = self.machine.compiled, self.modes[-1]
+        watch = compiled.watch(self.machine.equations.pattern_key(mode))
+        return watch.path(self.last, clocks, compiled.numbers(self.params, mode))
 
     def sample(self, clocks: np.ndarray) -> np.ndarray:
         """States, shape (m, n), at increasing clocks within the run."""
@@ -170,6 +179,7 @@ def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
         modes,
         events,
         stepper.base + stepper.clock,
+        stepper.state.copy(),
         status,
     )
 
