@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import struct
 from pathlib import Path
 from typing import NamedTuple
 
@@ -77,8 +78,9 @@ def write(target: Path) -> None:
         lines += [f"## {group}", "", sentence, "", '<div class="gallery">']
         for one in members:
             names.append(one.name)
+            look = ' class="tall"' if _tall(one.name) else ""
             lines += [
-                f'<a href="{one.name}.html"><img src="../_static/gallery/{one.name}.png" alt="" loading="lazy"><span>{_safe(one.title)}</span></a>'
+                f'<a href="{one.name}.html"><img{look} src="../_static/gallery/{one.name}.png" alt="" loading="lazy"><span>{_safe(one.title)}</span></a>'
             ]
             _page(one, target)
         lines += ["</div>", ""]
@@ -100,9 +102,12 @@ def _page(one: Example, target: Path) -> None:
         if path.parent.name == "machines"
         else f"python {path}"
     )
+    picture = f"![{one.title}]({one.name}.png)"
+    if _tall(one.name):
+        picture = f'<img src="{one.name}.png" width="520" alt="{one.title.replace(chr(34), "")}">'
     text = f"""# {one.title}
 
-![{one.title}]({one.name}.png)
+{picture}
 
 ```sh
 {run}
@@ -120,6 +125,13 @@ def _page(one: Example, target: Path) -> None:
 ```
 """
     _keep(target / f"{one.name}.md", text)
+
+
+def _tall(name: str) -> bool:
+    """Whether the picture of an example is higher than wide: panels one above another."""
+    with (DOCS / "gallery" / f"{name}.png").open("rb") as file:
+        width, height = struct.unpack(">II", file.read(24)[16:])
+    return height > width
 
 
 def _keep(path: Path, text: str) -> None:

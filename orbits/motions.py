@@ -34,7 +34,7 @@ class Simulated:
         """A solution as an orbit."""
         raise TypeError("a problem says what its orbits are")
 
-    def witness(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
+    def simulated_attractors(self, p: float, starts: int = 5) -> list[dict[str, Any]]:
         """What the machine settles on at a parameter value, simulated from rest and from random starts.
 
         Returns
@@ -57,7 +57,7 @@ class Simulated:
                 )
             except SimulationError:
                 continue  # it lies within a wall
-            text = None if motion.word is None else _told(motion.word)
+            text = None if motion.word is None else _canonical_text(motion.word)
             key = (text or "", int(motion.periods), motion.kind)
             if key not in found:
                 found[key] = {"word": text, "periods": key[1], "kind": motion.kind, "share": 0.0}
@@ -70,9 +70,9 @@ class Simulated:
         return [found[key] for key in sorted(found)]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable motion as `witness` lists it."""
+        """A stable motion as `simulated_attractors` lists it."""
         kind = self.flow.kind(self.orbit(u, p))
-        return {"word": _told(self.word), "periods": self.periods, "kind": kind}
+        return {"word": _canonical_text(self.word), "periods": self.periods, "kind": kind}
 
     def section(self, p: float) -> Section:
         """Its motions by simulation, once per period of the cycle.
@@ -97,6 +97,6 @@ class Simulated:
         return Section(simulator_of(self.model, params), self.word, self.periods, self.equations.unit[0])
 
 
-def _told(word: Word) -> str:
+def _canonical_text(word: Word) -> str:
     """One spelling for one motion, mirror images apart."""
     return word.canonical().spelled()

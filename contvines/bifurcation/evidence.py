@@ -69,7 +69,7 @@ def evidence(
     engine: Engine,
     rows: np.ndarray,
     smallest: np.ndarray,
-    told: Spectra,
+    spectra: Spectra,
     slopes: np.ndarray,
     signs: np.ndarray,
     flat: float,
@@ -83,7 +83,7 @@ def evidence(
     rows : ndarray, shape (n, row_size)
     smallest : ndarray, shape (n,)
         Smallest margins.
-    told : Spectra
+    spectra : Spectra
         What their multipliers tell.
     slopes : ndarray, shape (n,)
         The parameter's parts of the tangents; up to ``flat`` they are rounding.
@@ -99,11 +99,11 @@ def evidence(
     sides = [
         directions,
         np.sign(signs),
-        *(told.past + 1),
+        *(spectra.past + 1),
         *(np.where(values >= 0.0, 1, -1) for values in tests),
     ]
-    distances = np.column_stack([slopes, *told.near, own, smallest - MARGIN])
-    return Evidence(np.column_stack(sides).astype(int), distances, rows[:, 2 * engine.m :], told.pairs)
+    distances = np.column_stack([slopes, *spectra.near, own, smallest - MARGIN])
+    return Evidence(np.column_stack(sides).astype(int), distances, rows[:, 2 * engine.m :], spectra.pairs)
 
 
 def filled(sides: np.ndarray) -> np.ndarray:

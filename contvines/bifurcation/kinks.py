@@ -41,15 +41,15 @@ def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np
     return (signs[:-1] == signs[1:]) & inside
 
 
-def nearest(engine: Engine, rows: np.ndarray, told: Spectra | None = None) -> np.ndarray:
+def nearest(engine: Engine, rows: np.ndarray, spectra: Spectra | None = None) -> np.ndarray:
     """Distance of the real multiplier nearest to +1 (of eigenvalues: to zero, pairs included, which pass the axis elsewhere), shape (n,).
 
     Of points whose multipliers are known to tell something it need not be computed again; on the circle it is NaN there.
     """
     if engine.many:
         return -rows[:, 0]
-    if told is not None and engine.detection != "real":
-        return np.abs(told.near[0])
+    if spectra is not None and engine.detection != "real":
+        return np.abs(spectra.near[0])
     with np.errstate(all="ignore"):
         if engine.detection == "real":
             sizes = np.hypot(rows[:, : 2 * engine.m : 2], rows[:, 1 : 2 * engine.m : 2])

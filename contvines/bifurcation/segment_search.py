@@ -212,7 +212,7 @@ class SegmentSearch:
         return events
 
     # ------------------------------------------------------------------ what the ends of a segment do not tell
-    def told(self, points: Sequence[Solved]) -> Evidence:
+    def evidence_of(self, points: Sequence[Solved]) -> Evidence:
         """What some points tell."""
         own = np.array([[own.at(point) for own in self.own] for point in points])
         rows = np.array([point.row for point in points])
@@ -237,7 +237,7 @@ class SegmentSearch:
         """
         if not real and (window := self.passed(segment)) is not None:
             return window
-        ends = self.told([segment.a, segment.b])
+        ends = self.evidence_of([segment.a, segment.b])
         smallest = ends.first_margin - 1
 
         def look(low: float, high: float) -> tuple[list[tuple[float, Solved]], Evidence, np.ndarray]:
@@ -246,7 +246,7 @@ class SegmentSearch:
             found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
             if not found:
                 return found, ends, np.zeros(0, dtype=bool)
-            seen, (one, other) = self.told([point for _, point in found]), ends.sides
+            seen, (one, other) = self.evidence_of([point for _, point in found]), ends.sides
             new = ((seen.sides - one) * (seen.sides - other) * seen.sides * one * other != 0).any(axis=1)
             if real and not ends.outside.any():
                 new |= seen.outside

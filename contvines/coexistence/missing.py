@@ -43,7 +43,7 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
     return found
 
 
-def told(graph: Graph, command: str) -> str:
+def missing_text(graph: Graph, command: str) -> str:
     """What the look has found, in one line with the command that adds it; empty if nothing."""
     if not graph.missing:
         return ""

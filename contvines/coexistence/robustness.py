@@ -112,16 +112,16 @@ class Robustness:
         low, high = self.share_interval
         units = self.shown_units
 
-        def told(number: str, name: str) -> str:
+        def with_unit(number: str, name: str) -> str:
             return f"{number} {units.get(name, '')}".rstrip()
 
-        text = f"{short_word(self.word)}  k={self.periods}  {self.parameter} = {told(figures(self.value), self.parameter)}\n"
+        text = f"{short_word(self.word)}  k={self.periods}  {self.parameter} = {with_unit(figures(self.value), self.parameter)}\n"
         if np.isfinite(self.share):
             text += f"  share of starts: {self.share:.2%} ({low:.2%} to {high:.2%})\n"
         if np.isfinite(self.distance):
             changes, at = self.shown(self.kick), self.shown(self.place)
-            kick = ", ".join(f"{name} {told(f'{x:+.4g}', name)}" for name, x in zip(self.names, changes))
-            place = ", ".join(f"{name} = {told(f'{x:.4g}', name)}" for name, x in zip(self.names, at))
+            kick = ", ".join(f"{name} {with_unit(f'{x:+.4g}', name)}" for name, x in zip(self.names, changes))
+            place = ", ".join(f"{name} = {with_unit(f'{x:.4g}', name)}" for name, x in zip(self.names, at))
             text += f"  smallest kick that leads elsewhere: {self.distance:.4g} ({kick} at {place}), to {short_word(self.reaches)}"
         else:
             text += "  no kick within the box of starts leads elsewhere"

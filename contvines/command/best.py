@@ -71,7 +71,7 @@ def choose(
     """Survey, choose, refine, and print the other outcomes."""
     import dataclasses
 
-    from contvines.command.compare import peaks_compared, told_compared
+    from contvines.command.compare import compared_text, peaks_compared
     from contvines.command.survey_study import (
         family_of,
         options_of,
@@ -146,9 +146,11 @@ def choose(
         }
         tell(choice, about)
     elif not quiet:
-        typer.echo(fitted(_told(choice, outcome, found, units, _wish(largest, quantile, len(drawn)), least)))
+        typer.echo(
+            fitted(_choice_text(choice, outcome, found, units, _wish(largest, quantile, len(drawn)), least))
+        )
         if alone:
-            typer.echo(fitted(told_compared(chosen, study.parameter, study.within, ALONE)))
+            typer.echo(fitted(compared_text(chosen, study.parameter, study.within, ALONE)))
     if plot is not None:
         figure = found.plot(outcome)
         _draw(figure, choice, list(plan.axes), "at worst" if quantile is None else f"{100.0 * quantile:g} %")
@@ -228,7 +230,7 @@ def _draw(figure: Figure, choice: Choice, names: list[str], over: str) -> None:
         axes.legend()
 
 
-def _told(
+def _choice_text(
     choice: Choice, outcome: str, found: Survey, units: dict[str, str], wish: str, covered: float
 ) -> str:
     """The choice, and what it costs: the other outcomes beside the best that each could be on the grid."""

@@ -113,7 +113,7 @@ def calibrate(
             sentence + "." if sentence.startswith(str(path)) else f"{path}: {sentence}."
         ) from None
     units = {name: model.units[name] for name in names if model.units.get(name)}
-    tell(fitted(told(found, units, guesses)), as_json(found, units) if json_ else None)
+    tell(fitted(calibration_text(found, units, guesses)), as_json(found, units) if json_ else None)
     if plot is not None:
         from contvines.graph.table import with_unit
         from contvines.plots.measured import plot_calibration
@@ -138,7 +138,7 @@ def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
     }
 
 
-def told(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -> str:
+def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -> str:
     """The estimates, what the data cannot tell apart, and lines for the study."""
     from contvines.text_table import Table, terminal_width
 
@@ -188,7 +188,7 @@ def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
                 f"--unknown {name}: the model {study.name!r} has no such parameter{near_quantity(name, known)}; it has {', '.join(known)}."
             )
         if study.sort is Sort.PHYSICAL:
-            model = model.told_by(name)
+            model = model.given_by(name)
     values = model.quantities if study.sort is Sort.PHYSICAL else study.parameters
     return model, {name: float(values[name]) for name in names}
 

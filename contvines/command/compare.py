@@ -126,7 +126,7 @@ def peaks_compared(
     return found
 
 
-def told_compared(model: Any, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
+def compared_text(model: Any, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
     """The largest responses to compare with, as a sentence."""
     from orbits.design.references import NAMES
 

@@ -87,14 +87,14 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     places = {key: "model" for key in model if key in known and known[key].choice not in groups}
     places |= {key: "start" for key in start if key in known}
     try:
-        told = {key: (model if section == "model" else start)[key] for key, section in places.items()}
-        told |= {key: model[key] for key in ("contact_time",) if key in model}
-        machine = physical(name, told, bool(model.get("unusual", False)))
+        given = {key: (model if section == "model" else start)[key] for key, section in places.items()}
+        given |= {key: model[key] for key in ("contact_time",) if key in model}
+        machine = physical(name, given, bool(model.get("unusual", False)))
     except QuantityError as error:
         section = places.get(str(error).split(" ", 1)[0].rstrip(":"), "model")
         return None, _without_texts(plain), [*wrong, f"[{section}] {error}."]
     if usual is not None and usual in known:
-        machine = machine.told_by(usual)
+        machine = machine.given_by(usual)
     for section, values in plain.items():
         if isinstance(values, dict) and section not in ("start", "survey", "random"):
             plain[section], refused = _numbers(machine, known, section, values, usual)
@@ -160,12 +160,12 @@ def _numbers(
     if name is None:
         return changed, wrong
     for key, texts in _lists(values) if name in known else ():
-        told = machine.told_by(name)
-        pairs = [number_of(told, name, text, f"[{section}] {key}[{i}]") for i, text in enumerate(texts)]
+        given = machine.given_by(name)
+        pairs = [number_of(given, name, text, f"[{section}] {key}[{i}]") for i, text in enumerate(texts)]
         refused = [refusal for _, refusal in pairs if refusal]
         wrong += refused
         # numbers that nothing is wrong with in place of refused ones, so that these are refused once
-        sound = told.quantities.get(name) or 1.0
+        sound = given.quantities.get(name) or 1.0
         changed[key] = (
             np.linspace(0.5 * sound, sound, len(pairs)).tolist() if refused else [n for n, _ in pairs]
         )
@@ -211,7 +211,7 @@ def number_of(
         number = number * units.si(quantity, 1.0, unit) / units.si(quantity, 1.0, own)
     if not spread:
         try:
-            machine.told_by(name).check_at(name, number)
+            machine.given_by(name).check_at(name, number)
         except QuantityError as error:
             return value, f"{place} = {value!r}: {error}."
     return number, None

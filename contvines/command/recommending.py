@@ -146,7 +146,7 @@ def recommend(
         best = _best([place for place in places if place.samples == work.samples])
         if best is None:
             break
-    return work.told(places, best, cost, target)
+    return work.recommendation(places, best, cost, target)
 
 
 class _Work:
@@ -200,7 +200,7 @@ class _Work:
                     f"{study.path}: what is to be chosen? [survey] vary needs one parameter with a range, for example "
                     f"vary.{names[0]} = {{ within = [from, to], count = {PLACES} }}."
                 )
-            model = model.told_by(self.name)
+            model = model.given_by(self.name)
         self.plan, self.model = plan, model
         self.family, self.units = machines_of(study, model), units_of(study, model)
         self.drawn = plan.samples
@@ -322,7 +322,7 @@ class _Work:
         return found
 
     # ------------------------------------------------------------------ at the choice
-    def told(
+    def recommendation(
         self, places: list[Place], best: Place | None, cost: float, target: float | None
     ) -> Recommendation:
         """All that is printed of the choice."""

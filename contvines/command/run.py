@@ -191,14 +191,14 @@ def _run(
     if not quiet:
         _tell(graph, target, command == "diagram", details)
     if compare and not quiet:
-        from contvines.command.compare import told_compared
+        from contvines.command.compare import compared_text
         from contvines.text_table import fitted
 
-        typer.echo("\n" + fitted(told_compared(study.model, study.parameter, study.within, compare)))
+        typer.echo("\n" + fitted(compared_text(study.model, study.parameter, study.within, compare)))
     if command == "diagram" and graph.missing:
-        from contvines.coexistence.missing import told
+        from contvines.coexistence.missing import missing_text
 
-        say(told(graph, f"run contvines atlas {path} to add it"), quiet)
+        say(missing_text(graph, f"run contvines atlas {path} to add it"), quiet)
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 

@@ -52,7 +52,7 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
                 f"{study.path}: [survey] vary.{name}: every diagram runs over {name} already; vary something else."
             )
         if study.sort is Sort.PHYSICAL and name not in study.conditions:
-            model = model.told_by(name)
+            model = model.given_by(name)
             said[name] = _numbers(model, name, said[name], f"{study.path}: [survey] vary.{name}")
     try:
         plan = planned(said, study.survey.sampling, study.survey.samples, study.survey.seed)

@@ -127,7 +127,7 @@ def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | No
     return found
 
 
-def told_start(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
+def start_remark(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     """A sentence on a start that was no solution: how large F is there, and where the branch begins instead; empty if it was one.
 
     Parameters

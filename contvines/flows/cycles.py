@@ -18,6 +18,7 @@ from .collocation import Rule, rule
 from .core import distance_to_rest
 from .events import FINER
 from .field import Field
+from .flow_attractors import FlowAttractors
 from .forms import LARGEST, cubic, neimark_sacker, quadratic
 from .kernels import KERNELS, SPARSE, CycleWork, linearise, spectrum
 from .measures import CycleMeasures
@@ -25,7 +26,6 @@ from .returns import ReturnMap
 from .section import FlowSection
 from .sparse import LEADING, SparseEquations
 from .sparse import distance_to_rest as rest_of_sparse
-from .witness import Witnessed
 
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
@@ -37,7 +37,7 @@ ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's m
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
-class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
+class CycleProblem(FlowAttractors, CycleMeasures, ProblemDefaults):
     """Cycles of x' = f(x, p), or of x' = f(x, p, t) with a given period in t.
 
     Unknowns are the values at the nodes of each interval of the mesh, shape (N, m, d), the period (autonomous flows), and the widths
@@ -398,7 +398,7 @@ class CycleProblem(Witnessed, CycleMeasures, ProblemDefaults):
         if k >= 0:
             return self.flow.dead_end(self, point, k)
         x, period, _ = self.parts(point.u, point.value)
-        return self.flow.told_homoclinic(x.reshape(-1, self.node), period, point.value, self.values)
+        return self.flow.homoclinic_text(x.reshape(-1, self.node), period, point.value, self.values)
 
     # ------------------------------------------------------------------ mesh
     def estimated_error(self, u: np.ndarray) -> float:

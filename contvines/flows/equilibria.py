@@ -12,7 +12,7 @@ from ..problems.algebraic import AlgebraicProblem
 from ..problems.functions import NotEvaluable
 from ..problems.protocol import Embedding, Seed
 from . import mesh
-from .witness import Witnessed
+from .flow_attractors import FlowAttractors
 
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 FIRST = 20  # intervals of a cycle that has just been born
 
 
-class Equilibria(Witnessed, AlgebraicProblem):
+class Equilibria(FlowAttractors, AlgebraicProblem):
     """Equilibria of x' = f(x, p).
 
     Parameters

@@ -417,7 +417,7 @@ class FlowProblem:
         """One of ``own_measures``."""
         raise KeyError(name)
 
-    def witness(self, problem: Any, p: float, starts: int) -> list[dict[str, Any]]:
+    def simulated_attractors(self, problem: Any, p: float, starts: int) -> list[dict[str, Any]]:
         """What starts settle on: "word" and "kind" of each motion, "periods" of the forcing, and "u", the extremes of its states."""
         population = problem.population(problem.parameter)
         motions, _, _ = population.settle(population.starts(starts, 7, p), p)
@@ -428,7 +428,7 @@ class FlowProblem:
         return sorted(found, key=lambda one: (str(one["word"]), one["kind"], one.get("u", [])))
 
     def known(self, problem: Any, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable solution as `witness` lists it."""
+        """A stable solution as `simulated_attractors` lists it."""
         if problem.spectrum == "flow":
             word, periods, curve = "equilibrium", 0, np.asarray(u, dtype=float)[None, : problem.node]
         else:
@@ -459,7 +459,7 @@ class FlowProblem:
         return f"the event {self.events.names[k]} stops the motion: it is zero{ahead}, where {place}"
 
     # ------------------------------------------------------------------ words
-    def told_homoclinic(self, x: np.ndarray, period: float, p: float, values: ParameterSet) -> str:
+    def homoclinic_text(self, x: np.ndarray, period: float, p: float, values: ParameterSet) -> str:
         """A sentence on the equilibrium near which a cycle of a long period stays longest."""
         values = values.against(values.varying, {values.varying: p})
         field = self.field.against(values)

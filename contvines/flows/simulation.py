@@ -1,4 +1,4 @@
-"""Simulation of flows by scipy's integrators: the witness of cycles, and the way to what attracts."""
+"""Simulation of flows by scipy's integrators: checks cycles, and finds attractors."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from ..branches.tracing import trace_half
 from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
-from ..continuation.starts import solve_start, told_start
+from ..continuation.starts import solve_start, start_remark
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
 from .identity import parts_further_on
@@ -56,7 +56,7 @@ def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) ->
             f"the start at {problem.parameter} = {start.p:.10g} is beyond a border ({problem.margin_kind(j)}, "
             f"margin {margin:.3g}), so no machine can follow it; start elsewhere or set virtual = true"
         )
-    run.graph.start = told_start(engine, u, p, start)
+    run.graph.start = start_remark(engine, u, p, start)
     run.queue.append(Pending(problem, start.u, start.p, start.tangent, depth=depth))
 
 

@@ -98,7 +98,7 @@ def stretches(graph: Graph, label: str) -> list[tuple[list[int], dict[str, Any]]
     return found
 
 
-def told(graph: Graph, label: str) -> str:
+def proof_text(graph: Graph, label: str) -> str:
     """The proved stretches of a branch in words."""
     return ", ".join(
         f"{low:.6g}..{high:.6g} {'real' if about['real'] else 'virtual'}{STABLE[about['stable']]}"

@@ -11,7 +11,7 @@ from ..bifurcation.kinds import BORDERS, KINDS
 from ..branches.special_point import TRANSCRITICAL
 from ..shared.number_text import figures_in
 from ..text_table import Table, fitted, terminal_width
-from .proving import mark, told
+from .proving import mark, proof_text
 from .shortening import short_text, short_word, short_words
 from .unresolved import sentences
 
@@ -72,7 +72,7 @@ def branches_table(graph: Graph) -> Table:
         number = figures_in(graph.within, [low, high, *(end for interval in inner for end in interval)])
         stable = stable_text(branch, number)
         where = f"{number(low)}..{number(high)}"
-        proved = told(graph, branch.label)
+        proved = proof_text(graph, branch.label)
         rows.append((branch.label, describe(branch), where, stable, proved, str(len(branch)), ends(branch)))
     head = (
         "branch",
@@ -189,13 +189,13 @@ def ends(branch: Branch) -> str:
         return "closed"
     at = dict(reversed(branch.marks))
     first, last = (at.get(i, "") for i in (0, len(branch) - 1))
-    told = [
+    texts = [
         label or short_text(short_words(why)) or "?"
         for label, why in zip((first, last), branch.ended, strict=True)
     ]
-    if told[0] == told[1] and not first:
-        return f"{told[0]} (both ends)"
-    return " .. ".join(told)
+    if texts[0] == texts[1] and not first:
+        return f"{texts[0]} (both ends)"
+    return " .. ".join(texts)
 
 
 def with_unit(name: str, unit: str | None) -> str:

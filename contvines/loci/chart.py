@@ -220,7 +220,7 @@ _MOTION = {"word": str | None, "kind": str | None, "periods": int | None}
 
 
 def _motions(found: Any) -> bool:
-    """Whether these are motions as `problem.witness` lists them."""
+    """Whether these are motions as `problem.simulated_attractors` lists them."""
     return fits(found, list[dict[str, Any]]) and all(
         fits(motion.get(name), kind) for motion in found for name, kind in _MOTION.items()
     )

@@ -327,12 +327,12 @@ class Charting:
             self.graph.branches.values(), self.chart.loci.values(), self.over, self.chart.within
         )
         for region in self.counted("region", regions):
-            region.attractors = self.witness(problem, region.at, known)
+            region.attractors = self.attractors_at(problem, region.at, known)
             for place in region.elsewhere:
-                place["attractors"] = self.witness(problem, (place["at"][0], place["at"][1]), known)
+                place["attractors"] = self.attractors_at(problem, (place["at"][0], place["at"][1]), known)
         self.chart.regions = regions
 
-    def witness(
+    def attractors_at(
         self, problem: Problem, place: tuple[float, float], motions: KnownMotions
     ) -> list[dict[str, Any]]:
         """What is stable at a place, by simulation and by continuation; empty where the problem cannot be simulated."""
@@ -341,7 +341,7 @@ class Charting:
         if known is None:
             there = problem.against(problem.parameter, {self.over: place[1]})
             size = 0.0 if problem.scales is None else float(problem.scales.unknowns.max())
-            known = {"attractors": together(there.witness(place[0]), motions.at(place), size)}
+            known = {"attractors": together(there.simulated_attractors(place[0]), motions.at(place), size)}
             self.journal.record(key, known)
         return list(known["attractors"])
 

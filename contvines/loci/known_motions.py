@@ -57,7 +57,7 @@ class KnownMotions:
 
     def _of_branch(self, branch: Branch) -> list[Start]:
         problem = branch.problem
-        if problem is None or not branch.real or not _told(problem):
+        if problem is None or not branch.real or not _can_be_listed(problem):
             return []
         q, key, found = problem.parameters[self.over], _key(problem, branch.label), []
         for first, last, stable in branch.pieces():
@@ -68,7 +68,7 @@ class KnownMotions:
 
     def _of_locus(self, locus: Locus) -> list[Start]:
         problem = locus.problem
-        if problem is None or problem.condition in (FOLD, BRANCH) or not _told(problem.base):
+        if problem is None or problem.condition in (FOLD, BRANCH) or not _can_be_listed(problem.base):
             return []
         key, found = _key(problem.base, locus.label), []
         for i in np.linspace(0, len(locus) - 1, 12).astype(int):
@@ -126,8 +126,8 @@ class KnownMotions:
         return reached
 
 
-def _told(problem: Any) -> bool:
-    """Whether a solution can be listed as `witness` lists it; one without events is seen by any simulation."""
+def _can_be_listed(problem: Any) -> bool:
+    """Whether a solution can be listed as `simulated_attractors` lists it; one without events is seen by any simulation."""
     about = problem.describe()
     return isinstance(problem, Attracting) and about.get("word") != ""
 

@@ -77,7 +77,7 @@ class Populated(Protocol):
 
 @runtime_checkable
 class Attracting(Protocol):
-    """Tells of a solution that is known to be stable what ``witness`` would tell of it."""
+    """Tells of a solution that is known to be stable what ``simulated_attractors`` would tell of it."""
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]: ...
 

@@ -69,7 +69,7 @@ class SimulatedMap:
         """Its motions, once per period of the cycle."""
         return MapSection(self, p)
 
-    def witness(self, p: float, starts: int = 24) -> list[dict[str, Any]]:
+    def simulated_attractors(self, p: float, starts: int = 24) -> list[dict[str, Any]]:
         """What starts round the cycle settle on at a parameter value: "word", "periods" and "kind" of each motion."""
         population = self.population()
         motions, _, _ = population.settle(population.starts(starts, 7, p), p)
@@ -79,7 +79,7 @@ class SimulatedMap:
         ]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable cycle as `witness` lists it."""
+        """A stable cycle as `simulated_attractors` lists it."""
         return {"word": f"{self.cycle}-cycle", "periods": self.cycle, "kind": "cycle"}
 
 
@@ -92,7 +92,7 @@ class SimulatedFlow:
     residuals: Callable[[np.ndarray, float], np.ndarray]
     scales: Scales | None
 
-    def witness(self, p: float, starts: int = 12) -> list[dict[str, Any]]:
+    def simulated_attractors(self, p: float, starts: int = 12) -> list[dict[str, Any]]:
         """What starts round u0 settle on: equilibria, each once, oscillations, or nothing within reach; none without a flow.
 
         "word" and "kind" are "equilibrium", "oscillation" or "escapes"; an equilibrium has its place, "u".
@@ -115,7 +115,7 @@ class SimulatedFlow:
         return sorted(found, key=lambda one: (one["kind"], one.get("u", [])))
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable equilibrium as `witness` lists it."""
+        """A stable equilibrium as `simulated_attractors` lists it."""
         place = [float(x) for x in u[: self.node]]
         return {"word": "equilibrium", "periods": 0, "kind": "equilibrium", "u": place}
 

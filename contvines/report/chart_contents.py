@@ -10,7 +10,7 @@ from ..graph.shortening import short_word
 from ..plots.chart import COLORS
 from ..plots.style import MARKS, PLAIN, axis_label
 from ..problems.abilities import Animated
-from .numbers import plain_label, rounded, shortened, told_of
+from .numbers import plain_label, readable_model, rounded, shortened
 
 if TYPE_CHECKING:
     from ..loci.chart import Chart
@@ -47,7 +47,7 @@ def chart_contents(chart: Chart, source: str) -> dict[str, Any]:
     return {
         "version": __version__,
         "source": source,
-        "model": told_of(chart.model),
+        "model": readable_model(chart.model),
         "settings": {str(k): v for k, v in chart.settings.items()},
         "finished": chart.finished,
         "message": chart.message,

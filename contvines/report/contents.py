@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..graph.measures import default_measure
-from ..graph.proving import mark, told
+from ..graph.proving import mark, proof_text
 from ..graph.shortening import motion_name, short_word
 from ..plots.style import axis_label, mark_of
 from ..problems.abilities import Animated
-from .numbers import plain_label, rounded, shortened, told_of
+from .numbers import plain_label, readable_model, rounded, shortened
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -49,7 +49,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "source": source,
         "parameter": graph.parameter,
         "within": [float(v) for v in graph.within],
-        "model": told_of(graph.model),
+        "model": readable_model(graph.model),
         "settings": {str(k): v for k, v in graph.settings.items()},
         "finished": graph.finished,
         "message": graph.message,
@@ -88,7 +88,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
         "stable_points": None if branch.stable is None else branch.stable.astype(int).tolist(),
         "measures": measures,
         "marks": [[int(i), label] for i, label in branch.marks],
-        "proof": told(graph, branch.label),
+        "proof": proof_text(graph, branch.label),
         "multipliers": [_pairs(row[:8]) for row in branch.multipliers],
         "margin": shortened(branch.margin),
     }

@@ -27,7 +27,7 @@ def rounded(value: object) -> Any:
     return float(f"{value:.5g}") if isinstance(value, float) else value
 
 
-def told_of(model: dict[str, Any]) -> dict[str, Any]:
+def readable_model(model: dict[str, Any]) -> dict[str, Any]:
     """What a page says of a machine: its plain entries; of files only their names, not where they lay."""
     plain = {str(k): v for k, v in model.items() if not isinstance(v, dict | list)}
     return {k: PurePath(v).name if k == "page" else v for k, v in plain.items()}

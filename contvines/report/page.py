@@ -50,7 +50,7 @@ def write_report(
     """
     place = Path(target)
     check_page(place)
-    kind, data = told(result, str(source))
+    kind, data = content_of(result, str(source))
     data["trust"] = trust
     try:
         place.write_text(page(data, kind), encoding="utf-8")
@@ -59,7 +59,7 @@ def write_report(
     return place
 
 
-def told(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[str, Any]]:
+def content_of(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[str, Any]]:
     """Which page shows a result, and the data for it."""
     from ..graph.graph import Graph
     from ..loci.chart import Chart

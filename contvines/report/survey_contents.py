@@ -45,13 +45,13 @@ def survey_contents(survey: Survey, source: str) -> dict[str, Any]:
         "names": {
             name: plain_label(label_of(survey, name)) for name in (*survey.plan.names, *survey.columns)
         },
-        "about": {str(k): _told(v) for k, v in survey.about.items()},
+        "about": {str(k): _as_text(v) for k, v in survey.about.items()},
     }
 
 
-def _told(value: object) -> str:
+def _as_text(value: object) -> str:
     if isinstance(value, dict):
-        return ", ".join(f"{k}: {_told(v)}" for k, v in value.items())
+        return ", ".join(f"{k}: {_as_text(v)}" for k, v in value.items())
     if isinstance(value, list | tuple):
-        return ", ".join(_told(v) for v in value)
+        return ", ".join(_as_text(v) for v in value)
     return str(value)

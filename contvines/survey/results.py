@@ -126,7 +126,7 @@ class Survey(Resumable):
         import xarray
 
         dims = self.plan.dimensions
-        told = {
+        described = {
             name: {
                 key: table[name]
                 for key, table in (("units", self.units), ("long_name", self.notation))
@@ -135,17 +135,21 @@ class Survey(Resumable):
             for name in (*self.plan.names, *self.columns)
         }
         variables: dict[str, Any] = {
-            name: (dims, values, told[name]) for name, values in self.columns.items()
+            name: (dims, values, described[name]) for name, values in self.columns.items()
         }
         variables["note"] = (
             dims,
             self.notes.astype(str),
             {"long_name": "why the system failed, or what is not known of it"},
         )
-        coords: dict[str, Any] = {name: (name, values, told[name]) for name, values in self.plan.axes.items()}
+        coords: dict[str, Any] = {
+            name: (name, values, described[name]) for name, values in self.plan.axes.items()
+        }
         if self.plan.samples:
             coords["sample"] = ("sample", np.arange(self.plan.shape[-1], dtype=np.int32))
-            coords |= {name: ("sample", values, told[name]) for name, values in self.plan.samples.items()}
+            coords |= {
+                name: ("sample", values, described[name]) for name, values in self.plan.samples.items()
+            }
         return xarray.Dataset(variables, coords, {"about": json.dumps(self.about, sort_keys=True)})
 
     def save(self, path: str | Path) -> None:

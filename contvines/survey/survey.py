@@ -125,7 +125,7 @@ def survey(
         family, over, (float(within[0]), float(within[1])), functions, gaps, values, starts, options, atlas
     )
     systems = plan.systems()
-    told = _told(plan, over, job.within, about)
+    description = _description(plan, over, job.within, about)
     digest = digest_of(plan, over, job.within, about)
     if cluster is not None:
         pools.need_dask()
@@ -148,7 +148,7 @@ def survey(
         except KeyboardInterrupt:
             stopped = True
         found = [rows.found.get(i) or Row(i, {}, NOT_YET) for i in range(len(systems))]
-    result = Survey.of(plan, found, dict(units or {}), {**told, "digest": digest}, notation_of(family))
+    result = Survey.of(plan, found, dict(units or {}), {**description, "digest": digest}, notation_of(family))
     if stopped:
         again = partial(
             survey, family, plan, over=over, within=within, outcomes=outcomes, gaps=gaps, values=values, starts=starts, atlas=atlas,
@@ -162,11 +162,13 @@ def survey(
 
 def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None) -> str:
     """What decides a survey's rows: surveys that must give the same share it."""
-    text = json.dumps({"rows": MEANING, **_told(plan, over, within, about)}, sort_keys=True, default=str)
+    text = json.dumps(
+        {"rows": MEANING, **_description(plan, over, within, about)}, sort_keys=True, default=str
+    )
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _told(
+def _description(
     plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None
 ) -> dict[str, Any]:
     return {

@@ -101,10 +101,10 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
     if (every or not seeds) and len(problem.word):
         beside = [(*turned(problem, *near, index)[:2], near[1]) for near in nearby if near is not None]
         seeds += escapes(border, beside)
-    return [_told(read_alike(seed, before)) for seed in seeds]
+    return [_with_word(read_alike(seed, before)) for seed in seeds]
 
 
-def _told(seed: Seed) -> Seed:
+def _with_word(seed: Seed) -> Seed:
     """The seed with its word in the note."""
     return seed._replace(note=f"{seed.note}, the word becomes {seed.problem.spelling or 'free of events'}")
 

@@ -225,11 +225,11 @@ def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Any:
         raise ParameterError(
             "nothing is unknown: name a parameter and a guess, for example restitution = 0.6"
         )
-    told = getattr(machine, "told_by", None)
+    given_by = getattr(machine, "given_by", None)
     for name in unknown:
-        machine = told(name) if told is not None else machine
+        machine = given_by(name) if given_by is not None else machine
         machine.place_of(name)
-        told = getattr(machine, "told_by", None)
+        given_by = getattr(machine, "given_by", None)
     return machine
 
 

@@ -76,7 +76,7 @@ class SimulationError(ValueError):
     """A start or a length of a run that cannot be, or a motion that does not go on; the sentence says the way out."""
 
 
-def told(start: Mapping[str, float], allowed: Sequence[str]) -> dict[str, float]:
+def checked_start(start: Mapping[str, float], allowed: Sequence[str]) -> dict[str, float]:
     """The entries of a start as numbers.
 
     Raises

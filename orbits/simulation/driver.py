@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.flows.protocol import SimulationError, told
+from orbits.flows.protocol import SimulationError, checked_start
 from orbits.machines.stepping import EVENTS_FULL, PSI, RATE, V_RATE, Machine, V, W
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def first_state(
             w, v = model.relative(q1, q2, params)
             w_rate, v_rate = model.relative(q1_rate, q2_rate, params)
             given = {"w": w, "w_rate": w_rate, "v": float(v), "v_rate": float(v_rate)} | given
-    for key, value in told(given, allowed).items():
+    for key, value in checked_start(given, allowed).items():
         state[_KEYS[key]] = value
     _check(state, engine.walls(params))
     engine.launch(state, params)

@@ -12,7 +12,7 @@ import numpy as np
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.stepper import TWO_PI, Stepper
-from orbits.flows.protocol import Record, told
+from orbits.flows.protocol import Record, checked_start
 from orbits.machines.page.machine import Machine
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ class PageSimulator:
         if isinstance(start, np.ndarray):
             return start
         names = self.machine.states
-        given = told(dict(start or {}), [*names, *(["phase"] if self.forced else [])])
+        given = checked_start(dict(start or {}), [*names, *(["phase"] if self.forced else [])])
         return np.array([given.get("phase", 0.0), *(given.get(name, 0.0) for name in names)])
 
     @property

@@ -1,6 +1,6 @@
 """Once round a periodic orbit by simulation: the return map from one of its events to itself.
 
-Nothing here knows the equations that continuation solves, so it can serve as a witness for them. Derivatives
+Nothing here knows the equations that continuation solves, so it can check them. Derivatives
 are central differences of the simulated map.
 """
 
@@ -74,23 +74,23 @@ def go_round(
     seen, after, rows = seen[:count], after[:count], rows[:count]
     nodes = nodes_of(engine, params, seen, after, rows)
     nodes[:, 0] += TWO_PI * base
-    told, told_modes = (np.concatenate([of[1:], of[:1]] * times) for of in (codes, modes))
-    wrong = (seen != told[:count]) | ((after != told_modes[:count]) & (seen != HOLD))
+    listed, listed_modes = (np.concatenate([of[1:], of[:1]] * times) for of in (codes, modes))
+    wrong = (seen != listed[:count]) | ((after != listed_modes[:count]) & (seen != HOLD))
     if wrong.any():
         i = int(np.argmax(wrong))
-        return Round(nodes[: i + 1], _difference(i, told[i], told_modes[i], seen[i], after[i]))
+        return Round(nodes[: i + 1], _difference(i, listed[i], listed_modes[i], seen[i], after[i]))
     if count < wanted:
         why = {FAILED: "the motion is not finite", TIME_REACHED: "no event came"}.get(
             status, "the motion came to rest"
         )
-        return Round(nodes, f"after {count} events {why}, where {LETTERS[told[count]]} was listed")
+        return Round(nodes, f"after {count} events {why}, where {LETTERS[listed[count]]} was listed")
     return Round(nodes, "")
 
 
-def _difference(place: int, told: int, told_mode: int, seen: int, mode: int) -> str:
-    if told == seen:
-        return f"event {place + 1} ({LETTERS[seen]}) leads into mode {mode:+d}, listed was {told_mode:+d}"
-    return f"event {place + 1} is {LETTERS[seen]}, listed was {LETTERS[told]}"
+def _difference(place: int, listed: int, listed_mode: int, seen: int, mode: int) -> str:
+    if listed == seen:
+        return f"event {place + 1} ({LETTERS[seen]}) leads into mode {mode:+d}, listed was {listed_mode:+d}"
+    return f"event {place + 1} is {LETTERS[seen]}, listed was {LETTERS[listed]}"
 
 
 def monodromy(

@@ -19,7 +19,7 @@ from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page import measures
 from orbits.flows.page.cycle_equations import PageEquations
-from orbits.flows.protocol import told
+from orbits.flows.protocol import checked_start
 from orbits.flows.solving import newton
 from orbits.integrators.expressions import derivatives, variable, written
 from orbits.machines.page.compiled import moving
@@ -145,12 +145,12 @@ class WithoutEvents(FlowProblem):
             over, **{name: value for name, value in values.items() if name != over}
         )
 
-    def witness(self, problem: CycleProblem, p: float, starts: int) -> list[dict[str, Any]]:
+    def simulated_attractors(self, problem: CycleProblem, p: float, starts: int) -> list[dict[str, Any]]:
         """What the machine settles on."""
-        return self._orbits(problem, p).witness(p)
+        return self._orbits(problem, p).simulated_attractors(p)
 
     def known(self, problem: CycleProblem, u: np.ndarray, p: float) -> dict[str, Any]:
-        """A stable motion as `witness` lists it."""
+        """A stable motion as `simulated_attractors` lists it."""
         rest = {"word": None, "periods": 0, "kind": "rest"}
         return (
             rest if problem.spectrum == "flow" else {"word": self.word.text, "periods": 1, "kind": "periodic"}
@@ -264,7 +264,7 @@ def beside(machine: Machine, state: Mapping[str, float] | None = None, **paramet
     ValueError
         If a name is unknown, or something is held or sticks in that state.
     """
-    params, given = machine.vector(parameters), told(dict(state or {}), machine.states)
+    params, given = machine.vector(parameters), checked_start(dict(state or {}), machine.states)
     x = np.array([given.get(name, 0.0) for name in machine.states])
     mode = machine.rest_mode(params, x, 0.0)
     vars(machine).setdefault("_smooth", {}).pop(mode, None)

@@ -304,7 +304,7 @@ class Physical(Model):
         }
         return physical(self.name, own | counted, self.unusual)
 
-    def told_by(self, name: str) -> Physical:
+    def given_by(self, name: str) -> Physical:
         """The same machine with quantity `name` in the place of the one that says the same.
 
         Raises

@@ -12,14 +12,14 @@ FASTEST = 500.0  # the same for ends of intervals, which may reach far
 STRONG = 20.0  # half-widths beyond which a base does not move
 
 
-def check_ratios(numbers: Mapping[str, float], told: Mapping[str, str], wide: bool = False) -> None:
+def check_ratios(numbers: Mapping[str, float], given: Mapping[str, str], wide: bool = False) -> None:
     """Refuse quantities that do not go together.
 
     Parameters
     ----------
     numbers : mapping
         The machine's own.
-    told : mapping
+    given : mapping
         How the quantities were given.
     wide : bool
         Of the ends of an interval.
@@ -29,26 +29,26 @@ def check_ratios(numbers: Mapping[str, float], told: Mapping[str, str], wide: bo
     QuantityError
     """
     ratio = numbers.get("mass_ratio", 0.0)
-    if ratio > HEAVY or (0.0 < ratio < LIGHT and "absorber_mass" in told):
+    if ratio > HEAVY or (0.0 < ratio < LIGHT and "absorber_mass" in given):
         rule = f"at most {HEAVY}" if ratio > HEAVY else f"at least {LIGHT:g}"
         raise QuantityError(
-            f"absorber_mass{_given(told, 'absorber_mass')} is {ratio:.3g} times oscillator_mass{_given(told, 'oscillator_mass')}, "
+            f"absorber_mass{_given(given, 'absorber_mass')} is {ratio:.3g} times oscillator_mass{_given(given, 'oscillator_mass')}, "
             f"which is implausible for an absorber: expected {rule} times; if it is meant, say unusual = true in [model]"
         )
     pace = numbers.get("frequency", 1.0)
     fast = FASTEST if wide else FAST
-    if "natural_frequency" in told and not 1.0 / fast <= pace <= fast:
+    if "natural_frequency" in given and not 1.0 / fast <= pace <= fast:
         raise QuantityError(
-            f"frequency{_given(told, 'frequency')} is {pace:.3g} times natural_frequency{_given(told, 'natural_frequency')}, which is "
+            f"frequency{_given(given, 'frequency')} is {pace:.3g} times natural_frequency{_given(given, 'natural_frequency')}, which is "
             f"implausible: expected {1.0 / fast:g} to {fast:g} times; if it is meant, say unusual = true in [model]"
         )
     moved = numbers.get("forcing", 0.0) * ratio  # of the base, in half-widths
-    if "base_amplitude" in told and moved > STRONG:
+    if "base_amplitude" in given and moved > STRONG:
         raise QuantityError(
-            f"base_amplitude{_given(told, 'base_amplitude')} is {moved:.3g} times half_width{_given(told, 'half_width')}, which is "
+            f"base_amplitude{_given(given, 'base_amplitude')} is {moved:.3g} times half_width{_given(given, 'half_width')}, which is "
             f"implausible: expected at most {STRONG:g} times; if it is meant, say unusual = true in [model]"
         )
 
 
-def _given(told: Mapping[str, str], name: str) -> str:
-    return f" = {told[name]}" if name in told else ""
+def _given(given: Mapping[str, str], name: str) -> str:
+    return f" = {given[name]}" if name in given else ""

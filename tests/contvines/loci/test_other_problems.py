@@ -30,8 +30,8 @@ def test_witnesses_name_what_is_stable():
         parameter="a",
     )
     # doublings at a = 3 (1 - b)^2 / 4 and (1 - b)^2 + (1 + b)^2 / 4
-    assert [m["word"] for m in henon.witness(0.1)] == ["1-cycle"]
-    assert [m["word"] for m in henon.witness(0.5)] == ["2-cycle"]
+    assert [m["word"] for m in henon.simulated_attractors(0.1)] == ["1-cycle"]
+    assert [m["word"] for m in henon.simulated_attractors(0.5)] == ["2-cycle"]
     flow = cv.AlgebraicProblem(
         lambda u, p: np.array([p.a + p.b * u[0] - u[0] ** 3]),
         [-1.2],
@@ -39,12 +39,15 @@ def test_witnesses_name_what_is_stable():
         parameter="a",
         spectrum="flow",
     )
-    both = sorted(m["u"][0] for m in flow.witness(0.1))
+    both = sorted(m["u"][0] for m in flow.simulated_attractors(0.1))
     roots = sorted(np.roots([-1, 0, 1, 0.1]).real)
     assert both == pytest.approx([roots[0], roots[2]], abs=1e-6)
-    assert flow.witness(0.9)[0]["kind"] == "equilibrium" and len(flow.witness(0.9)) == 1
+    assert (
+        flow.simulated_attractors(0.9)[0]["kind"] == "equilibrium"
+        and len(flow.simulated_attractors(0.9)) == 1
+    )
     wheel = cv.AlgebraicProblem(
         lambda u, p: np.array([u[1], -u[0] + p * u[1] - u[0] ** 2 * u[1]]), [0.0, 0.1], 0.5, spectrum="flow"
     )
-    assert [m["kind"] for m in wheel.witness(0.5)] == ["oscillation"]
-    assert "equilibrium" in [m["kind"] for m in wheel.witness(-0.5)]
+    assert [m["kind"] for m in wheel.simulated_attractors(0.5)] == ["oscillation"]
+    assert "equilibrium" in [m["kind"] for m in wheel.simulated_attractors(-0.5)]

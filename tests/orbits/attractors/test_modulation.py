@@ -60,7 +60,7 @@ def test_sweeps_and_charts_tell_of_modulation_as_a_dense_sampling_has_it():
     steady = sweep(MACHINE, "frequency", [0.9], forcing=10.0)[0]
     assert steady.modulation == "" and np.isnan(steady.measures["modulated_mean"])
     problem = find_attractor(MACHINE, forcing=10.0, frequency=0.9).found.problem("frequency")
-    (met,) = problem.witness(1.0)
+    (met,) = problem.simulated_attractors(1.0)
     assert met["modulation"] == row.modulation and met["share"] == 1.0
     assert met["modulated_mean"] == pytest.approx(band[1], rel=5e-3)
     name = Region((1.0, 10.0), 0.1, [met]).words

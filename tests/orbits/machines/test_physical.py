@@ -91,7 +91,7 @@ QUANTITIES = [
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_path_of_every_quantity(name):
     """What varies moves the numbers as machines do that are described anew, and in the direction of their differences."""
-    machine = physical("coupled", FLAT | {"frequency": "7.7 Hz"}).told_by(name)
+    machine = physical("coupled", FLAT | {"frequency": "7.7 Hz"}).given_by(name)
     value, unit = machine.quantities[name], machine.units.get(name, "")
     factors, powers = machine.path(name, machine.vector({}))
     for share in (0.9, 1.0, 1.05):

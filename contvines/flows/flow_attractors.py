@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 
-class Witnessed:
-    """`witness` and `attractor` of equilibria and cycles, as their flow tells."""
+class FlowAttractors:
+    """`simulated_attractors` and `attractor` of equilibria and cycles, as their flow tells."""
 
     flow: Any
 
-    def witness(self, p: float, starts: int = 16) -> list[dict[str, Any]]:
-        """See :meth:`FlowProblem.witness`."""
-        return self.flow.witness(self, p, starts)
+    def simulated_attractors(self, p: float, starts: int = 16) -> list[dict[str, Any]]:
+        """See :meth:`FlowProblem.simulated_attractors`."""
+        return self.flow.simulated_attractors(self, p, starts)
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
         """See :meth:`FlowProblem.known`."""
