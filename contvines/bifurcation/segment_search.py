@@ -96,12 +96,12 @@ class SegmentSearch:
         return [*found, *self._own(segment), unresolved(segment, middle)]
 
     def _beside_infinity(self, segment: Segment) -> tuple[float, Solved | None]:
-        """A point close behind the beginning of a segment at which a multiplier is infinite but for rounding, so that the others are rounding, too."""
+        """A point close behind the beginning of a segment at a border where a multiplier is infinite but for rounding, and drowns the others."""
         engine, place = self.engine, self.engine.settings.close / max(segment.length, TINY)
-        if engine.detection != "map" or not place < 1.0 or not _infinite(engine, segment.a):
+        if engine.detection != "map" or not place < 1.0 or not _drowned(engine, segment.a):
             return place, None
         start = segment.at(place)
-        return place, None if start is None or _infinite(engine, start) else start
+        return place, None if start is None or _drowned(engine, start) else start
 
     def _of_kind(self, kind: Kind, segment: Segment, found: Sequence[Located]) -> list[Located]:
         """The special points of a kind: its own search, or the zeros of its test functions that it verifies."""
@@ -330,10 +330,12 @@ class SegmentSearch:
         ]
 
 
-def _infinite(engine: Engine, point: Solved) -> bool:
-    """Whether the largest multiplier of a point is so large that rounding of it is no smaller than the circle."""
-    spectrum = engine.spectrum(point.row)
-    return bool(np.abs(spectrum).max(initial=0.0) * np.finfo(float).eps >= 1.0)
+def _drowned(engine: Engine, point: Solved) -> bool:
+    """Whether a point is at a border, and another multiplier nearer to the circle than the rounding of the largest one."""
+    if abs(engine.smallest_margin(point.row)) >= engine.settings.inside:
+        return False
+    sizes = np.sort(np.abs(engine.spectrum(point.row)))
+    return bool(np.abs(sizes[:-1] - 1.0).min(initial=np.inf) <= np.finfo(float).eps * sizes.max(initial=0.0))
 
 
 def _without_turnings(found: list[Located], near: float) -> list[Located]:
