@@ -49,6 +49,7 @@ def planar_period(q, guess, size):
     return root(gap, [guess, size], tol=1e-13).x[0]
 
 
+@pytest.mark.slow
 def test_a_torus_of_langfords_system():
     flow = cv.FlowProblem(langford, [0.8, 0.0, 0.9], {"q": 0.95}, states=("x", "y", "z"))
     graph = cv.diagram(flow.attractor(q=0.95), over="q", within=(0.8, 1.0))

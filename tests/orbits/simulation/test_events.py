@@ -3,54 +3,10 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from orbits.machines.absorber import Absorber
 from orbits.simulation import simulate
-
-
-def integrate(C, r, a, omega, psi, w, rate, count):
-    """The first `count` events (letter, phase, w, w' after) by DOP853 with event functions."""
-    time, state, mode, events = 0.0, [w, rate], np.sign(rate), []
-
-    def push(t):
-        return -C * omega**2 * np.sin(omega * t + psi)
-
-    while len(events) < count:
-        if mode == 0:
-            alpha = np.arcsin(a / (C * omega**2))
-            waits = [(root - omega * time - psi) % (2 * np.pi) for root in (alpha, np.pi + alpha)]
-            time += min(waits) / omega
-            mode = -1 if waits[0] < waits[1] else 1
-            events.append(("u", omega * time + psi, state[0], 0.0))
-            continue
-
-        def field(t, y, mode=mode):
-            return [y[1], push(t) - mode * a]
-
-        def wall(t, y, mode=mode):
-            return mode * y[0] - 1.0
-
-        def rest(t, y, mode=mode):
-            return mode * y[1]
-
-        wall.terminal = rest.terminal = True
-        wall.direction, rest.direction = 1.0, -1.0
-        options = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
-        if state[1] == 0.0:  # step away from the turn or slip, where w' = 0 already
-            state = list(solve_ivp(field, (time, time + 1e-3), state, **options).y[:, -1])
-            time += 1e-3
-        run = solve_ivp(field, (time, time + 60.0), state, events=[wall, rest], max_step=0.1, **options)
-        time, state = run.t[-1], list(run.y[:, -1])
-        if run.t_events[0].size:
-            state = [mode, -r * state[1]]
-            letter, mode = ("L" if mode > 0 else "R"), -mode
-        else:
-            letter = "t" if abs(push(time)) > a else "s"
-            mode = -mode if letter == "t" else 0
-            state[1] = 0.0
-        events.append((letter, omega * time + psi, state[0], state[1]))
-    return events
+from tests.orbits.simulation.plain_integration import events_of
 
 
 @pytest.mark.parametrize(
@@ -64,7 +20,8 @@ def integrate(C, r, a, omega, psi, w, rate, count):
 )
 def test_events_agree_with_an_ode_integrator(C, r, mu, g, omega):
     machine = Absorber(restitution=r, friction=mu, gravity=g, mass_ratio=0.006, frequency=omega)
-    told = integrate(C, r, 1.006 * mu * g, omega, 0.4, 0.1, 0.9, 24)
+    friction, restitution = ({1: size, -1: size} for size in (1.006 * mu * g, r))
+    told = events_of(C, omega, 0.0, friction, {1: 1.0, -1: -1.0}, restitution, (0.4, 0.1, 0.9), 24)
     run = simulate(machine, {"phase": 0.4, "w": 0.1, "w_rate": 0.9}, events=24, amplitude=C)
     assert run.letters == "".join(event[0] for event in told)
     assert run.phases == pytest.approx([event[1] for event in told], abs=1e-10)

@@ -140,3 +140,42 @@ def test_fold_and_pair():
 
     found = normal_form("fold-neimark-sacker", bent_map(step, 3, 7), [np.exp(1j * omega)])
     assert found["theta"] == pytest.approx(D[0] / b, abs=1e-9) and found["s"] == -1.0
+
+
+@pytest.mark.slow
+def test_two_amplitudes():
+    p = np.array([[-0.4, 0.7], [0.3, 0.5]])
+    angles = (0.8, 2.3)
+
+    def growth(first, second):
+        return [1 + p[i, 0] * first + p[i, 1] * second for i in range(2)]
+
+    def pairs(w):
+        g = growth(w[0] ** 2 + w[1] ** 2, w[2] ** 2 + w[3] ** 2)
+        parts = [polar(w[2 * i], w[2 * i + 1], (np.cos(t), np.sin(t))) for i, t in enumerate(angles)]
+        return [g[i] * x for i in range(2) for x in parts[i]]
+
+    critical = [np.exp(1j * t) for t in angles]
+    found = normal_form("double-neimark-sacker", bent_map(pairs, 4), critical)
+    assert found["theta"] == pytest.approx(p[0, 1] / p[1, 1], abs=1e-7)
+    assert found["delta"] == pytest.approx(p[1, 0] / p[0, 0], abs=1e-7)
+    assert found["p11"] == pytest.approx(2 * p[0, 0], abs=1e-7)
+
+    def flip(w):
+        g = growth(w[0] ** 2, w[1] ** 2 + w[2] ** 2)
+        turned = polar(w[1], w[2], (np.cos(angles[0]), np.sin(angles[0])))
+        return [-g[0] * w[0], g[1] * turned[0], g[1] * turned[1]]
+
+    found = normal_form("flip-neimark-sacker", bent_map(flip, 3), critical[:1])
+    assert found["p11"] == pytest.approx(p[0, 0], abs=1e-7)
+    assert found["theta"] == pytest.approx(p[0, 1] / p[1, 1], abs=1e-7)
+    assert found["delta"] == pytest.approx(p[1, 0] / p[0, 0], abs=1e-7)
+
+    def flow(w):
+        g = growth(w[0] ** 2 + w[1] ** 2, w[2] ** 2 + w[3] ** 2)
+        parts = [polar(w[2 * i], w[2 * i + 1], (g[i] - 1, t)) for i, t in enumerate(angles)]
+        return [x for part in parts for x in part]
+
+    found = normal_form("double-hopf", bent_flow(flow, 4), [1j * t for t in angles])
+    assert found["theta"] == pytest.approx(p[0, 1] / p[1, 1], abs=1e-7)
+    assert found["delta"] == pytest.approx(p[1, 0] / p[0, 0], abs=1e-7)
