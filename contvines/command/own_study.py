@@ -112,7 +112,53 @@ def _flow(data: dict[str, Any], path: Path, flow: Any) -> Study:
     return Study.of(path, Sort.FLOW, str(data["model"]["name"]), parameters, file, flow=flow)
 
 
+def _counted(data: dict[str, Any], machine: Any) -> dict[str, Any]:
+    """A study of a machine with units in which quantities, as `"15 mm"`, are numbers in these units.
+
+    Raises
+    ------
+    StudyError
+        If a quantity is of another kind.
+    """
+    from orbits.machines.physical.units import QuantityError, counted
+
+    units = {name: unit for name, unit in machine.units.items() if name in machine.parameters}
+    if not units:
+        return data
+
+    def number(name: object, said: Any, where: str) -> Any:
+        if isinstance(said, list):
+            return [number(name, one, where) for one in said]
+        if isinstance(said, dict):  # of [survey] vary
+            return {key: number(name, one, where) for key, one in said.items()}
+        if not isinstance(said, str) or name not in units:
+            return said
+        try:
+            return counted(str(name), said, units[str(name)])
+        except QuantityError as error:
+            raise StudyError(f"{where}{error}.") from None
+
+    found = dict(data)
+    if found.get("units") == "si":
+        del found["units"]
+    for section in ("model", "start"):
+        if section in found:
+            own = _section(data, section)
+            found[section] = {name: number(name, said, f"[{section}] ") for name, said in own.items()}
+    for section in ("continue", "chart"):
+        own = _section(data, section)
+        if "within" in own:
+            within = number(own.get("parameter"), own["within"], f"[{section}] within: ")
+            found[section] = {**own, "within": within}
+    survey = _section(data, "survey")
+    if isinstance(survey.get("vary"), dict):
+        vary = {name: number(name, said, "[survey] vary.") for name, said in survey["vary"].items()}
+        found["survey"] = {**survey, "vary": vary}
+    return found
+
+
 def _page(data: dict[str, Any], path: Path, machine: Any) -> Study:
+    data = _counted(data, machine)
     file, values = _values(data, PageSections, machine.parameters, data)
 
     def refusal(parameter: str, value: float) -> str:

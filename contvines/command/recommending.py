@@ -25,13 +25,18 @@ if TYPE_CHECKING:
     from contvines.survey.plan import Plan
 
 PLACES = 13  # values of the first look
+CLEARANCES = ("clearance", "gap", "width", "distance")  # in names of what is usually chosen
 RESPONSES = ("peak", "lower_peak")  # what is asked of every machine
 UNSEEN = "not looked at"  # a note
 LATER = (7, 5)  # of the later ones, between the neighbours of the best
 SAMPLES = 16  # where the study does not say
 QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
 LOADS = ("impact_speed", "approach_speed", "impulse", "mean_force", "impact_rate", "impact_energy")
-VALUES, STARTS = 9, 6  # of the parameter, and at each, from which it is told what is met at the choice
+VALUES, STARTS, FEW = (
+    9,
+    6,
+    2,
+)  # of the parameter, and starts at each, from which it is told what is met at the choice; few where flights are integrated
 REPLAYED, LONGEST = (
     400,
     24,
@@ -196,10 +201,7 @@ class _Work:
         names = list(model.amount_names)
         if not plan.axes:
             if study.sort is not Sort.PHYSICAL or self.name not in names:
-                raise ValueError(
-                    f"{study.path}: what is to be chosen? [survey] vary needs one parameter with a range, for example "
-                    f"vary.{names[0]} = {{ within = [from, to], count = {PLACES} }}."
-                )
+                raise ValueError(_what(study, names))
             model = model.given_by(self.name)
         self.plan, self.model = plan, model
         self.family, self.units = machines_of(study, model), units_of(study, model)
@@ -326,6 +328,7 @@ class _Work:
         self, places: list[Place], best: Place | None, cost: float, target: float | None
     ) -> Recommendation:
         """All that is printed of the choice."""
+        from contvines.coexistence.population import population_of
         from contvines.command.compare import peaks_compared
         from orbits.design.references import KINDS
 
@@ -361,7 +364,8 @@ class _Work:
 
         plan = Plan({self.name: np.array([best.value])}, self.drawn)
         self._tell_round(len(plan))
-        rows = self.surveyed(plan, ("peak", "modulated", loads, met), values=VALUES, starts=STARTS)
+        starts = STARTS if population_of(model, study.parameter, **loose).price <= 1.0 else FEW
+        rows = self.surveyed(plan, ("peak", "modulated", loads, met), values=VALUES, starts=starts)
         peaks = rows.known("peak").ravel()
         works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
         shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MET}
@@ -495,6 +499,24 @@ class _Looked(NamedTuple):
     known: np.ndarray
     engaged: np.ndarray
     notes: np.ndarray
+
+
+def _what(study: Study, names: Sequence[str]) -> str:
+    """What to write where nothing is to be chosen: a range without ``count`` only says that a value is uncertain."""
+    said = {
+        name: value["within"]
+        for name, value in study.survey.vary.items()
+        if isinstance(value, dict) and "within" in value
+    }
+    usual = next((name for name in names if any(word in name for word in CLEARANCES)), names[0])
+    name = next(iter(said), usual)
+    within = json.dumps(said[name]) if said else "[from, to]"
+    why = (
+        f"vary.{name} without count is uncertain"
+        if said
+        else "[survey] vary needs one parameter with a range"
+    )
+    return f"{study.path}: what is to be chosen? {why}; for example vary.{name} = {{ within = {within}, count = {PLACES} }}."
 
 
 def _looked(found: Survey) -> _Looked:

@@ -1,6 +1,7 @@
 """Studies whose machine is a page of Python."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ from typer.testing import CliRunner
 
 import contvines as cv
 from contvines.command.cli import app
-from contvines.command.study import StudyError, read_study
+from contvines.command.recommending import recommend
+from contvines.command.study import StudyError, check_study, read_study
 
 PAGE = """
 from orbits import Machine, Wall
@@ -175,3 +177,42 @@ def test_a_page_is_calibrated(study):
     assert json.loads(done.stdout)["values"]["restitution"] == pytest.approx(0.66, abs=1e-6)
     refused = run("calibrate", study, "--impacts", "hits.csv", "--release", "1")
     assert "a declared machine says where its motions begin" in str(refused.exception)
+
+
+QUANTITIES = {
+    "units": "si",
+    "model": {"name": "coupled_two", "clearance_1": "1.5 cm", "oscillator_mass": "3800 g", "friction_1": 0.2},
+    "continue": {"parameter": "frequency", "within": ["7 Hz", "0.009 kHz"]},
+    "survey": {
+        "vary": {"clearance_1": {"within": ["6 mm", "0.03 m"]}, "base_amplitude": ["0.3 mm", "400 um"]}
+    },
+}
+
+
+def test_quantities_of_a_page_that_has_units_are_numbers_in_these():
+    study = check_study(QUANTITIES)
+    assert study.loose["clearance_1"] == pytest.approx(15.0) and study.loose[
+        "oscillator_mass"
+    ] == pytest.approx(3.8)
+    assert study.within == pytest.approx((7.0, 9.0)) and study.loose["friction_1"] == 0.2
+    vary = study.survey.vary
+    assert vary["clearance_1"] == {"within": pytest.approx([6.0, 30.0])}
+    assert vary["base_amplitude"] == pytest.approx([0.3, 0.4])
+    with pytest.raises(
+        ValueError,
+        match=r"vary.clearance_1 without count is uncertain; for example vary.clearance_1 = \{ within = \[6.0, 30.0\], count",
+    ):
+        recommend(study, workers=1)
+
+
+@pytest.mark.parametrize(
+    ("section", "said", "sentence"),
+    [
+        ("model", {"name": "coupled_two", "clearance_1": "15 kg"}, "[model] clearance_1 = '15 kg': clearance_1 is shown in mm; for example"),
+        ("continue", {"parameter": "frequency", "within": ["7 Hz", "9 m"]}, "[continue] within: frequency = '9 m': frequency is shown in Hz"),
+        ("survey", {"vary": {"clearance_1": {"within": ["6 mm", "wide"]}}}, "[survey] vary.clearance_1 = 'wide' is not a number with a unit"),
+    ],
+)  # fmt: skip
+def test_quantities_of_another_kind_are_refused(section, said, sentence):
+    with pytest.raises(StudyError, match=re.escape(sentence)):
+        check_study({**QUANTITIES, section: said})
