@@ -14,6 +14,7 @@ from .population import Population, recall_work
 
 if TYPE_CHECKING:
     from ..journal import Journal
+    from ..problems.protocol import Problem
 
 
 @dataclass
@@ -21,7 +22,7 @@ class Counted:
     """A motion that a census has met, ready to be joined to a graph; `state` lies on it."""
 
     attractor: Attractor
-    problem: Any
+    problem: Problem | None
     u: np.ndarray | None
     state: np.ndarray | None = None
 
@@ -63,6 +64,8 @@ def followed(
 
 def locate(run: Run, counted: Counted) -> str | None:
     """Label of the branch of the graph on which an attractor lies, exactly; None if it lies on none."""
+    if counted.problem is None:
+        return None
     known = run.register.find(counted.problem, np.asarray(counted.u), counted.attractor.value)
     return None if known is None else known.label
 

@@ -198,7 +198,7 @@ class MapPopulation:
         """Cycles known in closed form: none of a map of the user's own."""
         return []
 
-    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return self.problem.cycle_through(np.reshape(u, (-1, self.problem.node)), p)
 

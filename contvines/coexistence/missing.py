@@ -34,9 +34,7 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
     for t in (np.arange(values) + 0.5) / values:
         for counted in census(population, float(low + (high - low) * t), starts, 0, run.journal):
             about = counted.attractor
-            if about.kind in ("slow", "escaped", "stopped") or (
-                counted.problem is not None and locate(run, counted) is not None
-            ):
+            if about.kind in ("slow", "escaped", "stopped") or locate(run, counted) is not None:
                 continue
             found.append(about)
     graph.missing, graph.looked = found, True

@@ -28,11 +28,14 @@ The contract, in words:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from ..problems.abilities import Populated
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
 
 class Motion(Protocol):
@@ -45,7 +48,7 @@ class Motion(Protocol):
     @property
     def periods(self) -> int: ...
     @property
-    def problem(self) -> Any: ...
+    def problem(self) -> Problem | None: ...
     @property
     def u(self) -> np.ndarray | None: ...
     @property
@@ -87,7 +90,7 @@ class Population(Protocol):
 
     def closed(self, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
 
-    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any: ...
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None: ...
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]: ...
 

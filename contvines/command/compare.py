@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from orbits.machines.varying import Varying
+
     from ..graph.graph import Graph
 
 LOOKS = {
@@ -106,7 +108,7 @@ def _lines(
 
 
 def peaks_compared(
-    model: Any, over: str, within: tuple[float, float], kinds: Sequence[str]
+    model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]
 ) -> dict[str, tuple[float, float]]:
     """The largest response of each kind over an interval of a parameter, and where, in the machine's units."""
     import numpy as np
@@ -126,7 +128,7 @@ def peaks_compared(
     return found
 
 
-def compared_text(model: Any, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
+def compared_text(model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
     """The largest responses to compare with, as a sentence."""
     from orbits.design.references import NAMES
 

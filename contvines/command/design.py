@@ -256,7 +256,7 @@ def _bounds(axes: Axes, design: Design, over: tuple[Any, str, float, str, float]
         (stick, "#b5121b", (0, (1, 1.6)), r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$"),
     ):
         axes.plot(axis * unit, 1e3 * values, color=color, ls=style, label=label)
-    axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05e3 * room * max(high.max(), stick.max())))
+    axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05e3 * room * max(np.max(high), np.max(stick))))
     axes.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
 
 

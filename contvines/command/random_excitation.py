@@ -15,6 +15,7 @@ from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
     from orbits.design.random_excitation import RandomResponse
+    from orbits.machines.varying import Varying
 
 WORDS = {
     "oscillator": "displacement of the oscillator from its base",
@@ -166,7 +167,7 @@ def _computed(study: Study, seed: int | None) -> Found:
     return _in_units(study, params, response, hertz)
 
 
-def _scales(model: Any, params: Any) -> tuple[float, float]:
+def _scales(model: Varying, params: Any) -> tuple[float, float]:
     """omega_0 in 1/s, and b omega_0^2 in m/s^2; 1 where there are no units."""
     from contvines.command.measured import scales
     from orbits.machines.physical import units

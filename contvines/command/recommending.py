@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from contvines.survey import Survey
     from contvines.survey.outcomes import Findings
     from contvines.survey.plan import Plan
+    from orbits.machines.varying import Varying
 
 PLACES = 13  # values of the first look
 CLEARANCES = ("clearance", "gap", "width", "distance")  # in names of what is usually chosen
@@ -411,7 +412,7 @@ class _Work:
         return found
 
     def _checked(
-        self, value: float, model: Any, own: dict[str, float]
+        self, value: float, model: Varying, own: dict[str, float]
     ) -> tuple[tuple[float, float] | None, list[Curve]]:
         """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value where it
         is next to the largest); of simulations up and down, if these meet more. The responses."""
@@ -453,7 +454,7 @@ class _Work:
             return (row.columns["peak"], most), seen
         return compared[0], seen
 
-    def _lines(self, model: Any) -> list[Curve]:
+    def _lines(self, model: Varying) -> list[Curve]:
         """Responses of the machines to compare with."""
         from contvines.command.compare import POINTS
         from orbits.design.references import KINDS, reference
@@ -465,7 +466,7 @@ class _Work:
             Curve(kind, values.tolist(), (reference(kind, model, params) * length).tolist()) for kind in KINDS
         ]
 
-    def _start_up(self, model: Any, at: float) -> Start:
+    def _start_up(self, model: Varying, at: float) -> Start:
         from contvines.command.measured import scales
         from orbits.design.start_up import start_up
 

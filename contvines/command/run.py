@@ -202,7 +202,7 @@ def _run(
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 
-def _tell(graph: Any, target: Path, summarised: bool, details: bool) -> None:
+def _tell(graph: "Graph", target: Path, summarised: bool, details: bool) -> None:
     """The stable motions first; then the whole graph where it is small, or is asked for."""
     from contvines.graph.summary import summary
 
@@ -281,14 +281,14 @@ def _picture(
     return figure
 
 
-def _shows_oscillator(graph: Any, y: str | None) -> bool:
+def _shows_oscillator(graph: "Graph", y: str | None) -> bool:
     """Whether the picture shows a response of which simulations tell the band."""
     from contvines.graph.measures import default_measure
 
     return default_measure(graph) == "max_abs_q1" and y in (None, "max_abs_q1")
 
 
-def _add_simulated(axes: Any, graph: Any, study: Any) -> None:
+def _add_simulated(axes: Any, graph: "Graph", study: "Study") -> None:
     """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
     from contvines.command.compose import population
     from contvines.plots.sweep import draw_bands

@@ -114,7 +114,7 @@ def _pair(values: Iterable) -> tuple:
     return (first, second)
 
 
-def _problem(description: dict[str, Any], built: dict[str, Any], trust: bool) -> Any:
+def _problem(description: dict[str, Any], built: dict[str, Any], trust: bool) -> Problem | None:
     """The problem that a description names, once per description; None if it cannot or must not be rebuilt."""
     key = json.dumps(description, sort_keys=True, default=str)
     if key not in built:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,10 @@ from .long_period import lengthened
 from .plane_point import PlanePoint
 from .starts import begin
 from .tracing import trace_locus
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
+
 
 LONGER = 3.0  # times the period with which the branch of cycles ends
 PLACES = (
@@ -55,7 +59,9 @@ def homoclinic_of(
     return []
 
 
-def _end_of_cycles(problem: Any, u: np.ndarray, p: float, bounds: tuple[float, float]) -> SpecialPoint | None:
+def _end_of_cycles(
+    problem: Problem, u: np.ndarray, p: float, bounds: tuple[float, float]
+) -> SpecialPoint | None:
     """The homoclinic orbit with which the cycles of a Hopf point end; None where they do not."""
     nothing = np.zeros(len(u) + 1)
     hopf = SpecialPoint("HB", "hopf", "", p, problem.parameter, u, nothing, np.zeros(0), problem=problem)

@@ -6,7 +6,7 @@ place, in straight steps of both parameters, and counts as found where it is sta
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,10 @@ from ..problems.abilities import Attracting
 from .layout import BRANCH, FOLD
 from .locus import Locus
 
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
+
+
 STEPS = (1, 6, 24)  # on the way to the place
 NEAREST = 3  # starts of one word that are tried
 AGREES = 1e-6  # deviation of a simulation over one period
@@ -27,7 +31,7 @@ INSIDE = -1e-12  # margins below this are negative
 class Start(NamedTuple):
     """A motion at (p, q), and the key of its word."""
 
-    problem: Any
+    problem: Problem
     u: np.ndarray
     p: float
     q: float
@@ -126,13 +130,13 @@ class KnownMotions:
         return reached
 
 
-def _can_be_listed(problem: Any) -> bool:
+def _can_be_listed(problem: Problem) -> bool:
     """Whether a solution can be listed as `simulated_attractors` lists it; one without events is seen by any simulation."""
     about = problem.describe()
     return isinstance(problem, Attracting) and about.get("word") != ""
 
 
-def _key(problem: Any, label: str) -> str:
+def _key(problem: Problem, label: str) -> str:
     """Equal for motions of one word; of what has no words every branch is tried."""
     about = problem.describe()
     if "word" not in about or "flow" in about:  # words of flows say "cycle" alone

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME
 from ..branches.special_point import SpecialPoint
 from .plane import Plane
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
 
 class PointOfLocus:
@@ -23,7 +26,7 @@ class PointOfLocus:
 
     def __init__(
         self,
-        problem: Any,
+        problem: Problem,
         parameters: Mapping[str, float],
         place: tuple[np.ndarray, float],
         row: np.ndarray,
@@ -95,7 +98,7 @@ def tested(kind: Kind, plane: Plane) -> float:
 class WithCondition:
     """A problem with the condition of a kind as its last margin; all else is the problem's."""
 
-    def __init__(self, problem: Any, kind: Kind) -> None:
+    def __init__(self, problem: Problem, kind: Kind) -> None:
         self.plain, self.own_kind = problem, kind
         self.kernels = replace(problem.kernels, inspect=self._inspect)
 
@@ -147,7 +150,7 @@ def followed(point: SpecialPoint) -> bool:
     return point.kind not in ("end", "user") and not of_own_kind(point)
 
 
-def with_condition(problem: Any, kind: Kind | None, label: str) -> WithCondition:
+def with_condition(problem: Problem, kind: Kind | None, label: str) -> WithCondition:
     """The problem in which points of a user's kind are borders.
 
     Raises

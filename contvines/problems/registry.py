@@ -9,7 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .protocol import Problem
+
 
 #: Factories of this package's own problems: name in a file -> "module:function" of (description, trust). Names of earlier versions stay,
 #: for their files.
@@ -76,7 +80,7 @@ def _provided() -> Mapping[str, str]:
         raise
 
 
-def rebuild(description: Mapping[str, Any], trust: bool = False) -> Any:
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> Problem | None:
     """The problem that ``describe()`` described, or None where that takes functions of the user's that are not at hand.
 
     Parameters

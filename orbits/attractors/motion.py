@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from orbits.orbit import Orbit
 
 
 class Settled:
@@ -18,7 +21,7 @@ class Settled:
     kind: str
 
     @property
-    def found(self) -> Any:
+    def found(self) -> Orbit:
         """The orbit; `ValueError` if it is none that can be continued."""
         raise TypeError(f"{type(self).__name__} does not say which orbit it is")
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from orbits.machines.varying import Varying
+    from orbits.orbit import Orbit
 
 
 def recognising(model: Varying) -> ModuleType:
@@ -111,7 +112,7 @@ def modulated(found: Any, measures: Mapping[str, float]) -> str:
     return observing(found.model).modulated(found, measures)
 
 
-def beginning_with(orbit: Any, transient: float, max_period: int) -> dict[str, float]:
+def beginning_with(orbit: Orbit, transient: float, max_period: int) -> dict[str, float]:
     """Measures of what the simulation settles on that begins with a motion; none of one without events."""
     if not len(orbit.nodes):
         return {}

@@ -151,48 +151,48 @@ class Design:
         return replace(self, **changes)
 
     @property
-    def cavity(self) -> Any:
+    def cavity(self) -> Reals:
         """`half_width`, by its older name."""
         return self.half_width
 
     @property
-    def natural_rate(self) -> Any:
+    def natural_rate(self) -> Reals:
         """``omega_0`` [rad/s]."""
         return 2.0 * np.pi * self.natural_frequency
 
     @property
-    def gravity(self) -> Any:
+    def gravity(self) -> Reals:
         """``g~ = g/(b omega_0^2)``, dimensionless."""
         return self.acceleration / (self.half_width * self.natural_rate**2)
 
     @property
-    def loss(self) -> Any:
+    def loss(self) -> Reals:
         """``R = (1 - r)/(1 + r)``."""
         return manifolds.impact_loss(self.restitution)
 
     @property
-    def level(self) -> Any:
+    def level(self) -> Reals:
         """``h~ = (1 + eps)(pi/2) mu g~``, dimensionless."""
         return manifolds.friction_level(self.friction, self.gravity, self.mass_ratio)
 
     @property
-    def activation_threshold(self) -> Any:
+    def activation_threshold(self) -> Reals:
         """``q1_min = b C_min`` [m]: displacement of the oscillator at which the absorber engages."""
         return self.half_width * manifolds.activation(self.loss, self.level).amplitude
 
     @property
-    def upper_bound(self) -> Any:
+    def upper_bound(self) -> Reals:
         """``q1_max = b C_max`` [m]: displacement above which two symmetric impacts per period are
         unstable."""
         return self.half_width * manifolds.symmetry_limit(self.loss, self.level).amplitude
 
     @property
-    def operating_ratio(self) -> Any:
+    def operating_ratio(self) -> Reals:
         """``xi = q1_max/q1_min``: width of the working range; inf for elastic walls without friction, whose threshold is 0."""
         with np.errstate(divide="ignore"):
             return self.upper_bound / self.activation_threshold
 
-    def sticking_limit(self, frequency: ArrayLike | None = None) -> Any:
+    def sticking_limit(self, frequency: ArrayLike | None = None) -> Reals:
         """``q1_cr = mu g/omega^2`` [m] at an excitation frequency [Hz] (default ``f_0``): below it the
         absorber sticks.
 
@@ -221,12 +221,12 @@ class Design:
         return scale * low, scale * high
 
     @property
-    def absorber_damping(self) -> Any:
+    def absorber_damping(self) -> Reals:
         """``eps (2/pi) R/(pi^2/4 + R^2)``: damping ratio that the impacts lend the oscillator at large
         amplitude."""
         return self.mass_ratio * (2.0 / np.pi) * self.loss / (0.25 * np.pi**2 + self.loss**2)
 
-    def linear_response(self, frequency: ArrayLike, excitation: ArrayLike, *, stuck: bool = False) -> Any:
+    def linear_response(self, frequency: ArrayLike, excitation: ArrayLike, *, stuck: bool = False) -> Reals:
         """Displacement amplitude [m] of the oscillator moved by a base motion ``E sin(omega t)``.
 
         Parameters
@@ -243,13 +243,15 @@ class Design:
         mass = 1.0 + np.asarray(self.mass_ratio) * stuck
         return np.asarray(excitation, dtype=float) * np.abs(path / (path - mass * ratio**2))
 
-    def excitation(self, forcing: ArrayLike) -> Any:
+    def excitation(self, forcing: ArrayLike) -> Reals:
         """Base amplitude ``E = G b eps`` [m] of a dimensionless forcing ``G``."""
         return np.asarray(forcing, dtype=float) * self.half_width * self.mass_ratio
 
     def is_stuck(self, frequency: ArrayLike, excitation: ArrayLike) -> NDArray[np.bool_]:
         """Whether the linear response with the absorber stuck is one that friction can hold."""
-        return self.linear_response(frequency, excitation, stuck=True) <= self.sticking_limit(frequency)
+        return np.less_equal(
+            self.linear_response(frequency, excitation, stuck=True), self.sticking_limit(frequency)
+        )
 
     def figures(self) -> list[Figure]:
         """All design figures with symbol, unit and meaning."""
