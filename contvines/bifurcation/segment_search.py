@@ -89,7 +89,10 @@ class SegmentSearch:
         if middle is None:
             return [*found, *self._own(segment)]
         settings = self.engine.settings
-        if depth < self.deepest and segment.length > settings.resolution:
+        plus, minus, pairs = (b - a for a, b in zip(*segment.counts))
+        # where a pair splits on the axis and one of both passes the circle at once, shorter parts tell one from the other
+        shortest = settings.sliver if pairs and (plus or minus) else settings.resolution
+        if depth < self.deepest and segment.length > shortest:
             if self.parts < settings.parts:
                 return self.both(segment, 0.5, middle, real, depth + 1)
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
@@ -335,7 +338,8 @@ def _drowned(engine: Engine, point: Solved) -> bool:
     if abs(engine.smallest_margin(point.row)) >= engine.settings.inside:
         return False
     sizes = np.sort(np.abs(engine.spectrum(point.row)))
-    return bool(np.abs(sizes[:-1] - 1.0).min(initial=np.inf) <= np.finfo(float).eps * sizes.max(initial=0.0))
+    near = np.abs(sizes[:-1] - 1.0).min(initial=np.inf) <= np.finfo(float).eps * sizes.max(initial=0.0)
+    return bool(near or not np.isfinite(sizes).all())
 
 
 def _without_turnings(found: list[Located], near: float) -> list[Located]:

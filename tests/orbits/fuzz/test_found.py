@@ -214,7 +214,7 @@ def test_a_steep_branch_comes_to_its_period_doubling_in_many_digits():
     assert comes_to(branch.orbit(2), branch.orbit(1), branch.orbit(0))
 
 
-@pytest.mark.parametrize(("seed", "label"), [(1, "B17"), (9, "B30"), (33, "B15")])
+@pytest.mark.parametrize(("seed", "label"), [(1, "B17"), (9, "B30"), (33, "B15"), (44, "B11")])
 def test_multipliers_beside_an_infinite_one_are_no_evidence(seed, label):
     """Where a branch begins at a graze one multiplier is infinite, and rounding of it moves the others over the circle: nothing happens there."""
     graph = diagram("coupled", seed, 4817)
@@ -222,5 +222,13 @@ def test_multipliers_beside_an_infinite_one_are_no_evidence(seed, label):
     branch = graph[label]
     first = branch.marks[0]
     assert first[0] == 0 and graph[first[1]].kind == "wall-graze"
-    counts = {int((np.abs(m) > 1.0).sum()) for m in branch.multipliers[1:5]}
-    assert counts == {1}
+    assert len({int((np.abs(m) > 1.0).sum()) for m in branch.multipliers[1:5]}) == 1
+
+
+def test_a_doubling_right_behind_where_a_pair_splits():
+    """Outside the circle a pair becomes two real multipliers, one of which enters 2e-10 (frequency) later: at -1 in eighty digits."""
+    graph = diagram("coupled", 45, 4817)
+    point = min(graph.of_kind("period-doubling"), key=lambda p: abs(p.value - 1.03026475831))
+    found = exact(point.orbit)
+    assert not graph.unresolved and abs(found.shift) < 1e-14
+    assert np.abs(found.multipliers + 1.0).min() < 1e-6
