@@ -184,7 +184,10 @@ QUANTITIES = {
     "model": {"name": "coupled_two", "clearance_1": "1.5 cm", "oscillator_mass": "3800 g", "friction_1": 0.2},
     "continue": {"parameter": "frequency", "within": ["7 Hz", "0.009 kHz"]},
     "survey": {
-        "vary": {"clearance_1": {"within": ["6 mm", "0.03 m"]}, "base_amplitude": ["0.3 mm", "400 um"]}
+        "vary": {
+            "clearance_1": {"within": ["6 mm", "0.03 m"]},
+            "base_amplitude": {"uniform": ["0.3 mm", "400 um"]},
+        }
     },
 }
 
@@ -197,7 +200,7 @@ def test_quantities_of_a_page_that_has_units_are_numbers_in_these():
     assert study.within == pytest.approx((7.0, 9.0)) and study.loose["friction_1"] == 0.2
     vary = study.survey.vary
     assert vary["clearance_1"] == {"within": pytest.approx([6.0, 30.0])}
-    assert vary["base_amplitude"] == pytest.approx([0.3, 0.4])
+    assert vary["base_amplitude"] == {"uniform": pytest.approx([0.3, 0.4])}
     with pytest.raises(
         ValueError,
         match=r"vary.clearance_1 without count is uncertain; for example vary.clearance_1 = \{ within = \[6.0, 30.0\], count",
