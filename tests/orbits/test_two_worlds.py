@@ -17,10 +17,8 @@ from orbits.starts.find import polish
 from tests.machines import ABSORBER
 
 LARGE = bool(os.environ.get("CONTVINES_LARGE"))
-BLOCKS = (
-    60 if LARGE else 12
-)  # of ten machines each: about 70 in 100 have a periodic attractor that makes events
-TRACED = 600 if LARGE else 100
+BLOCKS = 60 if LARGE else 6  # of ten machines: some 70 in 100 have a periodic attractor that makes events
+TRACED = 600 if LARGE else 50
 
 
 def draw(seed):

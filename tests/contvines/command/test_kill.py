@@ -30,7 +30,7 @@ def test_killed_at_chosen_writes(tmp_path, undisturbed, where):
     path, log = tmp_path / "k.vines", tmp_path / "log.txt"
     chance = random.Random(where)
     kills = 0
-    for attempt in range(3):
+    for attempt in range(2):
         writes = chance.randint(2, 3 + 4 * attempt)
         words = [str(writes), where, str(log), "diagram", str(STUDY), "--quiet", "-o", str(path)]
         done = subprocess.run([sys.executable, str(HERE / "killer.py"), *words])

@@ -151,8 +151,9 @@ def test_a_row_is_a_start_of_the_same_orbit(run, tmp_path, form, parameter, with
 
 # ------------------------------------------------------------------ interrupted and resumed
 @pytest.mark.slow
-@pytest.mark.parametrize("options", [(), ("--down",)])
-@pytest.mark.parametrize("form, within", [(REDUCED, (0.9, 1.6)), (COUPLED, (0.985, 1.0))])
+@pytest.mark.parametrize(
+    "form, within, options", [(REDUCED, (0.9, 1.6), ("--down",)), (COUPLED, (0.985, 1.0), ())]
+)
 def test_an_interrupted_sweep_goes_on_to_the_same_rows(run, tmp_path, monkeypatch, form, within, options):
     from contvines.command import sweep_rows
 

@@ -39,8 +39,7 @@ def expected():
     return period, float(np.linalg.det(matrix))
 
 
-@pytest.mark.parametrize("error", [1e-3, 1e-5, 1e-6])
-@pytest.mark.parametrize("degree", [2, 4, 6])
+@pytest.mark.parametrize(("degree", "error"), [(2, 1e-3), (4, 1e-5), (6, 1e-6)])
 def test_periods_and_multipliers_are_as_exact_as_they_say(degree, error, expected):
     period, multiplier = expected
     orbit = cv.FlowProblem(brusselator, [1.0, 2.0], {"b": B}, degree=degree, error=error).attractor()
@@ -49,7 +48,7 @@ def test_periods_and_multipliers_are_as_exact_as_they_say(degree, error, expecte
     assert abs(orbit.multipliers[0] - multiplier) < orbit.multiplier_errors[0] + 1e-12
 
 
-@pytest.mark.parametrize("degree", [3, 4, 5])
+@pytest.mark.parametrize("degree", [3, 5])
 def test_special_points_are_as_exact_as_they_say(degree):
     """Langford's flow (COCO's demo): the Neimark-Sacker point in closed form; Bautin's normal form: the fold."""
 

@@ -126,7 +126,7 @@ def test_it_draws_on_given_axes_and_pyplot_keeps_no_figure_of_ours(functions, na
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ("diagram", "network", "atlas", "basins", "survey", "transient"))
 def test_it_respects_the_users_style_and_settings_stay(functions, name):
     _, function = functions[name]
     before = dict(mpl.rcParams)

@@ -139,7 +139,7 @@ def test_words_to_64_impacts_with_work_that_grows_like_their_length():
 
 
 # ------------------------------------------------------------------ wrong inputs
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_wrong_inputs_are_not_proved(seed):
     random = np.random.default_rng(seed)
@@ -149,7 +149,7 @@ def test_wrong_inputs_are_not_proved(seed):
     assert not tampering.false_proof(wrong, orbit.symmetric and bool(random.integers(2))), kind
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_wrong_special_points_are_not_proved(seed):
     random = np.random.default_rng(seed)
@@ -158,7 +158,7 @@ def test_wrong_special_points_are_not_proved(seed):
     assert not tampering.false_point(wrong), kind
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_wrong_certificates_are_refused(seed):
     random = np.random.default_rng(seed)
