@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from tests.orbits.flows.native.closures import both_cores, closed_by, kernels_of
 
 from orbits.arguments import workspace
+from tests.orbits.elimination.closures import both_cores, closed_by, kernels_of
 
 
 def dense(work, twist, border):

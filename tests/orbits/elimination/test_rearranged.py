@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from tests.orbits.flows.native.closures import both_cores, closed_by, kernels_of
 
 from orbits.arguments import workspace
 from orbits.elimination import rearranged
+from tests.orbits.elimination.closures import both_cores, closed_by, kernels_of
 
 
 def drawn(length, node, seed):

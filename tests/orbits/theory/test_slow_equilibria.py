@@ -46,7 +46,7 @@ def test_every_equilibrium_of_three_thousand_machines_is_found():
             missed += not inside.any()
         assert np.all(seen.sum(axis=1) <= good[part].sum(axis=1))
     assert missed == 0
-    assert good.sum() > 7_000  # the draw is not an empty one
+    assert good.sum() > 2_000  # the draw is not an empty one
 
 
 def wide(flow):
