@@ -57,7 +57,9 @@ def test_the_labels_in_the_first_study_are_those_of_its_graph():
 
 
 def test_every_public_name_is_in_the_reference():
-    text = (DOCS / "python.md").read_text(encoding="utf-8")
+    general, problems, machines = (
+        (DOCS / f"python{page}.md").read_text(encoding="utf-8") for page in ("", "_problems", "_machines")
+    )
     rooms = {
         "attractors",
         "design",
@@ -68,10 +70,7 @@ def test_every_public_name_is_in_the_reference():
         "theory",
         "words",
     }
-    for package, part in (
-        ("contvines", text.split("## Machines")[0]),
-        ("orbits", text.split("## Machines")[1]),
-    ):
+    for package, part in (("contvines", general + problems), ("orbits", machines)):
         names = set(importlib.import_module(package).__all__) - rooms
         assert names <= set(re.findall(r"\.\. auto(?:function|class|data):: (?:\w+\.)*(\w+)", part)), package
 
