@@ -5,6 +5,8 @@ import re
 from itertools import pairwise
 from typing import Any
 
+from contvines.shared.near_names import did_you_mean
+
 
 def refusal(error: Any, words: list[str]) -> str:
     """A usage error of the command line as one sentence; empty for a bare `contvines`, which asks for help.
@@ -74,22 +76,28 @@ def _no_command(error: Any, message: str) -> str:
     return f"{name}: there is no such command; {hint}"
 
 
+def _no_choice(place: str, given: str, quoted: str) -> str:
+    """A value that is none of the choices, which typer quotes."""
+    choices = re.findall(r"'([^']*)'", quoted)
+    return (
+        f"{place}: there is no such choice{did_you_mean(given, choices)}; choose one of {', '.join(choices)}."
+    )
+
+
 def _bad_value(error: Any, message: str, words: list[str]) -> str:
     """An option's value that cannot be."""
     names = sorted(getattr(getattr(error, "param", None), "opts", ()), key=len)
     if not names or not names[-1].startswith("-"):
         value, found, choices = message.rpartition(" is not one of ")
         given = re.search(r"'([^']*)'$", value)
-        quoted = ", ".join(re.findall(r"'([^']*)'", choices))
-        return f"{given[1]}: there is no such choice; choose one of {quoted}." if found and given else ""
+        return _no_choice(given[1], given[1], choices) if found and given else ""
     typed = next((n for n in names if any(w == n or w.startswith(f"{n}=") for w in words)), names[-1])
     typed = typed if typed.startswith("--") else names[-1]
     given = [w.split("=", 1)[1] for w in words if w.startswith(f"{typed}=")]
     given += [value for name, value in pairwise(words) if name in names]
     place = " ".join([typed, *given[:1]])
     if " is not one of " in message:
-        choices = re.findall(r"'([^']*)'", message.rsplit(" is not one of ", 1)[1])
-        return f"{place}: there is no such choice; choose one of {', '.join(choices)}."
+        return _no_choice(place, given[0] if given else "", message.rsplit(" is not one of ", 1)[1])
     if "valid number" in message or "valid integer" in message or "valid float" in message:
         return f"{place}: this is not a number; give one such as {'3' if 'integer' in message else '0.02'}."
     end = re.search(r"(greater|less) than (or equal to )?(\S+?)\.?$", message) or re.search(

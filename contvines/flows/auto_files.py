@@ -33,6 +33,10 @@ class AutoSolution:
     states: np.ndarray
     parameters: np.ndarray
 
+    def __repr__(self) -> str:
+        n, d = self.states.shape
+        return f"AutoSolution(label {self.label}, branch {self.branch}, type {self.kind}: {d} states at {n} times, {len(self.parameters)} parameters)"
+
     @property
     def period(self) -> float:
         """PAR(11), where AUTO keeps the period of a cycle.

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from contvines.shared.near_names import did_you_mean
+
 from ..core.library import address
 from ..core.records import pack
 from ..core.table import TableKernels, native_table
@@ -134,7 +136,7 @@ class LocusProblem(ProblemDefaults):
             )
         if over not in names:
             raise ValueError(
-                f"over = {over!r}: the problem has no such parameter; it has {', '.join(names) or 'none by name'}"
+                f"over = {over!r}: the problem has no such parameter{did_you_mean(over, names)}; it has {', '.join(names) or 'none by name'}"
             )
         if kernels.transpose is None:
             raise ValueError(
