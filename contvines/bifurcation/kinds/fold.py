@@ -5,26 +5,41 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...continuation.aims import NO_COLUMNS, SLOPE, Aim
+from ..determinant import alone
 from ..kind import Classified, Kind, Test
 from ..located import Located
 from ..normal_forms.along_branch import fold_coefficient
 from ..point_on_branch import PointOnBranch
 from ..segment import Segment
+from .multipliers import passing
 
 TURN = Aim(SLOPE, NO_COLUMNS)
 
 
 def tests(segment: Segment, found: Sequence[Located]) -> list[Test]:
-    """The parameter's part of the tangent, if it has another sign at the other end; on an upright branch it is rounding."""
+    """The parameter's part of the tangent, if it has another sign at the other end.
+
+    On an upright branch it is rounding. Of cycles on a mesh the multiplier that passes +1 tells there, as at the folds of canards.
+    """
     one, other = float(segment.a.tangent[-1]), float(segment.b.tangent[-1])
+    if segment.engine.adaptive and _upright(segment):
+        passed = passing(segment, "plus")
+        return passed if len(passed) == 1 else []
     upright = max(abs(one), abs(other)) <= segment.engine.upright(segment.a.p)
     return [] if upright or (one >= 0.0) == (other >= 0.0) else [Test(TURN)]
 
 
+def _upright(segment: Segment) -> bool:
+    """Whether the parameter's direction is rounding at an end of a segment."""
+    return min(abs(end.tangent[-1]) for end in (segment.a, segment.b)) <= segment.engine.upright(segment.a.p)
+
+
 def turns_back(point: PointOnBranch) -> bool:
-    """Whether the parameter turns back by more than rounding and the noise of the equations."""
+    """Whether the parameter turns back by more than rounding and the noise of the equations, or stands still where no other branch passes."""
     segment, engine = point.segment, point.engine
     assert segment is not None
+    if engine.adaptive and _upright(segment):
+        return alone(engine, point.solved)
     moved = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
     return moved > engine.settled(point.value)
 

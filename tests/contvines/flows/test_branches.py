@@ -87,3 +87,19 @@ def test_a_hopf_point_within_a_part_of_the_first_step_behind_a_branch_point():
     flow = cv.FlowProblem(f, [0.0, 0.0, 0.0], {"a": -0.2})
     graph = cv.diagram(flow, over="a", within=(-0.3, 0.4), depth=1)
     assert [p.value for p in graph.of_kind("hopf")] == pytest.approx([1e-7], abs=1e-11)
+
+
+def test_folds_of_canards_where_the_parameter_stands_still():
+    """FitzHugh and Nagumo: v -> -v, w -> 7/4 - w, I -> 7/4 - I leaves all as it is. Between the folds and their Hopf points the parameter keeps 15 digits."""
+    flow = cv.FlowProblem(
+        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, 0.08 * (x[0] + 0.7 - 0.8 * x[1])],
+        [-1.2, -0.6],
+        {"I": 0.0},
+    )
+    graph = cv.diagram(flow, over="I", within=(0.0, 2.0))
+    one, other = graph.of_kind("fold")
+    assert one.value + other.value == pytest.approx(1.75, abs=1e-11)
+    # the growth along the cycle, the integral of 1 - v^2 - 0.064, is zero at a fold (Liouville)
+    x = one.orbit(np.linspace(0.0, one.orbit.period, 20001))[:-1, 0]
+    assert np.mean(1.0 - x**2 - 0.064) * one.orbit.period == pytest.approx(0.0, abs=1e-5)
+    assert np.abs(np.diff(graph["B2"].stable.astype(int))).sum() == 2  # stable between the folds alone
