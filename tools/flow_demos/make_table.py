@@ -45,7 +45,11 @@ def shooting_of(demo: CycleDemo, point: Any) -> witness.Shooting:
     states = orbit(np.arange(parts) * length / parts)
     rounds = point.problem.rounds if demo.period else 1
     unit = np.ptp(orbit.states, axis=0)
-    return witness.Shooting(demo.rates, demo.period, states, unit, period, point.value, rounds, turn)
+    found = witness.Shooting(demo.rates, demo.period, states, unit, period, point.value, rounds, turn)
+    if point.kind == "symmetry-breaking" and turn is None:  # the trivial multiplier is +1, too
+        signs, directions = np.linalg.eigh(np.asarray(demo.mirror, dtype=float))
+        found.odd = directions[:, signs < 0.0]
+    return found
 
 
 def solved(demo: CycleDemo, point: Any) -> float:

@@ -5,7 +5,7 @@
     branch point         F(y) + b w = 0, A(y)^T w = 0, w.w = 1, A with one column more than rows (Moore 1980; b = 0 in the end)
     period doubling      an eigenvalue of the monodromy matrix is -1;  Neimark-Sacker: a pair has modulus 1
     symmetry breaking    half a period later the cycle is its mirror image: an eigenvalue of mirror times half the matrix is -1
-                         (+1 where the cycle is its own mirror image at every instant)
+                         (+1, in the directions that the mirror turns round, where the cycle is its own mirror image at every instant)
     Hopf                 an equilibrium with a pair of eigenvalues of real part zero
     homoclinic           the unstable manifold of the saddle comes back to it
 
@@ -58,6 +58,7 @@ class Shooting:
         turn: Any = None,
     ) -> None:
         self.rates, self.period, self.rounds, self.turn = rates, period, rounds, turn
+        self.odd = np.eye(states.shape[1])  # directions of the multipliers that are asked for, as columns
         self.parts, self.d = states.shape
         self.free = period is None
         self.first = states[0].copy()
@@ -128,8 +129,8 @@ class Shooting:
         return product
 
     def multipliers(self, y: np.ndarray) -> np.ndarray:
-        """Eigenvalues of it."""
-        return np.linalg.eigvals(self.monodromy(y))
+        """Eigenvalues of it, in the directions that are asked for."""
+        return np.linalg.eigvals(self.odd.T @ self.monodromy(y) @ self.odd)
 
 
 def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
@@ -144,17 +145,13 @@ def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
 
 
 def newton(residual: Any, y: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """A root, by the chord method with derivatives by central differences, which are renewed every fourth step."""
+    """A root, by the chord method with derivatives by differences, which are renewed every fourth step."""
     matrix: Any = None
     for step in range(16):
         value = residual(y)
         if step % 4 == 0:
-            columns = []
-            for j in range(len(y)):
-                e = np.zeros(len(y))
-                e[j] = 1e-6 * scale[j]
-                columns.append((residual(y + e) - residual(y - e)) / (2.0 * e[j]))
-            matrix = np.column_stack(columns)
+            steps = 1e-7 * np.diag(scale)
+            matrix = np.column_stack([(residual(y + e) - value) / e.max() for e in steps])
         change = np.linalg.lstsq(matrix * scale, -value, rcond=1e-14)[0] * scale
         y = y + change
         if np.abs(change / scale).max() < 1e-11:
