@@ -12,7 +12,7 @@ import numpy as np
 from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
-from .branch_jumps import inexact, leap
+from .consistency import inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicious, turns_twice
 from .kinks import kinked, nearest, pointed
 from .locate import locate

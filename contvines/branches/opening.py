@@ -19,8 +19,7 @@ from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..journal import NullJournal
-from .half_branch import HalfBranch, piece_of, single
-from .records import pack, unpack
+from .half_branch import HalfBranch, pack, piece_of, single, unpack
 
 if TYPE_CHECKING:
     from ..journal import Journal

@@ -13,9 +13,8 @@ from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.trace import Retrace, chunks
 from ..journal import NullJournal
-from .half_branch import HalfBranch, Piece, piece_of, single
+from .half_branch import HalfBranch, Piece, pack, piece_of, single, unpack
 from .opening import SHORTER, opening, without_rounding
-from .records import pack, unpack
 
 if TYPE_CHECKING:
     from ..journal import Journal

@@ -171,13 +171,15 @@ def _run(
     look: bool = False,
     details: bool = False,
 ) -> None:
-    from contvines.command.asked_measures import check_axes, check_bounds
     from contvines.command.compose import check_shaken
     from contvines.command.study import read_study
 
     study = read_study(path)
-    check_axes(study, {"-x": x, "-y": y}, plot)
-    check_bounds(study, command)
+    if x or y or study.bounds:
+        from contvines.command.asked_measures import check_axes, check_bounds
+
+        check_axes(study, {"-x": x, "-y": y}, plot)
+        check_bounds(study, command)
     check_shaken(study)
     if compare:
         from contvines.command.compare import check_compared
