@@ -17,7 +17,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..continuation.engine import Solved
+from ..continuation.engine import Engine, Solved
 from .determinant import certain, turned
 from .located import Located, Role
 from .location_error import singular_within
@@ -64,17 +64,28 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
 def _hidden_beside_fold(segment: Segment, found: Sequence[Located]) -> bool:
     """Whether the multipliers outside the circle at a fold, its own left out, are others than at the ends, though nothing else was found.
 
-    A pair may leave the circle next to a fold, part on the real axis and come back there by one: the ends differ by that one alone.
+    A pair may leave the circle next to a fold, part on the real axis and come back there by one: the ends differ by that one alone. Or
+    the one that passes +1 at the fold goes on through infinity and comes back through -1: the ends do not differ at all.
     """
     if len(found) != 1 or found[0].kind != "fold":
         return False
-    spectrum, near = segment.engine.spectrum(found[0].point.row), segment.engine.settings.critical
+    engine, near = segment.engine, segment.engine.settings.critical
+    spectrum, *ends = (engine.spectrum(point.row) for point in (found[0].point, segment.a, segment.b))
     others = np.abs(np.delete(spectrum, np.argmin(np.abs(spectrum - 1.0))))
     if np.any(np.abs(others - 1.0) <= near):
         return False
     outside = int(np.count_nonzero(others > 1.0))
     totals = [plus + minus + 2 * pairs for plus, minus, pairs in segment.counts]
-    return any(total not in (outside, outside + 1) for total in totals)
+    marginal = any(np.any(np.abs(np.abs(end) - 1.0) <= near) for end in ends)
+    if marginal or not at_one(engine, found[0]):
+        return any(total not in (outside, outside + 1) for total in totals)
+    return sorted(totals) != [outside, outside + 1]
+
+
+def at_one(engine: Engine, event: Located) -> bool:
+    """Whether a multiplier is +1 at a point; where an event of a virtual orbit grazes the parameter may turn without."""
+    spectrum = engine.spectrum(event.point.row)
+    return bool(np.abs(spectrum - 1.0).min(initial=1.0) <= engine.settings.critical)
 
 
 def unresolved(segment: Segment, middle: Solved) -> Located:

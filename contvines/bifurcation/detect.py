@@ -12,7 +12,7 @@ import numpy as np
 from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
-from .consistency import inexact, leap
+from .consistency import at_one, inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicious, turns_twice
 from .kinks import kinked, nearest, pointed
 from .locate import locate
@@ -276,16 +276,12 @@ class Detector(SegmentSearch):
 
     def _apart(self, event: Located, stop: Located) -> bool:
         """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""
-        own = event.kind not in ("fold", "branch-point") or self._at_one(event.point)
+        own = event.kind not in ("fold", "branch-point") or (
+            self.engine.detection == "map" and at_one(self.engine, event)
+        )
         settings = self.engine.settings
         return self.engine.distance(event.point, stop.point) > (
             settings.at_end if own else settings.one_place
-        )
-
-    def _at_one(self, point: Solved) -> bool:
-        spectrum = self.engine.spectrum(point.row)
-        return self.engine.detection == "map" and bool(
-            np.abs(spectrum - 1.0).min(initial=1.0) <= self.engine.settings.critical
         )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
-from .consistency import unaccounted, unresolved
+from .consistency import at_one, unaccounted, unresolved
 from .determinant import singular
 from .evidence import Evidence, evidence, parabola_dips
 from .first_border import find_border, first_zero, rounding
@@ -94,7 +94,12 @@ class SegmentSearch:
         shortest = settings.sliver if pairs and (plus or minus) else settings.resolution
         if depth < self.deepest and segment.length > shortest:
             if self.parts < settings.parts:
-                return self.both(segment, 0.5, middle, real, depth + 1)
+                halves = self.both(segment, 0.5, middle, real, depth + 1)
+                folds = [e for e in found if e.kind == "fold" and at_one(self.engine, e)]
+                if not folds or any(e.kind == "fold" or e.role is Role.UNRESOLVED for e in halves):
+                    return halves
+                kept = [*halves, *folds]  # on a half the parameter turns by no more than rounding
+                return [*kept, unresolved(segment, middle)] if unaccounted(segment, kept) else kept
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]
 

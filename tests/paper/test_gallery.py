@@ -161,4 +161,4 @@ def test_a_picture_fits_a_column(name, gallery, tmp_path, monkeypatch):
 
     monkeypatch.setattr(gallery, "width", 3.4)
     gallery.run(name, importlib.import_module(name).main, tmp_path)
-    assert Image.open(tmp_path / f"{name}.png").width == 680  # 3.4 inches at 200 dots an inch
+    assert Image.open(tmp_path / f"{name}.png").width == 765  # 3.4 inches at 225 dots an inch
