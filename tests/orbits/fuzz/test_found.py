@@ -232,3 +232,17 @@ def test_a_doubling_right_behind_where_a_pair_splits():
     found = exact(point.orbit)
     assert not graph.unresolved and abs(found.shift) < 1e-14
     assert np.abs(found.multipliers + 1.0).min() < 1e-6
+
+
+@pytest.mark.parametrize("fold", [1.33963555623378, 1.33963554542592])
+def test_a_doubling_within_rounding_of_a_fold_is_said_to_be_unresolved(fold):
+    """The multiplier that is 1 at the fold goes on through infinity and comes back through -1, 1e-14 and 3e-13 (amplitude) behind it: before and
+    behind it is inside the circle, which a fold alone does not leave so."""
+    graph = diagram("absorber", 59, 9117)
+    point = min(graph.of_kind("fold"), key=lambda p: abs(p.value - fold))
+    index = next(i for i, label in graph[point.branch].marks if label == point.label)
+    before, behind = (np.abs(graph[point.branch].multipliers[i]).max() for i in (index - 1, index + 3))
+    assert before < 1.0 and behind < 1.0 and abs(point.multipliers[0] - 1.0) < 1e-6
+    doublings = [p.value for p in graph.of_kind("period-doubling") if p.branch == point.branch]
+    told = [0.5 * (u.low + u.high) for u in graph.unresolved if u.branch == point.branch]
+    assert min(abs(x - fold) for x in doublings + told) < 1e-10
