@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 VALUE = 1e-10
 ENDS = 1e-8  # of branches and of stable stretches: borders of both kinds are located from either side
-LOCI = 1e-6  # ends of loci where they run into a point of codimension two: the equations of a locus are singular there
+LOCI = 1e-4  # ends of loci that run into a point of codimension two, where their equations are singular: rounding says how near they come
 NEAR = 1e-8
 MULTIPLIERS = 1e-5  # at a fold they move with the square root of the location error
 

@@ -5,7 +5,7 @@ import numpy as np
 import contvines as cv
 from contvines.command.compose import first_orbit, run_diagram
 from contvines.command.study import read_study
-from contvines.continuation import loop as source
+from contvines.continuation import layout as source
 from contvines.continuation.layout import SIZE, Metric, Scratch
 from contvines.continuation.native import NativeLoop
 from contvines.continuation.step_rule import BY_ANGLE

@@ -136,7 +136,7 @@ def follow(orbit: Any, label: str, stable: bool | None, tally: Tally, width: flo
         tally.count("orbits at which the return map has a kink")
     if stable and width < UNRESOLVED:
         tally.count("stable stretches narrower than floating point resolves")
-        if not _as_narrow(orbit, width):
+        if not (in_many_digits(orbit) or _as_narrow(orbit, width)):
             tally.find("return", f"{said}: called stable, which many digits do not confirm")
     elif stable and seen.returned is not None:
         tally.count("stable orbits simulated")

@@ -118,7 +118,10 @@ def test_a_large_chaotic_motion_beside_a_stable_one_is_followed_to_where_it_is_l
         depth=0, workers=1,
     )  # fmt: skip
     rows = sweep(coupled_two, "frequency", np.linspace(8.01, 7.984, 14), **case)
-    assert made["peak"][0] == pytest.approx(max(row.measures["max_q"] for row in rows), rel=0.01)
+    largest = max(row.measures["max_q"] for row in rows)
+    assert made["peak"][0] == pytest.approx(
+        largest, rel=0.05
+    )  # a chaotic motion's largest is that of a finite run
     assert made["covered"][0] >= 0.999 and "chaotic" in made.notes[0]
 
 
