@@ -33,11 +33,8 @@ LATER = (7, 5)  # of the later ones, between the neighbours of the best
 SAMPLES = 16  # where the study does not say
 QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
 LOADS = ("impact_speed", "approach_speed", "impulse", "mean_force", "impact_rate", "impact_energy")
-VALUES, STARTS, FEW = (
-    9,
-    6,
-    2,
-)  # of the parameter, and starts at each, from which it is told what is met at the choice; few where flights are integrated
+VALUES, STARTS = 9, 6  # of the parameter, and at each, from which it is told what is met at the choice
+FEW = 2  # starts where flights are integrated
 REPLAYED, LONGEST = (
     400,
     24,
