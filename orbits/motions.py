@@ -84,17 +84,11 @@ class Simulated:
         """
         if not len(self.equations.unit):
             raise ValueError("the absorber that never slides has no section")
-        params = self.values(p)
-        if self.model.flow == "page":
-            from orbits.simulation.page_section import section_of
-
-            return section_of(
-                self.model, params, self.word, self.periods, self.model.place_of(self.parameter)
-            )
         from orbits.simulation.runs import simulator_of
         from orbits.simulation.section import Section
 
-        return Section(simulator_of(self.model, params), self.word, self.periods, self.equations.unit[0])
+        simulator, unit = simulator_of(self.model, self.values(p)), self.equations.unit[0]
+        return Section(simulator, self.word, self.periods, unit, self.model.place_of(self.parameter))
 
 
 def _canonical_text(word: Word) -> str:

@@ -215,17 +215,16 @@ def _limit(text: str, name: str, said: str, model: Model) -> float:
     """One end of an interval in which an estimate may lie, in the machine's unit."""
     from contvines.command.amounts import amount
     from contvines.command.physical_study import number_of
+    from orbits.machines.physical.machine import Physical
 
     try:
         value = amount("", said, name, model.units)
-        if model.flow == "page":
-            model.check_value(name, value)
-        elif model.units.get(name):
+        if isinstance(model, Physical) and model.units.get(name):
             refusal = number_of(model, name, f"{value!r} {model.units[name]}", said)[1]
             if refusal:
                 raise ValueError(refusal)
-        elif name in model.parameter_names:
-            model.parameter(name).number(value)
+        else:
+            model.check_value(name, value)
     except ValueError as error:
         raise ValueError(f"--limits {text}: {str(error).strip(' :.')}.") from None
     return value
@@ -282,7 +281,7 @@ def _from_sweep(
     from orbits.design.calibration import from_sweep
 
     known = measure_names(model)
-    over, name = study.parameter, measure or ("max_abs_q1" if model.flow == "native" else known[0])
+    over, name = study.parameter, measure or next(name for name in known if name.startswith("max_"))
     if name not in known:
         raise ValueError(f"--measure {name}: a simulation tells {', '.join(known)}.")
     if over in guesses:

@@ -107,10 +107,12 @@ def length_on_line(text: str, option: str, unit: str) -> float:
 
 def scales(model: Any, params: np.ndarray) -> tuple[float, str, float, str]:
     """What a dimensionless length and time are in the units that a study shows, and these units ("" for plain numbers)."""
-    if not model.units or model.flow == "page":
+    from orbits.machines.physical import units
+    from orbits.machines.physical.machine import Physical
+
+    if not isinstance(model, Physical):
         return 1.0, "", 1.0, model.units.get("time", "")
     gauges = model.tables.GAUGES
-    from orbits.machines.physical import units
 
     return (
         float(model.gauge("length", params)),

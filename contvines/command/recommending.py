@@ -338,7 +338,7 @@ class _Work:
             for place in places
             if place.unknown
         ]
-        has_bare = self.model.flow != "page" and "damping" in self.model.parameter_names
+        has_bare = self.model.in_cavity and "damping" in self.model.parameter_names
         model, loose = self.family.machine_at({} if best is None else {self.name: best.value})
         compared = peaks_compared(model, study.parameter, study.within, KINDS) if has_bare else {}
         if not has_bare:
@@ -352,7 +352,7 @@ class _Work:
             "within": study.within, "units": {**self.units, "time": "s" if self.model.units else ""},
             "own": self.own(), "cost": cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
             "machine": self._machine(), "places": places, "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
-            "absorber": self.model.flow != "page",
+            "absorber": self.model.in_cavity,
         }  # fmt: skip
         if best is None:
             return Recommendation(

@@ -46,7 +46,7 @@ def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
 
 def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
     """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
-    if problem.model.flow != "native" or sorted(problem.word.events) != ["s", "s", "u", "u"]:
+    if not problem.model.in_cavity or sorted(problem.word.events) != ["s", "s", "u", "u"]:
         return []
     p = float(point.value)
     unit = parameter_unit(problem, p)

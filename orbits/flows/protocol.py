@@ -19,6 +19,7 @@ The solving half, in words
    the nodes of the events that they propose; `without_events` the node of a motion that has lost its last event (None: that is at rest).
    `restitution` is that of an impact. Of equations, `approach` is the speed with which an impact leaves its wall, and `through_flights` are the
    derivatives of a round's flights (with the mirror, where a round is half a cycle).
+7. `closed_form` says whether flights are known in closed form, so that something can be proved of them.
 
 The stepping half, in words
 ---------------------------
@@ -169,6 +170,18 @@ class Simulator(Protocol):
 
     def follow(self, until: float) -> None: ...
 
+    def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Move on by a period of a cycle: so many forcing periods, of a self-excited machine until its word has passed.
+
+        Returns
+        -------
+        by_state : float array (d, d)
+            Derivatives of the point by the one before.
+        by_value : float array (d,)
+            By the parameter with this index; both NaN where no index is given, or the simulator does not know them.
+        """
+        ...
+
     def record(self, until: float, most: int) -> Record: ...
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None: ...
@@ -303,6 +316,8 @@ class Flow(Protocol):
 
     @property
     def angles(self) -> tuple[str, ...]: ...
+    @property
+    def closed_form(self) -> bool: ...
     @property
     def resolution(self) -> float: ...
 

@@ -34,6 +34,7 @@ class Model(Mechanics):
     flow: str = "native"
     """What happens between two events: a name in `orbits.flows.catalogue`."""
     forced: bool = True
+    in_cavity: ClassVar[bool] = True
     table: ClassVar[tuple[Parameter, ...]]
     default_measure: ClassVar[str] = "B"
     own_measures: ClassVar[tuple[str, ...]] = ()

@@ -30,6 +30,9 @@ class Varying:
     younger: ClassVar[tuple[str, ...]] = ()
     """Parameters that older files do not have: their machines have the defaults."""
 
+    in_cavity: ClassVar[bool] = False
+    """Whether it is an absorber that moves between two walls of a cavity, with friction on its floor."""
+
     contact_time: float | None = None
     """Duration of an impact, in 1/omega_0, in seconds where there are units; None where no peak force is asked for."""
 

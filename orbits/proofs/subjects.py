@@ -10,6 +10,7 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from orbits.cycles.identity import root_orbit
+from orbits.flows.catalogue import flow_of
 from orbits.proofs.balls import Given, decimal
 from orbits.proofs.branches import Pieces
 from orbits.proofs.checks import check_symmetry, motif_of
@@ -243,7 +244,7 @@ def _critical(
 
 
 def _refuse_pages(model: Model) -> None:
-    if model.flow == "page":
+    if not flow_of(model).closed_form:
         raise ProofError(
             f"the machine {model.name!r} offers no proofs, for flights of declared machines have no closed form; "
             "the built-in machines do"

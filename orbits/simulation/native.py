@@ -116,6 +116,12 @@ class NativeSimulator:
                 f"the motion of {self.model.name!r} does not go on to {until:g} forcing periods"
             )
 
+    def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Move on by a period of a cycle, without derivatives."""
+        self.follow(self.time + periods)
+        n = len(self._places)
+        return np.full((n, n), np.nan), np.full(n, np.nan)
+
     def run(self, periods: float, most: int = MOST_EVENTS) -> Trajectory:
         """Move on and keep the motion; `SimulationError` if it leaves the range of numbers."""
         begin, state = self.state.copy(), self.state

@@ -12,13 +12,15 @@ import numpy as np
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.stepper import TWO_PI, Stepper
-from orbits.flows.protocol import Record, checked_start
+from orbits.flows.page.variations import Variations
+from orbits.flows.protocol import Record, SimulationError, checked_start
 from orbits.machines.page.machine import Machine
 
 if TYPE_CHECKING:
     from orbits.words import Word
 
 REACHED, FULL, STILL = 0, 1, 2
+AWAY = 1e3  # clock without an event of a cycle after which a motion does not come back to it
 FOREVER = 1e5  # clock after which a run that waits for events gives up
 
 
@@ -251,6 +253,27 @@ class PageSimulator:
         """Move on."""
         while self.stepper.advance(TWO_PI * until) is not None:
             pass
+
+    def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Move on by a period of a cycle, with derivatives; NaN where a wall has held the body."""
+        stepper, n = self.stepper, self.machine.size
+        mover = stepper if index is None else Variations(stepper, index)
+        if self.forced:
+            until = stepper.base + stepper.clock + TWO_PI * periods
+            while mover.advance(until) is not None:
+                pass
+        else:
+            letters = [word.letter(i) for i in range(len(word))]
+            first = (letters[0].contact, letters[0].kind)
+            left = sum((letter.contact, letter.kind) == first for letter in letters)
+            while left:
+                found = mover.advance(stepper.base + stepper.clock + AWAY)
+                if found is None:
+                    raise SimulationError("the event of the section does not come again")
+                left -= found[:2] == first
+        if isinstance(mover, Variations):
+            return mover.derivatives
+        return np.full((n, n), np.nan), np.full(n, np.nan)
 
     def run(self, periods: float, most: int) -> PageTrajectory:
         """Move on and keep the motion."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,15 +17,22 @@ if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
 
+SIMULATORS = {
+    "native": ("orbits.simulation.native", "NativeSimulator"),
+    "page": ("orbits.simulation.page", "PageSimulator"),
+}
+
+
 def simulator_of(model: Any, params: np.ndarray) -> Simulator:
     """The simulator of a machine at these parameters; the contract is at the top of `orbits.flows.protocol`."""
-    if model.flow == "page":
-        from orbits.simulation.page import PageSimulator
+    return _simulators(model.flow)(model, params)
 
-        return PageSimulator(model, params)
-    from orbits.simulation.native import NativeSimulator
 
-    return NativeSimulator(model, params)
+@cache
+def _simulators(flow: str) -> type:
+    """The simulator of a flow, imported when a machine asks for it."""
+    module, name = SIMULATORS[flow]
+    return getattr(import_module(module), name)
 
 
 def simulate(

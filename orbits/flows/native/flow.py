@@ -23,6 +23,7 @@ class NativeFlow:
     """See `orbits.flows.protocol`; a node is (Psi, B+) at an impact, (Psi, w) elsewhere, and what the machine adds."""
 
     angles = measures.ANGLES
+    closed_form = True
     resolution = 1e-7  # two borders whose values agree to 1e-12 may be 5e-6 apart
 
     def position_entries(self, model: Model) -> tuple[int, ...]:

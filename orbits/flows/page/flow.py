@@ -23,6 +23,7 @@ class PageFlow:
     """See `orbits.flows.protocol`; a node is the phase, or the duration of the flight that follows, and the states after the event."""
 
     angles = ("phase",)
+    closed_form = False
     resolution = 1e-5  # flights know a border to 1e-10, and grazes to its root
 
     def position_entries(self, model: Machine) -> tuple[int, ...]:

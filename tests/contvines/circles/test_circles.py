@@ -74,7 +74,6 @@ def bodies(machine):
 @pytest.mark.slow
 def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(coupled):
     pytest.importorskip("heyoka")
-    from orbits.simulation.page_section import section_of
     from tools.pages.pages import page
 
     found = coupled["NS1"].circles(to=1.0245)
@@ -83,8 +82,7 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
         assert circle.radius == pytest.approx(circle.predicted, rel=0.15)
     circle, machine = found[-1], page("coupled")
     orbit = machine.orbit("LR", frequency=circle.value)
-    index = machine.parameter_names.index("frequency")
-    section = section_of(machine, machine.vector({"frequency": circle.value}), orbit.word, 1, index)
+    section = orbit.problem("frequency").section(circle.value)
     assert found.names == ("w", "w_rate", "v", "v_rate")
     to_bodies, order = bodies(machine)
     phases = np.linspace(0.1, 6.0, 5)
@@ -99,7 +97,6 @@ def test_circles_of_the_coupled_absorber_are_invariant_for_another_simulator(cou
 def test_the_modulated_response_of_the_coupled_absorber_attracts():
     """With little forcing the pair leaves the unit circle supercritically: another simulator settles on the circle, which beats slowly."""
     pytest.importorskip("heyoka")
-    from orbits.simulation.page_section import section_of
     from tools.pages.pages import page
 
     settings = {"damping": 1.0, "mass_ratio": 0.006, "restitution": 0.76, "friction": 0.5, "gravity": 0.211}
@@ -111,13 +108,7 @@ def test_the_modulated_response_of_the_coupled_absorber_attracts():
     circle, machine = found[-1], page("coupled")
     assert circle.stable and circle.simulated == pytest.approx(circle.rotation, abs=1e-9)
     there = {"frequency": circle.value, "forcing": 1.05}
-    section = section_of(
-        machine,
-        machine.vector(there),
-        machine.orbit("LR", **there).word,
-        1,
-        machine.parameter_names.index("frequency"),
-    )
+    section = machine.orbit("LR", **there).problem("frequency").section(circle.value)
     to_bodies, order = bodies(machine)
     dense = circle.at(np.linspace(0.0, 2.0 * np.pi, 2001))
 

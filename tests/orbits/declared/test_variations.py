@@ -6,15 +6,17 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import DryFriction, Machine, Switch, Wall
-from orbits.simulation.page_section import VariedSection, section_of
+from orbits.simulation.runs import simulator_of
+from orbits.simulation.section import Section
 from orbits.symbols import cos, sin, sqrt
 from orbits.words import Word
 
 
-def section(machine: Machine, parameter: str, **values: float) -> VariedSection:
+def section(machine: Machine, parameter: str, **values: float) -> Section:
     """A section at phase zero, once per forcing period, that differentiates by a parameter."""
     word = Word((), (tuple(0 for _ in machine.contacts),), machine.alphabet)
-    return section_of(machine, machine.vector(values), word, 1, machine.parameter_names.index(parameter))
+    simulator, unit = simulator_of(machine, machine.vector(values)), np.ones(machine.size + 1)
+    return Section(simulator, word, 1, unit, machine.parameter_names.index(parameter))
 
 
 def rubbing_rotor() -> Machine:
