@@ -30,6 +30,7 @@ def test_an_html_page_plays_by_itself(orbit, tmp_path):
 def test_the_absorber_stays_between_its_walls(orbit):
     """At every picture the absorber is within the cavity, and at some it touches both walls (to the pictures' distance)."""
     made = orbit.animate(seconds=2.0, rate=20, figsize=(3, 2))
+    made._init_draw()  # else matplotlib warns that nobody has looked at it
     above = made._fig.axes[0]
     body, *walls = above.lines[1:4]
     gaps = []

@@ -20,26 +20,26 @@ def basins(
         typer.Option(
             "--plane",
             metavar="X Y",
-            help="The two coordinates of the starts; by default the first position and its rate.",
+            help="Two states that vary; by default the first position and its rate.",
         ),
     ] = None,
     points: Annotated[
         int | None,
-        typer.Option("--points", help="Starts across and up; by default 200, of declared machines 60."),
+        typer.Option("--points", help="Starts per axis; by default 200, for declared machines 60."),
     ] = None,
     saddles: Annotated[
         Path | None,
         typer.Option(
             "--saddles",
             metavar="FILE.vines",
-            help="Grow the stable manifolds of this graph's unstable motions.",
+            help="Also draw the stable manifolds of this graph's unstable motions.",
         ),
     ] = None,
     plot: PlotOption = None,
     size: SizeOption = None,
     json: JsonOption = False,
 ) -> None:
-    """Basins of attraction in a plane of starts, their shares and their boundary's exponent."""
+    """Basins of attraction in a plane of starts: shares, uncertainty exponent of the boundary."""
     import contvines
     from contvines.command.compose import population
     from contvines.command.study import read_study

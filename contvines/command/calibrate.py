@@ -23,24 +23,24 @@ CLOSE = 0.95  # correlation of two estimates from which on it is told
 
 def calibrate(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="The study; its values are where the search begins.")
+        Path, typer.Argument(metavar="STUDY.toml", help="A study; the search begins at its values.")
     ],
     impacts: Annotated[
         Path | None,
-        typer.Option("--impacts", metavar="FILE.csv", help="Instants of successive impacts, in one column."),
+        typer.Option("--impacts", metavar="FILE.csv", help="Times of successive impacts, in one column."),
     ] = None,
     sweep: Annotated[
         Path | None,
         typer.Option(
             "--sweep",
             metavar="FILE.csv",
-            help="Steady responses: the parameter and the response, a column each.",
+            help="Steady responses: one column for the parameter, one for the response.",
         ),
     ] = None,
     unknown: Annotated[
         list[str] | None,
         typer.Option(
-            "--unknown", metavar="NAME", help="What is estimated (repeatable); by default restitution."
+            "--unknown", metavar="NAME", help="Parameter to estimate (repeatable); by default restitution."
         ),
     ] = None,
     release: Annotated[
@@ -48,13 +48,13 @@ def calibrate(
         typer.Option(
             "--release",
             metavar="LENGTH",
-            help='The impacts are of a free decay, let go at this displacement: "5 mm".',
+            help='The impacts are those of a free decay, released at this displacement: "5 mm".',
         ),
     ] = None,
     measure: Annotated[
         str | None,
         typer.Option(
-            "--measure", metavar="NAME", help="Which response a sweep has; max_abs_q1 if not given."
+            "--measure", metavar="NAME", help="Measure that the sweep holds; by default max_abs_q1."
         ),
     ] = None,
     limits: Annotated[
@@ -62,10 +62,12 @@ def calibrate(
         typer.Option(
             "--limits",
             metavar="NAME=LOW,HIGH",
-            help="Where an estimate may lie: restitution=0.3,0.9 (repeatable).",
+            help="Bounds of an estimate: restitution=0.3,0.9 (repeatable).",
         ),
     ] = None,
-    confidence: Annotated[float, typer.Option("--confidence", help="Of the intervals.")] = 0.95,
+    confidence: Annotated[
+        float, typer.Option("--confidence", help="Confidence level of the intervals.")
+    ] = 0.95,
     plot: PlotOption = None,
     size: SizeOption = None,
     json_: JsonOption = False,
@@ -74,7 +76,7 @@ def calibrate(
 
     Impact times are counted from the first impact of a run that begins at rest with the excitation's phase 0
     (or, with --release, of a free decay).
-    A sweep holds steady responses in the order in which they were measured. Heads of columns may name units: time [ms].
+    A sweep holds steady responses in the order in which they were measured. Column heads may name units: time [ms].
     """
     from contvines.command.compose import check_shaken
     from contvines.command.study import read_study

@@ -8,7 +8,7 @@ from contvines.command.study_data import Sort, Study, without_word, wrong_interv
 from contvines.command.study_errors import StudyError, refuse, validated
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.building import build
-from orbits.machines.catalogue import NAMES, model_class
+from orbits.machines.catalogue import NAMES, PAGES, STRUCTURE, model_class
 from orbits.machines.parameters import CONTACT_TIME
 from orbits.words import Word
 
@@ -65,10 +65,10 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
 
 def _without_machine(data: dict[str, Any], model: Any, name: Any) -> list[str]:
     """What is wrong with a study of which nobody knows whose it is."""
-    names = " or ".join(repr(known) for known in NAMES)
+    names = f'{", ".join(repr(known) for known in (*NAMES, *PAGES, STRUCTURE))}, or a machine of your own, "FILE.py:NAME"'
     if name is not None:
-        hint = did_you_mean(name, NAMES) if isinstance(name, str) else ""
-        wrong = f"[model] name = {repr(name)[:60]}: no such model{hint}; expected {names}."
+        hint = did_you_mean(name, (*NAMES, *PAGES, STRUCTURE)) if isinstance(name, str) else ""
+        wrong = f"[model] name = {repr(name)[:60]}: there is no such machine{hint}; expected {names}."
     elif isinstance(model, dict):
         wrong = f"[model] name is missing; expected {names}."
     elif model is None:

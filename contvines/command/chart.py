@@ -38,7 +38,7 @@ OutputOption = Annotated[
         "-o",
         "--output",
         metavar="FILE.vines",
-        help="Where to keep it; by default FILE-LABEL.vines (locus) or FILE-chart.vines here.",
+        help="Result file; by default FILE-LABEL.vines (locus) or FILE-chart.vines in this folder.",
     ),
 ]
 
@@ -72,7 +72,7 @@ def locus(
     check_special(graph, file, label)
     refuse_detached(graph, label)
     ends = interval("--within", within, over, graph.units)
-    with working("nothing is kept; the same command begins again", quiet) as progress:
+    with working("nothing new is kept; run the same command again", quiet) as progress:
         found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress)
     with held(target, quiet, fresh):
         found.save(target)
@@ -82,7 +82,7 @@ def locus(
 def chart(
     file: Annotated[
         Path,
-        typer.Argument(metavar="STUDY.toml|FILE.vines", help="A study, or a diagram that was made of one."),
+        typer.Argument(metavar="STUDY.toml|FILE.vines", help="A study, or a result of diagram."),
     ],
     over: Annotated[
         str | None,
@@ -103,7 +103,7 @@ def chart(
     quiet: QuietOption = False,
     trust: TrustOption = False,
 ) -> None:
-    """Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted."""
+    """Chart of two parameters: loci of special points, codimension-two points, regions; an interrupted run goes on."""
     target = place_of(output, file, "-chart.vines")
     check_plot(plot)
     graph, diagram, over, ends = _diagram(file, over, within, trust, fresh)

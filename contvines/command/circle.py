@@ -25,7 +25,9 @@ def circle(
     to: Annotated[
         str | None,
         typer.Option(
-            "--to", metavar="VALUE", help="Parameter value to go to; by default half the size of the motion."
+            "--to",
+            metavar="VALUE",
+            help="Last value of the parameter; by default where the circle is half as large as the motion.",
         ),
     ] = None,
     plot: PlotOption = None,
@@ -33,7 +35,7 @@ def circle(
     json: JsonOption = False,
     trust: TrustOption = False,
 ) -> None:
-    """Follow the modulated motions that are born at a Neimark-Sacker point until they break."""
+    """Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up."""
     check_plot(plot, size)
     graph = load_file(file, trust, charts=True)
     special = getattr(graph, "special", {})

@@ -92,7 +92,9 @@ def main(arguments: list[str] | None = None) -> None:
 
 def stopped(note: str = "") -> None:
     """End after Ctrl-C: say what is kept and how to go on, exit status 130."""
-    print(f"\ncontvines: stopped; {note or 'the same command begins again, or goes on'}.", file=sys.stderr)
+    print(
+        f"\ncontvines: stopped; {note or 'nothing new is kept; run the same command again'}.", file=sys.stderr
+    )
     sys.exit(130)
 
 

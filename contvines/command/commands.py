@@ -8,42 +8,48 @@ from typer.core import TyperCommand
 from typer.main import get_command
 
 COMMANDS = {
-    "diagram": ("run", "Automatic bifurcation diagram of a study; goes on with an unfinished file."),
+    "diagram": ("run", "Automatic bifurcation diagram of a study; an interrupted run goes on."),
     "trace": ("run", "Follow the study's one branch, without switching."),
     "switch": ("run", "Follow the branch that leaves a special point, and add it to the file."),
-    "atlas": ("run", "Everything that coexists: many simulated starts, and branches through all they reach."),
+    "atlas": (
+        "run",
+        "All coexisting motions: many starts are simulated, and all that they reach is continued.",
+    ),
     "basins": (
         "basins",
-        "Basins of attraction in a plane of starts, their shares and their boundary's exponent.",
+        "Basins of attraction in a plane of starts: shares, uncertainty exponent of the boundary.",
     ),
     "robustness": (
         "robustness",
-        "The smallest kick that makes a stable motion go elsewhere, and the share of starts that reach it.",
+        "Robustness of a stable motion: the smallest kick out of its basin, the share of its basin.",
     ),
     "locus": ("chart", "Follow one special point of a result in a second parameter."),
     "chart": (
         "chart",
-        "Chart two parameters: loci from all special points, what they meet, regions; goes on when interrupted.",
+        "Chart of two parameters: loci of special points, codimension-two points, regions; an interrupted run goes on.",
     ),
     "circle": (
         "circle",
-        "Follow the modulated motions that are born at a Neimark-Sacker point until they break.",
+        "Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up.",
     ),
-    "show": ("show", "List branches, special points and switches."),
+    "show": ("show", "List branches, special points and their links."),
     "orbit": ("orbit", "One orbit: its events, multipliers and margins."),
     "prove": ("prove", "Prove that orbits exist, are real or virtual, stable or unstable."),
-    "plot": ("plot", "Draw a result: the diagram, the multipliers of a branch, or the graph itself."),
+    "plot": ("plot", "Draw a result: the diagram, the multipliers of a branch, or the network of branches."),
     "rerun": ("rerun", "Compute a result again from the study that its file keeps, and list what differs."),
     "export": ("export", "Write a result for other programs: csv, json, graphml, mat, latex, auto or xpp."),
-    "report": ("report", "Write a result as one HTML page that needs no network."),
+    "report": ("report", "Write a result as one HTML page, which needs no network."),
     "sweep": (
         "sweep",
-        "Simulate over the parameter, carrying the state on; goes on with an unfinished sweep.",
+        "Simulate over the parameter, each value from the last state; an interrupted run goes on.",
     ),
-    "survey": ("survey", "Survey many machines; goes on with an unfinished survey."),
+    "survey": (
+        "survey",
+        "Diagrams of many machines: grids, tolerances, samples; an interrupted run goes on.",
+    ),
     "recommend": (
         "recommend",
-        "A clearance for a study: theory first, then diagrams of all samples; goes on when interrupted.",
+        "Recommend a clearance: theory first, then diagrams of all samples; an interrupted run goes on.",
     ),
     "calibrate": (
         "calibrate",
@@ -55,7 +61,7 @@ COMMANDS = {
     ),
     "random": (
         "random_excitation",
-        "A random excitation by its spectral density: statistics with error bars, beside the bare and a tuned machine.",
+        "Response to a random excitation of given spectral density: statistics with error bars.",
     ),
     "design": (
         "design",

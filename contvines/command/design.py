@@ -291,19 +291,19 @@ def design(
         None,
         "--half-width",
         "--cavity",
-        help="Half-width b of the cavity [m]; 0.02 is assumed if no scale is given.",
+        help="Half-width b of the cavity [m]; by default 0.02.",
     ),
     natural_frequency: float | None = typer.Option(
-        None, help="f_0 of the oscillator [Hz], instead of the cavity."
+        None, help="Natural frequency f_0 of the oscillator [Hz], in place of --half-width."
     ),
     plot: Path | None = typer.Option(
-        None, metavar="FILE.png", help="Where the picture goes; STUDY-design.png in this folder if not given."
+        None, metavar="FILE.png", help="Picture; by default STUDY-design.png in this folder."
     ),
     size: tuple[float, float] | None = typer.Option(
         None,
         "--size",
         metavar="WIDTH HEIGHT",
-        help="Inches; a small picture has the bounds over friction alone.",
+        help="Size of the picture in inches; a small one shows only the bounds over friction.",
     ),
     no_plot: bool = typer.Option(False, "--no-plot", help="No picture."),
     json_: JsonOption = False,

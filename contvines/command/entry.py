@@ -11,7 +11,7 @@ def main() -> None:
 
         run()
     except KeyboardInterrupt:
-        print("contvines: stopped; the same command begins again, or goes on.", file=sys.stderr)
+        print("contvines: stopped; nothing new is kept; run the same command again.", file=sys.stderr)
         sys.exit(130)
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
 
 StudyArgument = Annotated[
-    Path, typer.Argument(metavar="STUDY.toml", help="The study: model, start, what to continue.")
+    Path, typer.Argument(metavar="STUDY.toml", help="A study: model, start, what to continue.")
 ]
 FileArgument = Annotated[
     Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
@@ -26,33 +26,36 @@ PlotOption = Annotated[
 SizeOption = Annotated[
     tuple[float, float] | None,
     typer.Option(
-        "--size", metavar="WIDTH HEIGHT", help="Of the picture, in inches; 3.4 2.4 is a column of a journal."
+        "--size",
+        metavar="WIDTH HEIGHT",
+        help="Size of the picture in inches; 3.4 2.4 fits one column of a journal.",
     ),
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table.")]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object, numbers at full precision.")]
+JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object with all digits.")]
 FreshOption = Annotated[
     bool,
-    typer.Option(
-        "--fresh", help="Begin anew: a file that is there is set aside, FILE.vines as FILE.old.vines."
-    ),
+    typer.Option("--fresh", help="Begin again; an existing file is renamed, FILE.vines to FILE.old.vines."),
 ]
 TrustOption = Annotated[
     bool,
     typer.Option(
         "--trust",
-        help="Import Python functions that the file names: runs their code, so only for files whose maker you trust.",
+        help="Run the Python code that the file names; only for files from people you trust.",
     ),
 ]
 VirtualOption = Annotated[
-    bool, typer.Option("--virtual", help="Go on where no machine follows the motion; drawn dotted.")
+    bool,
+    typer.Option(
+        "--virtual", help="Also continue virtual motions, which no real machine follows; drawn dotted."
+    ),
 ]
 CompareOption = Annotated[
     list[str] | None,
     typer.Option(
         "--compare",
         metavar="KIND",
-        help="With a picture of responses: bare, tuned or friction; may be repeated.",
+        help="Draw another response beside: bare (no absorber), tuned (mass damper) or friction (damper); repeatable.",
     ),
 ]
 

@@ -22,7 +22,10 @@ from contvines.text_table import fitted
 
 def orbit(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE.vines|STUDY.toml", help="A result, or a study to try its start.")
+        Path,
+        typer.Argument(
+            metavar="FILE.vines|STUDY.toml", help="A result, or a study, whose first orbit is shown."
+        ),
     ],
     label: Annotated[
         str | None,
@@ -35,7 +38,7 @@ def orbit(
     animate: Annotated[
         Path | None,
         typer.Option(
-            "--animate", metavar="FILE.gif", help="Show it in motion (gif, html, or mp4 by ffmpeg)."
+            "--animate", metavar="FILE.gif", help="Write an animation (gif, html; mp4 needs ffmpeg)."
         ),
     ] = None,
     trust: TrustOption = False,
@@ -56,7 +59,7 @@ def orbit(
         if not hasattr(found, "animate"):
             raise ValueError(f"--animate {animate}: this solution has no motion to show; --plot draws it")
         found.animate(animate)
-        say(f"in motion in {animate}")
+        say(f"animation written to {animate}")
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> Any:

@@ -45,16 +45,18 @@ def plot(
         str | None,
         typer.Option(
             "-y",
-            help="Measure on the y axis; by default what the machine is judged by: B (velocity at the first impact) "
-            "of the absorber, max_abs_q1 of the coupled machine, the first measure of other problems.",
+            help="Measure on the y axis; by default B (velocity at the first impact) "
+            "of the absorber, max_abs_q1 of the coupled machine, else the first measure of the problem.",
         ),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="png, pdf or svg.")
+        Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="Picture: png, pdf or svg.")
     ] = None,
     kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
     compare: CompareOption = None,
-    branch: Annotated[str | None, typer.Option("--branch", help="Whose multipliers; by default B1.")] = None,
+    branch: Annotated[
+        str | None, typer.Option("--branch", help="With --kind multipliers: the branch; by default B1.")
+    ] = None,
     xlim: Annotated[
         tuple[float, float] | None, typer.Option("--xlim", metavar="LOW HIGH", help="Limits of the x axis.")
     ] = None,
@@ -62,34 +64,34 @@ def plot(
         tuple[float, float] | None, typer.Option("--ylim", metavar="LOW HIGH", help="Limits of the y axis.")
     ] = None,
     size: SizeOption = None,
-    color: Annotated[Colors | None, typer.Option("--color", help="What a colour stands for.")] = None,
+    color: Annotated[Colors | None, typer.Option("--color", help="What the colours show.")] = None,
     marks: Annotated[
         str | None,
         typer.Option(
             "--marks",
             metavar="LP,SB,...",
-            help="Kinds of special points that get marks, or none; by default all.",
+            help="Kinds of special points to mark, or none; by default all.",
         ),
     ] = None,
-    words: Annotated[bool, typer.Option("--words", help="Write words along the branches.")] = False,
-    legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Explain lines and marks.")] = True,
+    words: Annotated[bool, typer.Option("--words", help="Write the words beside the branches.")] = False,
+    legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Legend of lines and marks.")] = True,
     inset: Annotated[
         bool | None,
         typer.Option(
             "--inset/--no-inset",
-            help="Draw the most crowded place once more where there is room; by default where marks hide one another.",
+            help="Enlarge the most crowded part in an inset; by default only where marks overlap.",
         ),
     ] = None,
     style: Annotated[
         str | None,
         typer.Option(
             "--style",
-            help="aps, elsevier, springer (one column), grey, slides, a style or style sheet of matplotlib's, or several: aps,grey.",
+            help="aps, elsevier, springer (one column), grey, slides, or a style of matplotlib; several as aps,grey.",
         ),
     ] = None,
     trust: TrustOption = False,
 ) -> None:
-    """Draw a result: the diagram, the multipliers of a branch, or the graph itself."""
+    """Draw a result: the diagram, the multipliers of a branch, or the network of branches."""
     from contvines.plots.figures import check_style, save_figure
 
     asked = {

@@ -18,7 +18,7 @@ def prove(
     file: Annotated[
         Path,
         typer.Argument(
-            metavar="FILE.vines|STUDY.toml", help="A result, or a study to prove its first orbit."
+            metavar="FILE.vines|STUDY.toml", help="A result, or a study, whose first orbit is proved."
         ),
     ],
     labels: Annotated[
@@ -31,16 +31,18 @@ def prove(
     json: JsonOption = False,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Verify the certificates that are kept, by an independent checker."),
+        typer.Option("--check", help="Check the certificates in the file with an independent program."),
     ] = False,
     bits: Annotated[
         int | None,
-        typer.Option("--bits", min=64, max=4096, help="Precision to begin with; raised where that helps."),
+        typer.Option(
+            "--bits", min=64, max=4096, help="Precision in bits at the beginning; raised where that helps."
+        ),
     ] = None,
     within: Annotated[
         tuple[str, str] | None,
         typer.Option(
-            "--within", metavar="LOW HIGH", help="Of branches, prove just this interval of the parameter."
+            "--within", metavar="LOW HIGH", help="With branches: only this interval of the parameter."
         ),
     ] = None,
     output: Annotated[

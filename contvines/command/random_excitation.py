@@ -36,16 +36,20 @@ def random(
     study: Annotated[
         Path,
         typer.Argument(
-            metavar="STUDY.toml", help="The study, with a section [random] (coupled, or a declared machine)."
+            metavar="STUDY.toml",
+            help="A study with a section [random], of the coupled or a declared machine.",
         ),
     ],
     seed: Annotated[
-        int | None, typer.Option("--seed", metavar="N", min=0, help="Of the draws, in place of the study's.")
+        int | None,
+        typer.Option(
+            "--seed", metavar="N", min=0, help="Seed of the random draws, in place of the one in the study."
+        ),
     ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE.csv", help="The densities of the responses over the frequency."
+            "-o", "--output", metavar="FILE.csv", help="Result file: spectral densities of the responses."
         ),
     ] = None,
     plot: PlotOption = None,

@@ -33,23 +33,33 @@ def recommend(
     study: Annotated[
         Path,
         typer.Argument(
-            metavar="STUDY.toml", help="The study; [survey] vary says what is open and what is uncertain."
+            metavar="STUDY.toml",
+            help="A study; its [survey] vary names the free and the uncertain parameters.",
         ),
     ],
     cost: Annotated[
         float,
-        typer.Option("--cost", metavar="PERCENT", min=0.1, max=50.0, help="What the tolerance may cost."),
+        typer.Option(
+            "--cost",
+            metavar="PERCENT",
+            min=0.1,
+            max=50.0,
+            help="Largest loss of performance within the tolerance.",
+        ),
     ] = 5.0,
     target: Annotated[
         str | None,
         typer.Option(
             "--target",
             metavar="LENGTH",
-            help='The response that counts as quieted, "30 mm"; nine tenths of the bare machine\'s by default.',
+            help='Response that is small enough, "30 mm"; by default 0.9 of that without absorber.',
         ),
     ] = None,
     workers: Annotated[
-        int | None, typer.Option("--workers", min=1, help="Processes of this machine; all cores by default.")
+        int | None,
+        typer.Option(
+            "--workers", min=1, help="Number of processes on this computer; by default one per core."
+        ),
     ] = None,
     output: Annotated[
         Path | None,
@@ -57,7 +67,7 @@ def recommend(
             "-o",
             "--output",
             metavar="FILE.json",
-            help="Where it is kept; by default STUDY-recommend.json here.",
+            help="Result file; by default STUDY-recommend.json in this folder.",
         ),
     ] = None,
     plot: PlotOption = None,
@@ -66,11 +76,11 @@ def recommend(
     json_: JsonOption = False,
     quiet: QuietOption = False,
 ) -> None:
-    """A clearance for a study: theory first, then diagrams of all samples; goes on when interrupted.
+    """Recommend a clearance: theory first, then diagrams of all samples; an interrupted run goes on.
 
-    Chosen is the value of the one parameter that [survey] vary has on a grid
-    (half_width if there is none) with the lowest worst response over all that
-    coexists and all samples of what is uncertain.
+    The free parameter is the one that [survey] vary has on a grid (half_width
+    if there is none). Its best value has the lowest worst response over all
+    coexisting motions and all samples of the uncertain parameters.
     """
     from contvines.command.study import read_study
 

@@ -13,30 +13,32 @@ def report(
         Path,
         typer.Argument(
             metavar="FILE",
-            help="What diagram, atlas or chart (.vines), survey (.nc) or recommend (.json) has made.",
+            help="Result of diagram, atlas or chart (.vines), survey (.nc) or recommend (.json).",
         ),
     ],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="PAGE.html", help="The page; by default FILE.html here."),
+        typer.Option(
+            "-o", "--output", metavar="PAGE.html", help="The page; by default FILE.html in this folder."
+        ),
     ] = None,
     pdf: Annotated[
         Path | None,
         typer.Option(
             "--pdf",
             metavar="FILE.pdf",
-            help="Also as PDF, by the browser of this computer; a recommendation without one, too.",
+            help="Also a PDF, printed by the browser of this computer (a recommendation needs no browser).",
         ),
     ] = None,
     trust: TrustOption = False,
 ) -> None:
-    """Write a result as one HTML page that needs no network.
+    """Write a result as one HTML page, which needs no network.
 
     The diagram or chart can be zoomed; a click on any point shows its orbit:
     portrait, history, an animation, word, multipliers, margins, and the command
-    and the Python line that give it again. Of a survey: outcomes over what
-    varies, and the machines behind each point. Of a recommendation: the answer,
-    pictures, tables, assumptions, on two sheets of paper.
+    and the Python line that give it again. The page of a survey shows outcomes
+    over the varied parameters and the machines of each point; that of a
+    recommendation the answer, pictures, tables and assumptions on two sheets.
     """
     from contvines.report.answer import print_page
     from contvines.report.page import check_page, write_report

@@ -27,7 +27,7 @@ OutputOption = Annotated[
         "-o",
         "--output",
         metavar="FILE.vines",
-        help="Where to keep the new result; by default FILE-rerun.vines here.",
+        help="Result file; by default FILE-rerun.vines in this folder.",
     ),
 ]
 

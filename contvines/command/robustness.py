@@ -24,15 +24,17 @@ def robustness(
         str, typer.Argument(metavar="LABEL", help="A branch (B1), or one of its stable points (B1:12).")
     ],
     at: Annotated[
-        str | None, typer.Option("--at", metavar="VALUE", help="Of a branch, the value of its parameter.")
+        str | None, typer.Option("--at", metavar="VALUE", help="With a branch: the value of its parameter.")
     ] = None,
     values: Annotated[
-        int, typer.Option("--values", min=1, help="Of a whole branch, how many values of its stable part.")
+        int, typer.Option("--values", min=1, help="With a branch: number of values on its stable part.")
     ] = 16,
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            "--vary", metavar="NAME", help="Also the stable interval of this parameter (repeatable)."
+            "--vary",
+            metavar="NAME",
+            help="Also find the interval of this parameter in which the motion is stable (repeatable).",
         ),
     ] = None,
     starts: Annotated[
@@ -40,16 +42,16 @@ def robustness(
         typer.Option(
             "--starts",
             min=1,
-            help="Starts that tell the share of the basin; 1024 by default, of a declared machine 256.",
+            help="Number of starts for the share of the basin; by default 1024, for declared machines 256.",
         ),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the starts.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the random starts.")] = 0,
     plot: PlotOption = None,
     size: SizeOption = None,
     json: JsonOption = False,
     trust: TrustOption = False,
 ) -> None:
-    """The smallest kick that makes a stable motion go elsewhere, and the share of starts that reach it.
+    """Robustness of a stable motion: the smallest kick out of its basin, the share of its basin.
 
     With a branch alone, both against its parameter: an erosion curve.
     """

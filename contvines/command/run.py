@@ -42,7 +42,7 @@ OutputOption = Annotated[
         "-o",
         "--output",
         metavar="FILE.vines",
-        help="Where to keep it; by default STUDY.vines (diagram) or STUDY-COMMAND.vines here.",
+        help="Result file; by default STUDY.vines (diagram) or STUDY-COMMAND.vines in this folder.",
     ),
 ]
 XOption = Annotated[str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")]
@@ -50,7 +50,7 @@ YOption = Annotated[
     str | None,
     typer.Option(
         "-y",
-        help="Measure on the y axis; by default B, max_abs_q1 of the coupled machine, the first measure of other problems (FILE --help names it).",
+        help="Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem.",
     ),
 ]
 
@@ -67,7 +67,7 @@ def diagram(
         bool,
         typer.Option(
             "--look/--no-look",
-            help="At the end, simulate a few starts and say in one line what they reach that is on no branch.",
+            help="At the end, simulate a few starts and list the motions they reach that are on no branch.",
         ),
     ] = True,
     compare: CompareOption = None,
@@ -75,11 +75,11 @@ def diagram(
         bool,
         typer.Option(
             "--details",
-            help=f"All branches and special points, also of a graph with more than {MANY} branches.",
+            help=f"Print all branches and special points, even if there are more than {MANY} branches.",
         ),
     ] = False,
 ) -> None:
-    """Automatic bifurcation diagram of a study; goes on with an unfinished file."""
+    """Automatic bifurcation diagram of a study; an interrupted run goes on."""
     _run("diagram", study, output, plot, fresh, quiet, x, y, compare, look, details)
 
 
@@ -92,11 +92,11 @@ def atlas(
     x: XOption = None,
     y: YOption = None,
 ) -> None:
-    """Everything that coexists: many simulated starts, and branches through all they reach.
+    """All coexisting motions: many starts are simulated, and all that they reach is continued.
 
-    [atlas] in the study says at how many values (or which), from how many
-    starts at each, drawn with which seed, and how many further values in a
-    row must meet nothing new. An interrupted run goes on.
+    [atlas] in the study sets the values of the parameter, the number of
+    starts at each, their seed, and after how many further values without a
+    new motion the search ends. An interrupted run goes on.
     """
     _run("atlas", study, output, plot, fresh, quiet, x, y)
 

@@ -22,34 +22,39 @@ if TYPE_CHECKING:
 
 
 def survey(
-    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="The study, with a section [survey].")],
+    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="A study with a section [survey].")],
     output: Annotated[
         Path | None,
         typer.Option(
             "-o",
             "--output",
             metavar="FILE.nc",
-            help="Where to; by default STUDY-survey.nc here, CSV beside it.",
+            help="Result file; by default STUDY-survey.nc in this folder, with a CSV beside it.",
         ),
     ] = None,
     plot: PlotOption = None,
     outcome: Annotated[
-        str | None, typer.Option("--outcome", help="Which outcome to draw; by default the first.")
+        str | None, typer.Option("--outcome", help="Outcome to draw; by default the first.")
     ] = None,
     workers: Annotated[
-        int | None, typer.Option("--workers", min=1, help="Processes of this machine; all cores by default.")
+        int | None,
+        typer.Option(
+            "--workers", min=1, help="Number of processes on this computer; by default one per core."
+        ),
     ] = None,
     cluster: Annotated[
         str | None,
-        typer.Option("--cluster", metavar="ADDRESS", help="A dask cluster instead: tcp://host:port."),
+        typer.Option(
+            "--cluster", metavar="ADDRESS", help="Address of a dask cluster to use instead: tcp://host:port."
+        ),
     ] = None,
     best: Annotated[
         str | None,
-        typer.Option("--best", metavar="TEXT", help='What is wanted, for example "lowest worst-case peak".'),
+        typer.Option("--best", metavar="TEXT", help='The goal, for example "lowest worst-case peak".'),
     ] = None,
     over: Annotated[
         list[str] | None,
-        typer.Option("--over", metavar="NAME", help="With --best: what may be chosen, one or two."),
+        typer.Option("--over", metavar="NAME", help="With --best: the parameter to choose (one or two)."),
     ] = None,
     covered: Annotated[
         float | None,
@@ -58,14 +63,14 @@ def survey(
             metavar="SHARE",
             min=0.0,
             max=1.0,
-            help="With --best: least share of the interval in which a machine must be known; 0.999 by default.",
+            help="With --best: least share of the interval in which the response must be known; by default 0.999.",
         ),
     ] = None,
     fresh: FreshOption = False,
     json_: JsonOption = False,
     quiet: QuietOption = False,
 ) -> None:
-    """Survey many machines; goes on with an unfinished survey."""
+    """Diagrams of many machines: grids, tolerances, samples; an interrupted run goes on."""
     from contvines.command.compose import check_shaken
     from contvines.command.study import read_study
     from contvines.export import check_target

@@ -32,23 +32,31 @@ if TYPE_CHECKING:
 
 def sweep(
     study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="The study; a section [sweep] is optional.")
+        Path, typer.Argument(metavar="STUDY.toml", help="A study; its section [sweep] is optional.")
     ],
-    down: Annotated[bool, typer.Option("--down", help="From the interval's upper end to the lower.")] = False,
+    down: Annotated[
+        bool, typer.Option("--down", help="From the upper end of the interval to the lower.")
+    ] = False,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE.csv", help="Where to; by default STUDY-sweep.csv here."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FILE.csv",
+            help="Result file; by default STUDY-sweep.csv in this folder.",
+        ),
     ] = None,
     plot: PlotOption = None,
     size: SizeOption = None,
     over: Annotated[
-        Path | None, typer.Option("--over", metavar="FILE.vines", help="Draw them over these branches.")
+        Path | None,
+        typer.Option("--over", metavar="FILE.vines", help="Draw the sweep over the branches of this file."),
     ] = None,
     fresh: FreshOption = False,
     json_: JsonOption = False,
     quiet: QuietOption = False,
 ) -> None:
-    """Simulate over the parameter, carrying the state on; goes on with an unfinished sweep."""
+    """Simulate over the parameter, each value from the last state; an interrupted run goes on."""
     from contvines.command.compose import check_shaken
     from contvines.command.study import read_study
     from contvines.command.sweep_rows import header_of, journal_of, refuse_another, rows_as_json

@@ -20,58 +20,61 @@ LONGEST = 1e5  # that a motion is followed after a record, in radians of the osc
 def transient(
     study: Annotated[
         Path,
-        typer.Argument(
-            metavar="STUDY.toml", help="The study whose machine is meant (coupled, or a declared machine)."
-        ),
+        typer.Argument(metavar="STUDY.toml", help="A study of the coupled machine or a declared machine."),
     ],
     release: Annotated[
         str | None,
         typer.Option(
             "--release",
             metavar="LENGTH",
-            help='Let go from this displacement, "5 mm": a free decay (of a declared machine: "x = 5 mm, v = 0.1 m/s").',
+            help='Free decay from this displacement, "5 mm" (declared machine: "x = 5 mm, v = 0.1 m/s").',
         ),
     ] = None,
     record: Annotated[
         Path | None,
         typer.Option(
-            "--record", metavar="FILE.csv", help="Time and acceleration of the base, a column each."
+            "--record",
+            metavar="FILE.csv",
+            help="Recorded base motion: one column for time, one for acceleration.",
         ),
     ] = None,
     start_up: Annotated[
         bool,
-        typer.Option(
-            "--start-up", help="From rest, from the moment at which the study's own excitation begins."
-        ),
+        typer.Option("--start-up", help="Start from rest, with the excitation of the study."),
     ] = False,
     begin: Annotated[
         str | None,
         typer.Option(
             "--from",
             metavar="FREQUENCY",
-            help="With --start-up and --over: the frequency runs up from here to the study's.",
+            help="With --start-up and --over: first frequency of the run-up to that of the study.",
         ),
     ] = None,
     over: Annotated[
         str | None,
-        typer.Option("--over", metavar="TIME", help='How long it runs up, linearly in time, "5 s".'),
+        typer.Option("--over", metavar="TIME", help='Duration of the run-up, linear in time, "5 s".'),
     ] = None,
     time: Annotated[
         str | None,
         typer.Option(
             "--time",
             metavar="TIME",
-            help="The share of the energy that is taken in so much time; of a declared machine: how long it is followed.",
+            help="Free decay: print the share of the energy that impacts and friction take in this time; declared machine: length of the simulation.",
         ),
     ] = None,
     tail: Annotated[
         str | None,
-        typer.Option("--tail", metavar="TIME", help='Go on after the record with the base at rest, "2 s".'),
+        typer.Option(
+            "--tail", metavar="TIME", help='Time to simulate after the record, with the base at rest, "2 s".'
+        ),
     ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="FILE.csv", help="The motion (or the energy of a decay) over time."
+            "-o",
+            "--output",
+            metavar="FILE.csv",
+            help="Result file: the motion (or the energy of a decay) over time.",
         ),
     ] = None,
     plot: PlotOption = None,
@@ -80,7 +83,7 @@ def transient(
 ) -> None:
     """A start-up, a shock, a recorded base motion or a free decay, compared with the bare oscillator.
 
-    The record is a CSV of time and acceleration; its heads may name units (time [ms], acceleration [g]).
+    The record is a CSV of time and acceleration; its column heads may name units (time [ms], acceleration [g]).
     """
     from contvines.command.compose import machine
     from contvines.command.study import read_study

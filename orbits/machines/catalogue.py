@@ -40,7 +40,7 @@ def model_class(name: str) -> type[Model]:
     """
     if name not in PLACES:
         raise ParameterError(
-            f"model name = {name!r} is unknown{did_you_mean(name, NAMES)}; choose one of {', '.join(NAMES)}"
+            f"name = {name!r}: there is no such machine{did_you_mean(name, NAMES)}; choose one of {', '.join(NAMES)}"
         )
     module, place = PLACES[name]
     return getattr(importlib.import_module(module), place)
