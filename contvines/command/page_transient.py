@@ -72,7 +72,7 @@ def of_page(
                 )
             )
     count = seen.impact_times.size
-    speed = shown.get("approach_speed", "m/s" if shown else "")
+    speed = shown.get("approach_speed", "")
     rows += [("impacts", float(count), "", "how many")] if machine.equations.gap else []
     if count:
         rows.append(("fastest_impact", float(seen.impact_speeds.max()), speed, "largest impact speed"))

@@ -61,6 +61,14 @@ class Place:
 
 
 @dataclass(frozen=True)
+class Jump:
+    """Where the worst response jumps beside the tolerance: at `at` it is at least `response`."""
+
+    at: float
+    response: float
+
+
+@dataclass(frozen=True)
 class Curve:
     """A response over the parameter: `name` is ``stable``, ``simulated`` (up and down), or one of `orbits.design.references.KINDS`."""
 
@@ -121,6 +129,8 @@ class Recommendation:
     checked : (float, float) or None
         Largest response of the study's machine at the choice by the diagram and by simulation.
     start_up : Start or None
+    jumps : list of Jump
+        Next to the tolerance, below or above it.
     machine : dict
         The study's quantities by name, as text with units and with what is uncertain of them.
     curves : list of Curve
@@ -150,6 +160,7 @@ class Recommendation:
     checked: tuple[float, float] | None
     start_up: Start | None
     machine: dict[str, str] = field(default_factory=dict)
+    jumps: list[Jump] = field(default_factory=list)
     curves: list[Curve] = field(default_factory=list, repr=False)
     assumed: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
@@ -219,6 +230,7 @@ class Recommendation:
         """What there is to say beside the tables, the most important first."""
         found = []
         peak, place = "peak", self.chosen
+        found += self._beside()
         own = self._own()
         if own:
             found.append(own)
@@ -250,6 +262,26 @@ class Recommendation:
                 f"If {'the absorber is at work' if self.absorber else 'the motion with the lowest response is met'} at every {self.parameter} (the "
                 f"lowest response of those that coexist), the best is about {self._named} = {self.shown(self.name, engaged.value)} with "
                 f"{self.shown(peak, engaged.engaged)}; nothing makes sure that it is."
+            )
+        return found
+
+    def _beside(self) -> list[str]:
+        """How far from the choice the response jumps, and what the place with the lowest response has that stands nearer to it."""
+        place, found = self.chosen, []
+        if place is None:
+            return []
+        for jump in self.jumps:
+            by, way = abs(jump.at - place.value), "lower" if jump.at < place.value else "higher"
+            found.append(
+                f"{self.shown(self.name, by)} {way} it jumps to {self.shown('peak', jump.response)} or more."
+            )
+        lowest = min(
+            (p for p in self.places if p.samples == place.samples and not p.left and math.isfinite(p.worst)),
+            key=lambda p: p.worst,
+        )
+        if found and lowest.worst < place.worst:
+            found.append(
+                f"The lowest response, {self.shown('peak', lowest.worst)} at {self.shown(self.name, lowest.value)}, stands nearer to the jump."
             )
         return found
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from contvines.command.recommendation import MET, Curve, Place, Recommendation, Start
+from contvines.command.recommendation import MET, Curve, Jump, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
 from contvines.shared.modulation import BAND
 from contvines.shared.number_text import figures
@@ -41,8 +41,16 @@ REPLAYED, LONGEST = (
 )  # forcing periods of a motion simulated from itself, and of the longest that may recur
 AGREES = 0.01  # of the diagram's largest response: simulations up and down that exceed it by more are told
 CHECK = 61  # values of the simulation up and down
+SWEPT = 25  # values at which a machine whose flights are integrated is simulated in place of a diagram
+TRIED = 3  # choices of such machines that are looked at by diagrams, until one is the best of all
 SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
 ABOUT, FINE = 8, 321  # steps to either side of the largest response where it looks closer, at so many values
+ROUGH = 33  # the same where flights are integrated
+MARGIN = 0.02  # of the value that is chosen: nearer to a jump of the response another value is taken, if it costs no more than the tolerance
+JUMP, HALVED = (
+    0.2,
+    4,
+)  # of the response: such a rise beside the tolerance is looked at, and how often the distance is halved
 DRAWN = 4000  # instants of the start-up that are kept
 
 
@@ -110,7 +118,11 @@ def recommend(
     1. Theory (`orbits.design.first_clearance`) gives a first value, and the range if the study has none.
     2. A diagram of the study's own machine at each of some values over the range.
     3. Diagrams of all samples between the neighbours of the best, twice; of a value that costs too much in one sample no others.
-    4. At the choice: what simulated starts lead to, loads, start-up, a sweep by simulation up and down.
+    4. Beside a jump of the response another value is taken, if it costs little enough.
+    5. At the choice: what simulated starts lead to, loads, start-up, a sweep by simulation up and down.
+
+    Of a machine whose flights are integrated 2. and 3. are simulations up and down and from drawn starts (`orbits.design.swept_responses`). Its choice
+    is looked at by diagrams of all samples: it stands if these leave it the best.
 
     Parameters
     ----------
@@ -149,7 +161,13 @@ def recommend(
         best = _best([place for place in places if place.samples == work.samples])
         if best is None:
             break
-    return work.recommendation(places, best, cost, target)
+    jumps: list[Jump] = []
+    if best is not None:
+        places, best, jumps = work.away_from_jumps(places, best, cost)
+    rows = None
+    if best is not None:
+        places, best, rows = work.at_choice(places, best)
+    return work.recommendation(places, best, rows, jumps, cost, target)
 
 
 class _Work:
@@ -163,6 +181,7 @@ class _Work:
         tell: Callable[[str], None],
         progress: bool,
     ) -> None:
+        from contvines.coexistence.population import population_of
         from contvines.command.compose import check_shaken, machine
         from contvines.command.survey_study import machines_of, plan_and_machine, units_of
         from contvines.survey.plan import Plan
@@ -183,6 +202,7 @@ class _Work:
         )
         check_shaken(study, study.survey.vary)
         self.assumed: list[str] = []
+        self.missed: list[str] = []  # what is not known as simulations missed it
         if study.survey.vary:
             plan, model = plan_and_machine(study)
         else:
@@ -207,6 +227,13 @@ class _Work:
         self.samples = plan.shape[-1] if plan.samples else 1
         self.params = model.vector(study.loose)
         self.theory = self._theory()
+        population = population_of(self.model, study.parameter, **study.loose)
+        self.integrated = population.price > 1.0
+        if self.integrated:
+            self.assumed.append(
+                f"responses elsewhere than at the choice are those of simulations up and down at {SWEPT} values and from drawn starts: "
+                "a motion to which few starts lead is not among them"
+            )
         self.pace: float | None = None  # seconds a machine
         self.round = self.surveys = 0
         self.rows: dict[float, _Looked] = {}  # by value, of all samples
@@ -233,7 +260,7 @@ class _Work:
             if self.theory is None:
                 raise ValueError(
                     f"{self.study.path}: [survey] gives no range of {self.name}, and theory none for this machine; for example "
-                    f'for example vary.{self.name} = {{ within = ["5 mm", "50 mm"], count = {PLACES} }}.'
+                    f'vary.{self.name} = {{ within = ["5 mm", "50 mm"], count = {PLACES} }}.'
                 )
             low, high = (share * self.theory.widest for share in SPREAD)
             values = np.geomspace(low, high, PLACES).tolist()
@@ -253,7 +280,7 @@ class _Work:
 
         values = self.range()
         self._tell_round(len(values))
-        found = _looked(self.surveyed(Plan({self.name: np.array(values)}, {}), RESPONSES))
+        found = self._looked(Plan({self.name: np.array(values)}, {}))
         rows = [_Looked(*row) for row in zip(*(column.reshape(-1, 1) for column in found))]
         if not self.drawn:
             self.rows |= dict(zip(values, rows))
@@ -286,7 +313,7 @@ class _Work:
         if not len(values) or not len(samples):
             return
         drawn = {name: column[samples] for name, column in self.drawn.items()}
-        found = _looked(self.surveyed(Plan({self.name: np.array(values)}, drawn), RESPONSES))
+        found = self._looked(Plan({self.name: np.array(values)}, drawn))
         for i, value in enumerate(values):
             nothing = (
                 np.full(self.samples, np.nan),
@@ -296,6 +323,10 @@ class _Work:
             row = self.rows.setdefault(value, _Looked(*nothing))
             for own, column in zip(row, found):
                 own[samples] = column[i]
+
+    def _looked(self, plan: Plan) -> _Looked:
+        """Responses by diagrams, or by simulation where flights are integrated."""
+        return _looked(self.surveyed(plan, RESPONSES, swept=SWEPT if self.integrated else 0))
 
     def _tell_round(self, machines: int, at_most: str = "") -> None:
         self.round += 1
@@ -315,18 +346,108 @@ class _Work:
         with without_main():
             found = survey(
                 self.family, plan, over=self.study.parameter, within=self.study.within, outcomes=outcomes, workers=self.workers,
-                journal=self.journal(self.surveys), units=self.units, about={"recommend": self.surveys, **asked_of(self.study)},
+                journal=self.journal(self.surveys), units=self.units, about={"recommend": self.surveys, "ways": list(ways), **asked_of(self.study)},
                 progress=self.progress, gaps=self.study.survey.gaps, **ways, **options,
             )  # fmt: skip
         self.pace = (monotonic() - begun) / len(plan)
         return found
 
     # ------------------------------------------------------------------ at the choice
+    def away_from_jumps(
+        self, places: list[Place], best: Place, cost: float
+    ) -> tuple[list[Place], Place, list[Jump]]:
+        """Places, the best one, and where the response jumps beside the choice.
+
+        A rise next to the tolerance is looked at ever nearer, in the sample in which it rises most: a jump is what does not get smaller. A choice within
+        `MARGIN` of it gives way to the value that is as far, if that costs no more than the tolerance.
+        """
+        jumps, wanted = [], best.value
+        for side in (-1, 1):
+            jump = self._jump(places, best, cost, side)
+            if jump is not None:
+                jumps.append(jump)
+                kept_off = jump.at * (1.0 - side * MARGIN)
+                wanted = max(wanted, kept_off) if side < 0 else min(wanted, kept_off)
+        low, high = _tolerance(places, best, cost)
+        wanted = _tidy(min(max(wanted, low), high))
+        if wanted == best.value:
+            return places, best, jumps
+        self._look([wanted], np.arange(self.samples))
+        other = _place(wanted, self.rows[wanted], self.samples)
+        places = _merged(places, [other])
+        return places, other if other.worst <= (1.0 + cost) * best.worst else best, jumps
+
+    def _jump(self, places: list[Place], best: Place, cost: float, side: int) -> Jump | None:
+        """The jump next to the tolerance below (-1) or above (1) the best; None where the response rises without one."""
+        all_ = [place for place in places if place.samples == best.samples and math.isfinite(place.worst)]
+        end = next(
+            i for i, place in enumerate(all_) if place.value == _tolerance(places, best, cost)[side > 0]
+        )
+        if not 0 <= end + side < len(all_):
+            return None
+        good, bad = all_[end], all_[end + side]
+        if bad.worst < (1.0 + JUMP) * best.worst:
+            return None
+        sample = [int(np.nanargmax(self.rows[bad.value].known))]
+        inner, outer = (float(self.rows[v].known[sample[0]]) for v in (good.value, bad.value))
+        near, far, rise = good.value, bad.value, outer - inner
+        for _ in range(HALVED):
+            middle = _tidy(0.5 * (near + far))
+            if middle in (near, far):
+                break
+            self._look([middle], np.array(sample))
+            response = float(self.rows[middle].known[sample[0]])
+            if not math.isfinite(response):
+                return None
+            if outer - response < 0.5 * rise:
+                far, outer = middle, response
+            else:
+                near, inner = middle, response
+            rise = outer - inner
+        return Jump(far, outer) if rise > JUMP * best.worst else None
+
+    def at_choice(self, places: list[Place], best: Place) -> tuple[list[Place], Place | None, Survey | None]:
+        """Diagrams of all samples at the choice, with simulated starts: all places, the choice, its rows.
+
+        Where places were simulated alone that place is known better then; another one may be the best, which is looked at in its turn.
+        """
+        from contvines.survey.plan import Plan
+
+        seen: dict[float, Survey] = {}
+        choice: Place | None = best
+        while choice is not None and choice.value not in seen and len(seen) < TRIED:
+            plan = Plan({self.name: np.array([choice.value])}, self.drawn)
+            self.pace = self.pace if not self.integrated else None
+            self._tell_round(len(plan))
+            starts = FEW if self.integrated else STARTS
+            rows = self.surveyed(
+                plan, ("peak", "lower_peak", "modulated", loads, met), values=VALUES, starts=starts
+            )
+            seen[choice.value] = rows
+            if self.integrated:
+                looked = (column.ravel() for column in _looked(rows))
+                exact = _place(choice.value, _Looked(*looked), self.samples)
+                if exact.worst > (1.0 + AGREES) * choice.worst:
+                    self.missed.append(
+                        f"whether other values than {figures(choice.value)} have larger responses: there simulations up and down missed one "
+                        f"({figures(choice.worst)}, by diagrams {figures(exact.worst)})"
+                    )
+                places = _merged(places, [exact])
+                choice = _best([place for place in places if place.samples == self.samples])
+        if choice is not None and choice.value not in seen:
+            choice = _best([place for place in places if place.value in seen])
+        return places, choice, None if choice is None else seen[choice.value]
+
     def recommendation(
-        self, places: list[Place], best: Place | None, cost: float, target: float | None
+        self,
+        places: list[Place],
+        best: Place | None,
+        rows: Survey | None,
+        jumps: list[Jump],
+        cost: float,
+        target: float | None,
     ) -> Recommendation:
         """All that is printed of the choice."""
-        from contvines.coexistence.population import population_of
         from contvines.command.compare import peaks_compared
         from orbits.design.references import KINDS
 
@@ -338,6 +459,7 @@ class _Work:
             for place in places
             if place.unknown
         ]
+        unknown += self.missed
         has_bare = self.model.in_cavity and "damping" in self.model.parameter_names
         model, loose = self.family.machine_at({} if best is None else {self.name: best.value})
         compared = peaks_compared(model, study.parameter, study.within, KINDS) if has_bare else {}
@@ -354,16 +476,10 @@ class _Work:
             "machine": self._machine(), "places": places, "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
             "absorber": self.model.in_cavity,
         }  # fmt: skip
-        if best is None:
+        if best is None or rows is None:
             return Recommendation(
                 **given, value=None, tolerance=(math.nan, math.nan), works=math.nan, met={}, loads={}, checked=None, start_up=None,
             )  # fmt: skip
-        from contvines.survey.plan import Plan
-
-        plan = Plan({self.name: np.array([best.value])}, self.drawn)
-        self._tell_round(len(plan))
-        starts = STARTS if population_of(model, study.parameter, **loose).price <= 1.0 else FEW
-        rows = self.surveyed(plan, ("peak", "modulated", loads, met), values=VALUES, starts=starts)
         peaks = rows.known("peak").ravel()
         works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
         shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MET}
@@ -386,7 +502,7 @@ class _Work:
             )  # fmt: skip
         return Recommendation(
             **given, value=best.value, tolerance=_tolerance(places, best, cost), works=works, met=shares,
-            loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked,
+            loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked, jumps=jumps,
             start_up=self._start_up(model, compared["bare"][1]) if has_bare else None, curves=curves + (self._lines(model) if has_bare else []),
         )  # fmt: skip
 
@@ -440,7 +556,9 @@ class _Work:
         if not row.columns:
             return None, seen
         step, top = (high - low) / (CHECK - 1), row.columns["peak_at"]
-        near = np.linspace(max(low, top - ABOUT * step), min(high, top + ABOUT * step), FINE)
+        near = np.linspace(
+            max(low, top - ABOUT * step), min(high, top + ABOUT * step), ROUGH if self.integrated else FINE
+        )
         grid = np.union1d(np.linspace(low, high, CHECK), near)
         loose: dict[str, Any] = {k: v for k, v in own.items() if k != over}
         for run in (grid, grid[::-1]):

@@ -63,6 +63,7 @@ def survey(
     values: int = 0,
     starts: int = 1,
     atlas: Mapping[str, Any] | None = None,
+    swept: int = 0,
     workers: int | None = None,
     cluster: Any = None,
     journal: str | Path | Rows | None = None,
@@ -89,6 +90,8 @@ def survey(
         Where the systems are simulated besides; see `contvines.survey.work.Job`.
     atlas : mapping, optional
         ``values``, ``starts``, ``seed``, ``scan``, ``budget`` of `contvines.atlas`: an atlas of each system in place of a diagram.
+    swept : int
+        At so many values each system is simulated in place of a diagram; the outcomes are ``peak`` and ``lower_peak``.
     workers : int, optional
         Processes of this machine; all cores by default, 1 for none beside this one.
     cluster : str or distributed.Client, optional
@@ -122,7 +125,16 @@ def survey(
     plan = vary if isinstance(vary, Plan) else planned(vary)
     functions = tuple(outcome_named(o) if isinstance(o, str) else o for o in outcomes)
     job = Job(
-        family, over, (float(within[0]), float(within[1])), functions, gaps, values, starts, options, atlas
+        family,
+        over,
+        (float(within[0]), float(within[1])),
+        functions,
+        gaps,
+        values,
+        starts,
+        options,
+        atlas,
+        swept,
     )
     systems = plan.systems()
     description = _description(plan, over, job.within, about)
@@ -136,7 +148,7 @@ def survey(
     )
     with kept as rows, counted(len(systems), "systems", progress) as tell:
         begun = getattr(family, "starts", None)
-        near = begun(systems, plan.neighbours()) if begun is not None else [None] * len(systems)
+        near = begun(systems, plan.neighbours()) if begun and not swept else [None] * len(systems)
         tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in rows.found]
         stopped = False
         try:
@@ -151,7 +163,7 @@ def survey(
     result = Survey.of(plan, found, dict(units or {}), {**description, "digest": digest}, notation_of(family))
     if stopped:
         again = partial(
-            survey, family, plan, over=over, within=within, outcomes=outcomes, gaps=gaps, values=values, starts=starts, atlas=atlas,
+            survey, family, plan, over=over, within=within, outcomes=outcomes, gaps=gaps, values=values, starts=starts, atlas=atlas, swept=swept,
             workers=workers, cluster=cluster, journal=kept, units=units, about=about, progress=progress, interrupt=interrupt, **options,
         )  # fmt: skip
         unfinished(result, again)

@@ -41,6 +41,8 @@ class Job:
         Of `contvines.diagram`.
     atlas : mapping, optional
         Of `contvines.atlas`: with it an atlas of each system is made, so that motions count that are not connected to others.
+    swept : int
+        At so many values each system is simulated in place of a diagram, if the family can; the outcomes are then ``peak`` and ``lower_peak``.
     """
 
     family: Callable[[Mapping[str, float], Any], Any]
@@ -52,6 +54,7 @@ class Job:
     starts: int = 1
     options: dict[str, Any] = field(default_factory=dict)
     atlas: Mapping[str, Any] | None = None
+    swept: int = 0
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,9 @@ def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) ->
     columns: dict[str, float] = {}
     try:
         with np.errstate(all="ignore"):
+            sweep = getattr(job.family, "swept", None)
+            if job.swept and sweep is not None:
+                return Row(index, _swept(job, sweep, values))
             seed = job.family(values, near)
             graph = _graph(job, seed)
             population = _population(job, seed)
@@ -90,6 +96,18 @@ def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) ->
         sentence = str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)
         return Row(index, {}, sentence or f"{type(error).__name__} without a word of why")
     return Row(index, columns, note)
+
+
+def _swept(job: Job, sweep: Callable[..., Any], values: Mapping[str, float]) -> dict[str, float]:
+    """The largest response by simulation alone, and the largest if at each value the lowest is met that was seen there."""
+    grid = np.linspace(*job.within, job.swept).tolist()
+    seen = [(p, x) for p, x in sweep(values, job.over, grid) if np.isfinite(x)]
+    lowest = {p: min(responses) for p in grid if (responses := [x for at, x in seen if at == p])}
+    found = {"covered": len(lowest) / len(grid)}
+    for name, motions in (("peak", seen), ("lower_peak", list(lowest.items()))):
+        at, response = max(motions, key=lambda motion: motion[1], default=(np.nan, np.nan))
+        found |= {name: response, f"{name}_at": at}
+    return found
 
 
 def _graph(job: Job, seed: Any) -> Graph:

@@ -68,6 +68,7 @@ def sweep(
     transient: float = 200,
     max_period: int = 16,
     nudge: float = 1e-7,
+    exponents: bool = True,
     progress: Callable[[SweepRow], None] | None = None,
     **parameters: float,
 ) -> list[SweepRow]:
@@ -87,6 +88,9 @@ def sweep(
     nudge : float
         A velocity is changed by this at each value, as noise would: a motion that has become unstable is then
         left. 0 for none.
+    exponents : bool
+        Whether motions that do not recur are told apart by their Lyapunov exponents, for `SweepRow.modulation`: of a declared machine that takes as
+        long as ten simulations.
     progress : callable, optional
         Called with each row.
     **parameters
@@ -116,9 +120,10 @@ def sweep(
         simulator = simulator_of(model, params)
         simulator.go_on(state, nudge)
         found, measures = described(goes_on(simulator, transient, max_period, None))
+        how = modulated(found, measures) if exponents else ""
         row = SweepRow(
-            value, direction, found.kind, found.text, found.periods, found.impacts, measures, found, modulated(found, measures)
-        )  # fmt: skip
+            value, direction, found.kind, found.text, found.periods, found.impacts, measures, found, how
+        )
         state = found.state
         rows.append(row)
         if progress is not None:

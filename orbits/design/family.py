@@ -14,6 +14,7 @@ import numpy as np
 
 from orbits.attractors import find_attractor
 from orbits.attractors.search import described
+from orbits.design.swept_responses import swept_responses
 from orbits.flows.protocol import SimulationError
 from orbits.machines.conditions import Table, resolved
 from orbits.orbit import Orbit
@@ -171,6 +172,19 @@ class Family:
                     continue  # it lies within a wall
                 found.append((float(value), numbers_of, attractor.text))
         return found
+
+    def swept(self, values: Mapping[str, float], over: str, at: Sequence[float]) -> list[tuple[float, float]]:
+        """Responses by simulation alone (`orbits.design.swept_responses`): values of `over` and the machine's usual measure.
+
+        Parameters
+        ----------
+        values : mapping
+            Of the machine.
+        over, at
+            The parameter, and its values, ascending.
+        """
+        model, loose = self.machine_at(values)
+        return swept_responses(model, over, at, loose)
 
     @staticmethod
     def near(orbit: Orbit) -> tuple[Any, ...] | None:

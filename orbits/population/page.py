@@ -130,7 +130,7 @@ class PageStarts:
         """Measures of the motion through a start."""
         start = state if self.machine.forced else np.append(0.0, state)
         fixed: dict[str, Any] = dict(self.parameters)
-        (row,) = sweep(self.machine, self.parameter, [p], start=start, **fixed)
+        (row,) = sweep(self.machine, self.parameter, [p], start=start, exponents=False, **fixed)
         return dict(row.measures)
 
     def fleet(self, points: np.ndarray, params: np.ndarray, workers: int | None) -> PageFleet:

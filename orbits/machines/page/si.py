@@ -58,4 +58,4 @@ class Units:
             f"{kind}_{name}": self.said[name] for name in states if name in self.said for kind in OF_A_STATE
         }
         bands = {name: self.said[states[0]] for name in BAND if states[0] in self.said}
-        return {**self.said, **of_states, **bands, "period": "s", "time": "s"}
+        return {**self.said, **of_states, **bands, "period": "s", "time": "s", "approach_speed": "m/s"}

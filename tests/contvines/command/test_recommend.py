@@ -105,9 +105,9 @@ def test_machines_that_are_left_out_change_neither_the_choice_nor_the_tolerance(
     table[generator.random(table.shape) < 0.02] = np.nan
     work, looked = object.__new__(recommending._Work), []
     work.name, work.samples, work.drawn = "gap", 4, {"restitution": np.arange(4.0)}
-    work.rows, work.pace, work.round, work.tell = {}, None, 0, lambda _: None
+    work.rows, work.pace, work.round, work.tell, work.integrated = {}, None, 0, lambda _: None, False
 
-    def surveyed(plan, outcomes):
+    def surveyed(plan, outcomes, swept):
         looked.append(len(plan))
         rows = table[np.searchsorted(values, plan.axes["gap"])][:, plan.samples["restitution"].astype(int)]
         return recommending._Looked(rows, rows, np.where(np.isnan(rows), "not known", "").astype(object))
@@ -125,6 +125,33 @@ def test_machines_that_are_left_out_change_neither_the_choice_nor_the_tolerance(
         high += 1
     assert recommending._tolerance(places, best, cost) == (values[low], values[high])
     assert sum(looked) <= table.size
+
+
+@pytest.mark.parametrize(("jump", "chosen"), [(15.0, 15.3), (14.0, 15.06), (math.pi, 15.06)])
+def test_a_choice_keeps_off_a_jump(jump, chosen, monkeypatch):
+    """Of a response that grows from 15.06 on either way, and below a jump is twice as large; looked at every 0.02."""
+    work = object.__new__(recommending._Work)
+    work.name, work.samples, work.drawn, work.rows = "gap", 1, {}, {}
+
+    def response(x):
+        return 2.5 if x < jump else 1.0 + 0.05 * abs(x - 15.06)
+
+    def looked(plan):
+        return recommending._Looked(
+            *(np.array([[f(x)] for x in plan.axes["gap"]], kind) for f, kind in columns)
+        )
+
+    columns = [(response, float), (response, float), (lambda x: "", object)]
+    monkeypatch.setattr(work, "_looked", looked)
+    values = np.round(np.arange(13.06, 17.0, 0.5), 3).tolist()
+    work._look(values, np.array([0]))
+    places = [recommending._place(v, work.rows[v], 1) for v in values]
+    places, best, jumps = work.away_from_jumps(places, recommending._best(places), 0.05)
+    assert best.value == pytest.approx(chosen, abs=0.05)
+    if jump < values[0]:
+        assert not jumps
+    else:
+        assert jumps[0].response == 2.5 and jump - 0.05 < jumps[0].at < jump
 
 
 @pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no browser that prints")
@@ -214,15 +241,41 @@ def test_a_wall_lined_with_rubber(tmp_path):
     found = recommend(tmp_path / "study.toml", workers=1)
     assert found.at_end and "absorber" not in str(found)
     assert found.value == 0.4 and found.checked[1] == pytest.approx(found.checked[0], rel=0.01)
-
-    def laws(t, y):
-        press = 30.0 * (y[0] - 0.4) + 1.5 * y[1]
-        force = press if y[0] > 0.4 and press > 0.0 else 0.0
-        return [y[1], 0.5 * np.cos(1.5 * t) - 0.04 * y[1] - y[0] - force]
-
-    period = 2 * np.pi / 1.5
-    start = [0.5, 1.0]  # of the large motion, with which the small one coexists
-    run = solve_ivp(laws, (0, 60 * period), start, rtol=1e-8, atol=1e-10, max_step=0.02)
-    late = run.y[0, run.t > 55 * period].max()
+    late = rubber(0.4, 1.5, [0.5, 1.0])  # of the large motion, with which the small one coexists
     peak = max(curve.y[-1] for curve in found.curves if curve.name == "stable" and curve.x[-1] == 1.5)
     assert late == pytest.approx(peak, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_the_jump_beside_a_choice_is_that_of_scipy(tmp_path):
+    """Above a gap the large motion is gone from the interval; below it, it is twice as large as what is left."""
+    shutil.copy(Path(__file__).parents[3] / "examples" / "machines" / "rubber_wall.py", tmp_path)
+    (tmp_path / "study.toml").write_text(
+        '[model]\nname = "rubber_wall.py:machine"\n[continue]\nparameter = "frequency"\nwithin = [1.47, 1.6]\n'
+        "[survey]\nsamples = 1\nvary.gap = { within = [0.79, 0.85], count = 5 }\n"
+    )
+    found = recommend(tmp_path / "study.toml", workers=1)
+    (jump,) = found.jumps
+    assert f"{found.value - jump.at:.3g} lower it jumps to {jump.response:.4g} or more" in str(found)
+    assert 1.02 * jump.at <= found.value + 1e-3 and found.tolerance[0] > jump.at
+    starts = [[1.1, 0.0], [0.5, 1.0], [0.8, 0.8], [0.0, 0.0]]
+    large = max(rubber(jump.at, 1.47, start) for start in starts)
+    assert (
+        0.97 * large < jump.response < 1.001 * large
+    )  # "or more": it ends at a fold, and begins to slip away before
+    assert max(rubber(found.value, 1.47, start) for start in starts) == pytest.approx(
+        found.chosen.worst, rel=0.01
+    )
+
+
+def rubber(gap, frequency, start):
+    """The largest displacement of a mass before a wall lined with rubber in the long run."""
+
+    def laws(t, y):
+        press = 30.0 * (y[0] - gap) + 1.5 * y[1]
+        force = press if y[0] > gap and press > 0.0 else 0.0
+        return [y[1], 0.5 * np.cos(frequency * t) - 0.04 * y[1] - y[0] - force]
+
+    period = 2 * np.pi / frequency
+    run = solve_ivp(laws, (0, 120 * period), start, rtol=1e-8, atol=1e-10, max_step=0.05)
+    return run.y[0, run.t > 110 * period].max()

@@ -1,0 +1,120 @@
+"""Responses of a machine by simulation alone: sweeps up and down, and from drawn starts that lead elsewhere, nearer to the largest response.
+
+For machines whose flights are integrated, where a diagram takes as long as a thousand of these simulations.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from orbits.attractors.sweeping import SweepRow, sweep
+from orbits.flows.catalogue import flow_of
+from orbits.flows.protocol import SimulationError
+from orbits.population.population import Population
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
+
+DRAWN = 3  # starts at the first, the middle and the last value
+SAME = 1e-3  # relative difference of the responses of one motion
+HALVINGS = 5  # of the distance between values about the largest response
+NARROW = 1e-3  # of the interval: values that are nearer are not told apart
+
+
+def swept_responses(
+    model: Varying, over: str, values: Sequence[float], parameters: Mapping[str, float]
+) -> list[tuple[float, float]]:
+    """Motions that simulations settle on: at each value those of a sweep up and one down, and those that drawn starts add, each followed both ways
+    to where another one takes over; values half-way from the largest response to its neighbours, a few times.
+
+    Parameters
+    ----------
+    model : Model or Machine
+    over : str
+    values : sequence of float
+        Ascending.
+    parameters : mapping
+        Those that are no fields of the machine.
+
+    Returns
+    -------
+    list of (float, float)
+        Value and response (the measure that is shown); the latter may be no number.
+
+    Raises
+    ------
+    SimulationError
+        If a motion runs away.
+    """
+    seen = _Seen(model, over, values, parameters)
+    seen.run(range(len(values)), None, until_known=False)
+    seen.run(range(len(values))[::-1], None, until_known=False)
+    population = Population(model, over, parameters)
+    for k in sorted({0, len(values) // 2, len(values) - 1}):
+        for start in population.starts(DRAWN, 0, values[k]):
+            try:
+                row = seen.at(values[k], start)
+            except SimulationError:  # it runs away, or begins inside a wall
+                continue
+            if not seen.knows(row):
+                seen.rows.append(row)
+                for run in (range(k + 1, len(values)), range(k)[::-1]):
+                    seen.run(run, row.detail.state, until_known=True)
+    seen.halve()
+    return [(row.value, seen.response(row)) for row in seen.rows]
+
+
+class _Seen:
+    """Motions that were met."""
+
+    def __init__(
+        self, model: Varying, over: str, values: Sequence[float], parameters: Mapping[str, float]
+    ) -> None:
+        self.model, self.over, self.values = model, over, values
+        self.numbers: dict[str, Any] = {name: x for name, x in parameters.items() if name != over}
+        self.measure = flow_of(model).default_measure(model)
+        self.rows: list[SweepRow] = []
+
+    def at(self, value: float, start: Any) -> SweepRow:
+        """What a state leads to."""
+        (row,) = sweep(self.model, self.over, [value], start=start, exponents=False, **self.numbers)
+        return row
+
+    def response(self, row: SweepRow) -> float:
+        return float(row.measures.get(self.measure, math.nan))
+
+    def knows(self, row: SweepRow) -> bool:
+        """Whether a motion was met at this value already; of those without a period there is one."""
+        here, own = [other for other in self.rows if other.value == row.value], self.response(row)
+        return any(
+            abs(self.response(other) - own) <= SAME * abs(own)
+            if row.periods and other.periods
+            else row.periods == other.periods
+            for other in here
+        )
+
+    def run(self, places: Sequence[int], start: Any, until_known: bool) -> None:
+        """Follow a motion along some of the values; to one that is known, if asked."""
+        for k in places:
+            row = self.at(self.values[k], start)
+            if until_known and self.knows(row):
+                return
+            self.rows.append(row)
+            start = row.detail.state
+
+    def halve(self) -> None:
+        """Look between the values about the largest response."""
+        span = self.values[-1] - self.values[0]
+        for _ in range(HALVINGS):
+            top = max(self.rows, key=lambda row: _number(self.response(row)))
+            places = sorted({row.value for row in self.rows})
+            at = places.index(top.value)
+            for other in (*places[max(at - 1, 0) : at], *places[at + 1 : at + 2]):
+                if abs(other - top.value) > NARROW * span:
+                    self.rows.append(self.at(0.5 * (top.value + other), top.detail.state))
+
+
+def _number(response: float) -> float:
+    return response if math.isfinite(response) else -math.inf
