@@ -119,7 +119,7 @@ def atlas_of(flow: Drawn) -> cv.Graph:
     d = len(flow.constant)
     problem = cv.FlowProblem(flow.rates, np.zeros(d), 0.0, name="drawn")
     population = problem.population("p", box=[(-BOX, BOX)] * d)
-    return cv.atlas(population, over="p", within=WITHIN, values=6, starts=8, scan=0)
+    return cv.atlas(population, over="p", within=WITHIN, values=6, starts=8)
 
 
 def judge(salt: int, seed: int) -> Judged:

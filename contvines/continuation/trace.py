@@ -169,8 +169,9 @@ def _anchored(engine: Engine, history: list[Solved]) -> list[Solved]:
         if all(point is not None for point in moved):
             points = [point for point in moved if point is not None]
     problem.anchor(points[-1].u, points[-1].p)
-    before = [_solved_again(engine, point) for point in points[:-1]]
-    return [*(point for point in before if point is not None), points[-1]]
+    # the last one, too: its tangent is that of the phase which was kept before
+    *before, last = [_solved_again(engine, point) for point in points]
+    return [*(point for point in before if point is not None), last or points[-1]]
 
 
 def _solved_again(

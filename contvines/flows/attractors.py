@@ -159,11 +159,13 @@ def _returned(
     passed = np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[-longest - 1 :]
     if len(passed) < 2:
         return None
-    times = np.array([_crossing(run, normal, place, int(i)) for i in passed])
-    states = run.sol(times).T
-    for k in range(2, len(times) + 1):
-        if (np.abs(states[-k] - states[-1]) <= close).all():
-            return float(times[-1] - times[-k]), states[-k]
+    end = _crossing(run, normal, place, int(passed[-1]))
+    last = run.sol(end)
+    for i in passed[-2::-1]:
+        time = _crossing(run, normal, place, int(i))
+        state = run.sol(time)
+        if (np.abs(state - last) <= close).all():
+            return end - time, state
     return None
 
 

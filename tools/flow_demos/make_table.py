@@ -32,20 +32,24 @@ def points_of(graph: Any) -> list[Any]:
 
 def shooting_of(demo: CycleDemo, point: Any) -> witness.Shooting:
     """The witness's equations, begun with states of our cycle."""
-    orbit = point.orbit
-    growth = float(np.abs(orbit.multipliers).max(initial=1.0))
-    parts = 1 if point.kind == "branch-point" else min(1 + int(np.log10(growth)) // 2, 12)
-    turn, period = None, orbit.period
+    orbit, turn = point.orbit, None
     if point.kind == "symmetry-breaking":
         mirror = np.asarray(demo.mirror, dtype=float)
-        later = mirror @ orbit(0.5 * period)
+        later = mirror @ orbit(0.5 * orbit.period)
         if np.abs(later - orbit(0.0)).max() < 1e-3 * np.ptp(orbit.states, axis=0).max():
-            turn, parts = mirror, max(1, parts // 2)
-    length = period / (1.0 if turn is None else 2.0)
-    states = orbit(np.arange(parts) * length / parts)
+            turn = mirror
+    share = 1.0 if turn is None else 0.5
+    mesh = orbit.times[orbit.times < share * orbit.period] / (share * orbit.period)
     rounds = point.problem.rounds if demo.period else 1
     unit = np.ptp(orbit.states, axis=0)
-    found = witness.Shooting(demo.rates, demo.period, states, unit, period, point.value, rounds, turn)
+    for parts in witness.PARTS:
+        cuts = np.append(mesh[np.arange(parts) * len(mesh) // parts], 1.0)
+        states = orbit(cuts[:-1] * share * orbit.period)
+        found = witness.Shooting(
+            demo.equations, demo.period, cuts, states, unit, orbit.period, point.value, rounds, turn
+        )
+        if found.growth() < witness.GROWTH:
+            break
     if point.kind == "symmetry-breaking" and turn is None:  # the trivial multiplier is +1, too
         signs, directions = np.linalg.eigh(np.asarray(demo.mirror, dtype=float))
         found.odd = directions[:, signs < 0.0]

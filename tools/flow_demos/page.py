@@ -14,8 +14,8 @@ LABELS = {kind.name: kind.label for kind in KINDS}
 HEAD = """# Demos of other packages: cycles
 
 Demos whose flows have cycles, begun at an equilibrium or at the cycle on which a motion settles (`cv.FlowProblem`, plain settings, `mirror=` where the equations have one). All special points within the
-interval are listed that `cv.diagram` finds to the stated depth, Hopf points and those of cycles. *Own solve*: shooting with scipy's DOP853 at 1e-12 and Newton's method on an extended system
-(`tools/flow_demos/witness.py`, nothing of the package's); homoclinic orbits by bisection along the unstable manifold, saddle-nodes on cycles by the fold of the equilibrium. A dash: not solved anew.
+interval are listed that `cv.diagram` finds to the stated depth, Hopf points and those of cycles. *Own solve*: multiple shooting by Taylor series (heyoka, at rounding) and Newton's method on an extended system
+(`tools/flow_demos/witness.py`, nothing of the package's), which has converged wherever a value stands; homoclinic orbits by bisection along the unstable manifold (scipy's DOP853), saddle-nodes on cycles by the fold of the equilibrium. A dash: not solved anew.
 Printed values of AUTO-07p are those of its own run of the demo; they are on coarse meshes (its Hopf point of `chu` is 1e-4 off).
 MatCont's `torBPC` is run with a3 = 0.32858, b3 = 0.93358, beta = 0.5, gamma = -0.6, r = 0.6 and epsilon = 0.001 in z' = y + epsilon, which its own points (0.00125003, -0.001, 0.000525025) solve.
 

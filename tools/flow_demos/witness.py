@@ -1,4 +1,4 @@
-"""Special points of cycles solved anew: multiple shooting with DOP853 at 1e-12, Newton's method on an extended system.
+"""Special points of cycles solved anew: multiple shooting by Taylor series (heyoka), Newton's method on an extended system.
 
     every cycle          x_(i+1) = flow over a part of the period from x_i, closed after the last part, a phase condition
     fold                 the parameter's share of the null vector of the derivative of these equations vanishes
@@ -9,19 +9,39 @@
     Hopf                 an equilibrium with a pair of eigenvalues of real part zero
     homoclinic           the unstable manifold of the saddle comes back to it
 
-Nothing of the package's is used: Jacobians by the complex step, Newton's derivatives by differences.
+Nothing of the package's is used: simulations carry their derivatives by state and parameter, Newton's derivatives of the added condition are differences.
+Equilibria and homoclinic orbits: scipy. A Newton's method that does not converge is an error.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+import heyoka
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from ..demos.demo import NUMBERS
+
 NEARS = (0.1, 0.5)  # of the size of an orbit: neighbourhoods of the saddle that it leaves and comes back to
 LONG = 3e3  # times in which it is left, or come back to
+GROWTH = 100.0  # of a perturbation in one part, where more parts can avoid it
+PARTS = (16, 32, 64)  # of a cycle
+CONVERGED, STALLED = (
+    1e-11,
+    1e-8,
+)  # last step of Newton's method, relative; where rounding does not let it become smaller
+STEP = 1e-6  # relative, of differences of the period of the forcing
 TOLERANCE = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
+
+
+def _taylor(equations: Any, free: bool, start: np.ndarray) -> Any:
+    """An integrator of the states and of their derivatives by the first ones and the parameter."""
+    x = [heyoka.expression(f"x{i}") for i in range(len(start))]
+    p = heyoka.par[0]
+    rates = equations(np.array(x), p, heyoka) if free else equations(np.array(x), p, heyoka.time, heyoka)
+    varied = heyoka.var_ode_sys(list(zip(x, rates, strict=True)), args=[*x, p], order=1)
+    return heyoka.taylor_adaptive(varied, list(start), compact_mode=True)
 
 
 class Shooting:
@@ -29,12 +49,14 @@ class Shooting:
 
     Parameters
     ----------
-    rates : callable
-        (x, p) or (x, p, t) -> d numbers.
+    equations : callable
+        (x, p, m) or (x, p, t, m) -> d numbers, m the functions.
     period : callable or None
         Of the forcing, of p.
+    edges : ndarray, shape (m + 1,)
+        Shares of the cycle (with ``turn``, of half of it) between which it is simulated: from 0 to 1.
     states : ndarray, shape (m, d)
-        Guesses at the beginnings of m equal parts of the period; the first fixes the phase.
+        Guesses at the beginnings of these parts; the first fixes the phase.
     unit : ndarray, shape (d,)
         Sizes of the states' motions.
     clock : float
@@ -48,8 +70,9 @@ class Shooting:
 
     def __init__(
         self,
-        rates: Any,
+        equations: Any,
         period: Any,
+        edges: np.ndarray,
         states: np.ndarray,
         unit: np.ndarray,
         clock: float,
@@ -57,69 +80,68 @@ class Shooting:
         rounds: int = 1,
         turn: Any = None,
     ) -> None:
-        self.rates, self.period, self.rounds, self.turn = rates, period, rounds, turn
+        self.period, self.edges, self.turn = period, edges, turn
+        self.periods = rounds * (1.0 if turn is None else 0.5)  # after which the cycle is closed
         self.odd = np.eye(states.shape[1])  # directions of the multipliers that are asked for, as columns
         self.parts, self.d = states.shape
         self.free = period is None
+        self.rates = lambda x, p, t: np.asarray(
+            equations(x, p, NUMBERS) if self.free else equations(x, p, t, NUMBERS), dtype=float
+        )
+        self.taylor = _taylor(equations, self.free, states[0])
         self.first = states[0].copy()
-        self.normal = np.asarray(rates(states[0], p), dtype=float) if self.free else np.zeros(self.d)
+        self.normal = self.rates(states[0], p, 0.0) if self.free else np.zeros(self.d)
         self.unit = np.maximum(unit, 1e-3 * unit.max())
         own = [clock] if self.free else []
         self.start = np.concatenate([states.reshape(-1), own, [p]])
 
-    def jacobian(self, x: np.ndarray, p: float, *t: float) -> np.ndarray:
-        """df/dx by the complex step."""
-        columns = x[:, None] + 1e-30j * np.eye(self.d)  # all at once
-        return np.array([np.imag(row) * np.ones(self.d) for row in self.rates(columns, p, *t)]) / 1e-30
-
     def part(self, x: np.ndarray, p: float, start: float, stop: float) -> tuple[np.ndarray, np.ndarray]:
-        """State and its derivative after a part."""
-        d = self.d
-
-        def rate(t: float, y: np.ndarray) -> np.ndarray:
-            at = () if self.free else (t,)
-            matrix = self.jacobian(y[:d], p, *at) @ y[d:].reshape(d, d)
-            return np.concatenate([self.rates(y[:d], p, *at), matrix.reshape(-1)])
-
-        found = solve_ivp(rate, (start, stop), np.concatenate([x, np.eye(d).reshape(-1)]), **TOLERANCE).y[
-            :, -1
-        ]
-        return found[:d], found[d:].reshape(d, d)
+        """State after a part, and its derivatives by the first one and by the parameter: (d,), (d, d + 1)."""
+        taylor, d = self.taylor, self.d
+        taylor.time, taylor.pars[0] = start, p
+        taylor.state[:] = np.concatenate([x, np.eye(d, d + 1).reshape(-1)])
+        if taylor.propagate_until(stop)[0] != heyoka.taylor_outcome.time_limit:
+            raise ValueError(f"the simulation from t = {start:.6g} fails")
+        return taylor.state[:d].copy(), taylor.state[d:].reshape(d, d + 1).copy()
 
     def cycle(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-        """Equations of a cycle, their derivative without the parameter's column, and the parts' matrices."""
+        """Equations of a cycle, their derivative by all unknowns, and the parts' matrices."""
         m, d = self.parts, self.d
         states, p = y[: m * d].reshape(m, d), float(y[-1])
-        length = float(y[m * d]) if self.free else self.rounds * self.period(p)
-        h = length / m / (1.0 if self.turn is None else 2.0)
+        times = self.edges * self.periods * (float(y[m * d]) if self.free else self.period(p))
+        by = (
+            self.edges * self.periods
+        )  # derivative of the times by the period, which is unknown or depends on p
+        by = (
+            by
+            if self.free
+            else by * (self.period(p + STEP * p) - self.period(p - STEP * p)) / (2.0 * STEP * p)
+        )
         n = m * d + self.free
-        values, matrix, parts = np.zeros(n), np.zeros((n, n)), []
+        values, matrix, parts = np.zeros(n), np.zeros((n, n + 1)), []
         for i in range(m):
-            end, jacobian = self.part(states[i], p, i * h, (i + 1) * h)
+            end, jacobian = self.part(states[i], p, times[i], times[i + 1])
+            before, after = self.rates(states[i], p, times[i]), self.rates(end, p, times[i + 1])
+            moved = after * by[i + 1] - jacobian[:, :d] @ before * by[i]
             rows, closes = slice(i * d, (i + 1) * d), i == m - 1
-            turn = np.eye(d) if self.turn is None or not closes else self.turn
+            turn = (np.eye(d) if self.turn is None or not closes else self.turn) / self.unit[:, None]
             j = 0 if closes else i + 1
-            values[rows] = (turn @ end - states[j]) / self.unit
-            matrix[rows, i * d : (i + 1) * d] += turn @ jacobian / self.unit[:, None]
+            values[rows] = turn @ end - states[j] / self.unit
+            matrix[rows, i * d : (i + 1) * d] += turn @ jacobian[:, :d]
             matrix[rows, j * d : (j + 1) * d] -= np.diag(1.0 / self.unit)
-            if self.free:
-                matrix[rows, -1] = turn @ np.asarray(self.rates(end, p)) / self.unit * h / length
-            parts.append(turn @ jacobian)
+            matrix[rows, -1] = turn @ jacobian[:, d]
+            matrix[rows, m * d] += turn @ moved
+            parts.append(self.unit[:, None] * turn @ jacobian[:, :d])
         if self.free:
             size = np.linalg.norm(self.normal * self.unit)
             values[-1] = self.normal @ (states[0] - self.first) / size
             matrix[-1, :d] = self.normal / size
         return values, matrix, parts
 
-    def whole(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Equations of a cycle, and their derivative with the parameter's column, by central differences."""
-        values, matrix, _ = self.cycle(y)
-        step = 1e-6 * max(abs(y[-1]), 1e-3)
-        ahead, behind = y.copy(), y.copy()
-        ahead[-1] += step
-        behind[-1] -= step
-        column = (self.cycle(ahead)[0] - self.cycle(behind)[0]) / (2.0 * step)
-        return values, np.column_stack([matrix, column])
+    def growth(self) -> float:
+        """By how much a perturbation grows in one part at most, relative to the motions' sizes."""
+        parts = self.cycle(self.start)[2]
+        return max(float(np.linalg.norm(part * self.unit / self.unit[:, None], 2)) for part in parts)
 
     def monodromy(self, y: np.ndarray) -> np.ndarray:
         """Matrix of the full period (with ``turn``, of half of it and the mirror)."""
@@ -145,8 +167,15 @@ def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
 
 
 def newton(residual: Any, y: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """A root, by the chord method with derivatives by differences, which are renewed every fourth step."""
+    """A root, by the chord method with derivatives by differences, which are renewed every fourth step.
+
+    Raises
+    ------
+    ValueError
+        If it does not converge.
+    """
     matrix: Any = None
+    size = np.inf
     for step in range(16):
         value = residual(y)
         if step % 4 == 0:
@@ -154,8 +183,11 @@ def newton(residual: Any, y: np.ndarray, scale: np.ndarray) -> np.ndarray:
             matrix = np.column_stack([(residual(y + e) - value) / e.max() for e in steps])
         change = np.linalg.lstsq(matrix * scale, -value, rcond=1e-14)[0] * scale
         y = y + change
-        if np.abs(change / scale).max() < 1e-11:
-            break
+        size = float(np.abs(change / scale).max())
+        if size < CONVERGED:
+            return y
+    if not size < STALLED:
+        raise ValueError(f"Newton's method does not converge: its last step is {size:.1e}")
     return y
 
 
@@ -169,17 +201,17 @@ def solve(kind: str, shooting: Shooting, multiplier: complex = -1.0) -> np.ndarr
         if kind == "fold":
 
             def residual(z: np.ndarray) -> np.ndarray:
-                values, matrix = shooting.whole(z)
+                values, matrix = shooting.cycle(z)[:2]
                 null = np.linalg.svd(matrix * scale)[2][-1]
                 return np.append(values, null[-1] * np.sign(null @ reference))
 
-            reference = np.linalg.svd(shooting.whole(y)[1] * scale)[2][-1]
+            reference = np.linalg.svd(shooting.cycle(y)[:2][1] * scale)[2][-1]
             return newton(residual, y, scale)
-        left = np.linalg.svd(shooting.whole(y)[1] * scale)[0][:, -1]
+        left = np.linalg.svd(shooting.cycle(y)[:2][1] * scale)[0][:, -1]
 
         def moore(z: np.ndarray) -> np.ndarray:
             point, w, b = z[: n + 1], z[n + 1 : -1], z[-1]
-            values, matrix = shooting.whole(point)
+            values, matrix = shooting.cycle(point)[:2]
             return np.concatenate([values + b * w, (matrix * scale).T @ w, [w @ w - 1.0]])
 
         full = newton(moore, np.concatenate([y, left, [0.0]]), np.concatenate([scale, np.ones(n), [1.0]]))

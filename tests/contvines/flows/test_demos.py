@@ -1,6 +1,6 @@
 """Demos of other packages with cycles: all special points of the table, no others, each against a solve of its own.
 
-The values of the table are the witness's (`tools/flow_demos/witness.py`): shooting with DOP853 and Newton's method on an extended system.
+The values of the table are the witness's (`tools/flow_demos/witness.py`): shooting by Taylor series and Newton's method on an extended system.
 """
 
 import json
@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from tools.flow_demos.listed import DEMOS, PRINTED
+
+pytest.importorskip("heyoka")  # integrates for the witness
 from tools.flow_demos.make_table import TABLE, points_of, shooting_of, solved
 
 pytestmark = pytest.mark.slow
