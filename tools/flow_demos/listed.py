@@ -115,6 +115,7 @@ PRINTED = {
         "period-doubling": ["-0.614681654"],
     },
     "adaptx": {"hopf": ["1.000002"], "period-doubling": ["0.630302"]},
+    "oxidation of CO": {"hopf": ["1.04100305"]},
     "neural mass": {"hopf": ["-1.85012460", "-1.15105934"]},
     "lorenz 84": {"hopf": ["1.61966", "2.46722", "2.85987"]},
 }
