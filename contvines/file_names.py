@@ -2,7 +2,23 @@
 
 from pathlib import Path
 
-KNOWN = ("vines", "toml", "csv", "json", "graphml", "mat", "png", "pdf", "svg", "jpg", "eps", "txt", "py")
+KNOWN = (
+    "vines",
+    "toml",
+    "csv",
+    "json",
+    "graphml",
+    "mat",
+    "png",
+    "pdf",
+    "svg",
+    "jpg",
+    "eps",
+    "txt",
+    "py",
+    "xls",
+    "xlsx",
+)
 ALSO = {"csv": ("txt",)}  # endings that fit beside the usual one
 
 

@@ -41,8 +41,11 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
     return found
 
 
-def missing_text(graph: Graph, command: str) -> str:
-    """What the look has found, in one line with the command that adds it; empty if nothing."""
+def missing_text(graph: Graph, study: str) -> str:
+    """What the look has found, in one line with the command that adds it; empty if nothing.
+
+    Motions that do not repeat are on no branch: a sweep shows them.
+    """
     if not graph.missing:
         return ""
     best: dict[tuple[str, int, str], Any] = {}
@@ -55,4 +58,6 @@ def missing_text(graph: Graph, command: str) -> str:
         word = short_word(about.name)
         names.append(f"{word} ({about.share:.0%} of starts at {graph.parameter} = {about.value:.6g})")
     more = f" and {len(best) - 3} more" if len(best) > 3 else ""
-    return f"simulation also finds {', '.join(names)}{more}, not on any branch; {command}"
+    periodic = any(about.recurrent for about in best.values())
+    way = f"run contvines atlas {study} to add " if periodic else f"run contvines sweep {study} to see "
+    return f"simulation also finds {', '.join(names)}{more}, not on any branch; {way}{'it' if len(best) == 1 else 'them'}"

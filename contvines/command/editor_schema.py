@@ -30,7 +30,9 @@ def schema(
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise ValueError(f"{output}: cannot be written ({error.strerror}).") from None
+        raise ValueError(
+            f"{output}: cannot be written ({error.strerror}); choose another place with -o."
+        ) from None
     typer.echo(f'{output}; the first line of a study beside it would be "#:schema {output.name}"')
 
 

@@ -94,7 +94,7 @@ def of_page(
                     "taken_share",
                     seen.share(end),
                     "",
-                    f"of the first energy: taken by both in {figures(end)} {second}".rstrip(),
+                    f"of the initial energy: taken by both in {figures(end)} {second}".rstrip(),
                 )
             )
     series = [

@@ -200,7 +200,7 @@ def _run(
     if command == "diagram" and graph.missing:
         from contvines.coexistence.missing import missing_text
 
-        say(missing_text(graph, f"run contvines atlas {path} to add it"), quiet)
+        say(missing_text(graph, str(path)), quiet)
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 

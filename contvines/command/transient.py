@@ -150,7 +150,9 @@ def _released(study: Study, text: str, within: str | None) -> Told:
             share = taken_share(model, params, displacement / length, told / seconds)
         except ValueError as error:
             raise ValueError(f"{study.path}: --time {within}: {error}.") from None
-        more = [("taken_share", share, "", f"of the first energy: taken by impacts and friction in {within}")]
+        more = [
+            ("taken_share", share, "", f"of the initial energy: taken by impacts and friction in {within}")
+        ]
     lost = decay.impacts + decay.friction + decay.damping
     rows = [
         ("pumping_time", decay.pumping_time * seconds, second, "until nine tenths of the energy are gone"),

@@ -25,7 +25,7 @@ _POWER = re.compile(r"e([-+]?)0*(\d+)$")
 
 def write_latex(graph: Graph, path: Path) -> None:
     """Both tables, to be read with ``\\input``; the preamble needs ``\\usepackage{booktabs}``."""
-    tables = [branches_table(graph)] + ([special_table(graph)] if graph.special else [])
+    tables = [branches_table(graph)] + ([special_table(graph, reasons=False)] if graph.special else [])
     lines = [f"% {title(graph)}", f"% {as_text(provenance())}", r"% \usepackage{booktabs}"]
     for table in tables:
         lines += ["", *tabular(table)]

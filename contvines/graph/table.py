@@ -86,8 +86,8 @@ def branches_table(graph: Graph) -> Table:
     return Table(head, rows, ("points", "from .. to"))
 
 
-def special_table(graph: Graph) -> Table:
-    """A row per special point: its kind, branch, value, what it leads to."""
+def special_table(graph: Graph, reasons: bool = True) -> Table:
+    """A row per special point: its kind, branch, value, what it leads to, and with `reasons` why."""
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
     rows, width = [], graph.within[1] - graph.within[0]
     number = figures_in(graph.within, [point.value for point in graph.special.values()])
@@ -100,11 +100,11 @@ def special_table(graph: Graph) -> Table:
         for switch in graph.switches:
             if switch.point == point.label:
                 arrow = f"{switch.source} -> {switch.target}"
-                targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note else arrow)
+                targets.append(f"{arrow} ({short_words(switch.note)})" if switch.note and reasons else arrow)
         open_end = point.real if point.kind in BORDERS else point.kind in LEFT
-        reasons = [remark for remark in point.remarks if remark != TRANSCRITICAL]
-        if not targets and open_end and reasons:
-            targets.append(f"({'; '.join(reasons)})")
+        remarked = [remark for remark in point.remarks if remark != TRANSCRITICAL]
+        if reasons and not targets and open_end and remarked:
+            targets.append(f"({'; '.join(remarked)})")
         about = " ".join(filter(None, remarks))
         value = number(point.value)
         rows.append((point.label, point.kind, point.branch, value, about, "; ".join(targets)))

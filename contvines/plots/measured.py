@@ -64,7 +64,7 @@ def plot_transient(
             axes.plot(hits, low, transform=axes.get_xaxis_transform(), **ticks)
         axes.set(xlabel=axis_label(clock, unit=second), ylabel=axis_label(name, unit=unit))
         if name == "energy":
-            axes.set(yscale="log", ylabel="energy / first energy")
+            axes.set(yscale="log", ylabel="energy / initial energy")
         axes.margins(x=0.0)
         _finish(figure, axes, legend, own)
     return figure

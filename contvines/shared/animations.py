@@ -81,6 +81,9 @@ def _animation_class() -> type[FuncAnimation]:
     class Animation(FuncAnimation):
         """An animation that shows itself in a notebook, with its player."""
 
+        def __repr__(self) -> str:
+            return "Animation: a notebook shows it with its player, .save(FILE) writes it"
+
         def _repr_html_(self) -> str:
             with rc_context({"savefig.dpi": DPI}):
                 return self.to_jshtml()

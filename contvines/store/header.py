@@ -31,7 +31,7 @@ def check_header(path: Path, *, reading: bool = False) -> None:
             else f"{path}: there is no such file; `contvines diagram STUDY.toml -o {path}` makes one."
         ) from None
     except OSError as error:
-        raise StoreError(f"{path}: cannot be read ({error.strerror}).") from None
+        raise StoreError(f"{path}: cannot be read ({error.strerror}); {other}.") from None
     if len(head) < 100 or not head.startswith(MAGIC):
         raise StoreError(f"{path}: this is not a .vines file; {other}.")
     version, application = struct.unpack(">I", head[60:64])[0], struct.unpack(">I", head[68:72])[0]

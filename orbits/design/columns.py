@@ -28,8 +28,9 @@ def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
     path = Path(path)
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError):
-        raise ParameterError(f"{path}: cannot be read; give a CSV with {_needed(columns)}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or "it is no text in UTF-8"
+        raise ParameterError(f"{path}: cannot be read ({why}); give a CSV with {_needed(columns)}") from None
     numbered = [(k, line) for k, line in enumerate(lines, 1) if line.strip() and not line.startswith("#")]
     parting = next((sign for sign in (";", "\t") if numbered and sign in numbered[0][1]), ",")
     heads: list[str] = []

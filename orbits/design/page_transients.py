@@ -54,7 +54,7 @@ class PageTransient:
     friction: np.ndarray
 
     def share(self, time: float) -> float:
-        """Share of the first energy that impacts and friction have taken until this time; nan where no energy is known."""
+        """Share of the initial energy that impacts and friction have taken until this time; nan where no energy is known."""
         if self.energy is None or not self.energy[0] > 0.0:
             return math.nan
         taken = np.interp(time, self.taken_times, self.impacts + self.friction)

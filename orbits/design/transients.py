@@ -106,7 +106,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float, lost: floa
 
 
 def taken_share(model: Model, params: np.ndarray, displacement: float, time: float) -> float:
-    """Share of the first energy that impacts and friction have taken in so much time [1/omega_0] of the free decay, beside what gravity gave.
+    """Share of the initial energy that impacts and friction have taken in so much time [1/omega_0] of the free decay, beside what gravity gave.
 
     Raises
     ------

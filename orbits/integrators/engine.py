@@ -40,7 +40,7 @@ def engine() -> ModuleType:
         return heyoka
     if not asked:
         print(
-            f"heyoka is not installed: SciPy integrates declared machines, some fifty times slower; {HOW.format(pip_install('machines'))}",
+            f"heyoka is not installed: SciPy integrates the motions, about fifty times slower; {HOW.format(pip_install('machines'))}",
             file=sys.stderr,
         )
     from orbits.integrators import solve_ivp

@@ -92,7 +92,7 @@ def test_the_look_says_what_a_diagram_lacks():
     graph = cv.diagram(seed, over="amplitude", within=(0.5, 1.3), depth=3)
     found = look(graph, ABSORBER.population("amplitude"))
     assert any(a.value > 1.1 for a in found)
-    assert "contvines atlas x.toml" in missing_text(graph, "contvines atlas x.toml adds it")
+    assert "contvines atlas x.toml" in missing_text(graph, "x.toml")
     assert graph.to_dict()["missing"][0]["share"] > 0
 
 
