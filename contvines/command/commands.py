@@ -32,7 +32,7 @@ COMMANDS = {
         "circle",
         "Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up.",
     ),
-    "show": ("show", "List branches, special points and their links."),
+    "show": ("show", "List branches, special points and switches."),
     "orbit": ("orbit", "One orbit: its events, multipliers and margins."),
     "prove": ("prove", "Prove that orbits exist, are real or virtual, stable or unstable."),
     "plot": ("plot", "Draw a result: the diagram, the multipliers of a branch, or the network of branches."),

@@ -27,7 +27,7 @@ WORDS = """An orbit's word lists its events over one period, in order:
   L R   impact on the left wall (w = +1), on the right wall (w = -1)
   t     turn: the sliding velocity passes zero and the mass slides back
   s     stick, with the slip that ends it
-  ""    no event: the mass is stuck for ever
+  ""    no event: the mass sticks all the time
 
 LR repeats after one impact on each wall; LRLt after two impacts on the left,
 one on the right and a turn. A study begins with `word` and `periods`, the

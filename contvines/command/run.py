@@ -50,7 +50,7 @@ YOption = Annotated[
     str | None,
     typer.Option(
         "-y",
-        help="Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem.",
+        help="Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem (--help behind STUDY.toml names it).",
     ),
 ]
 

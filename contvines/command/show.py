@@ -6,7 +6,7 @@ from contvines.command.frame import FileArgument, JsonOption, load_file, say_sta
 
 
 def show(file: FileArgument, json: JsonOption = False) -> None:
-    """List branches, special points and their links."""
+    """List branches, special points and switches."""
     from contvines.provenance import as_text
     from contvines.store import Store
 
