@@ -1,214 +1,160 @@
-"""Points of codimension two on a locus: suspected between its points, solved by Newton's method on a system of their own."""
+"""Points of codimension two on a locus: zeros of tests along it, located as special points on branches are.
+
+All kinds are asked in one loop: those that :func:`contvines.loci.kinds.looks` names for the locus, its borders, and the user's own.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..bifurcation.locate import locate
+from ..bifurcation.segment import Segment
+from ..bifurcation.symmetry_test import image_of
+from ..continuation.engine import Engine, Solved
+from ..continuation.settings import Settings
 from ..problems.abilities import Adaptive
-from .conditions import COEFFICIENTS, UNKNOWN, References, Test, coefficient_of, own_conditions, test_of
+from .conditions import COEFFICIENTS, References, Test, coefficient_of, test_of
 from .kinds import TOUCH, Look, looks
 from .layout import FLIP, FOLD, MARGIN, PAIR, PERIOD
 from .locus import Locus
 from .own_test import of_plane, tested
-from .plane import CLOSE, Place, Plane
+from .plane import Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
-from .starts import SINGULAR, ZERO, begin
+from .starts import SINGULAR, ZERO, begin, first_point
 from .touching import touching_form
 
+ROUNDING = 64.0 * float(np.finfo(float).eps)  # of values on a locus, relative
+TOLERANCE = 1e-12  # width of the final bracket relative to a segment
 END = 1e-8  # part of the interval, angle, margin: closer to an end, a resonance or a border a point is there
 CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
 APART = 1e-5  # a pair is complex if its imaginary part exceeds this
 DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
 FEW = 4  # places at which a border is asked whether its equations are singular
-NOISY = 1e-7  # corrections below this may no longer shrink where a test is a coefficient; their size is the point's error
-ROUGHLY = CRITICAL  # corrections below this no longer shrink where a test has a few digits only
-VANISHED = CRITICAL  # of its terms, or of what it is at the ends of its segment: a coefficient that is zero
-REACH = 3.0  # lengths of a segment at which a solution still belongs to it
-BISECTIONS = 4  # after which a coefficient has grown if it changes its sign through infinity
+VANISHED = 1e-6  # of its terms, or of what it is at the ends of its segment: a test that is zero
+NOTHING = 1e-9  # a test that is less at both ends of a segment is zero all along, but for rounding
+ONE_PLACE = 1e-7  # relative distance of two points of one locus that are one
+LOOSE = 1e-3  # relative size of what has all but become an equilibrium, or a cycle of half the period, on a mesh ...
+NEARLY = 1e-5  # ... and of other motions from their images
+BESIDE = 0.02  # distance (in the metric) on either side at which its point of codimension two is sought
+
+Found = tuple[int, PlanePoint]
 
 
-def find(locus: Locus) -> list[tuple[int, PlanePoint]]:
+class Sought(NamedTuple):
+    """A kind of point that is looked for along a locus.
+
+    Attributes
+    ----------
+    kind : str
+    test : callable
+        The test, with the references of a point of the locus; None where it cannot be asked.
+    verify : callable
+        Whether a zero, at which a plane is, is of this kind.
+    rough : callable or None
+        The test to a few digits, at the place of a plane, where the test itself is costly.
+    zero : float
+        What counts as zero at an end of the locus, where the test may vanish without a change of its sign.
+    """
+
+    kind: str
+    test: Callable[[References], Test | None]
+    verify: Callable[[Plane], bool]
+    rough: Callable[[Plane, References], float] | None = None
+    zero: float = 0.0
+
+
+def find(locus: Locus) -> list[Found]:
     """The points of codimension two on a locus, each with the index of the point before it; labels are left empty."""
+    branch = locus.branch
+    points = [
+        Solved(u, float(q), tangent, np.zeros(0), 0.0, 0.0, 0.0)
+        for u, q, tangent in zip(branch.points, branch.values, branch.tangents)
+    ]
     problem = locus.problem
-    plane = Plane(problem)
-    points, values = locus.branch.points, locus.branch.values
-    places = [Place(u, float(p), float(q)) for (u, p), q in zip(map(problem.split, points), values)]
-    wanted = looks(plane.problem, problem.condition)
-    if problem.condition == PERIOD or (problem.condition == MARGIN and _singular(plane, places)):
+    if problem.condition == PERIOD or (problem.condition == MARGIN and _singular(problem, points)):
         return []  # nothing can be told from equations that are singular all along
-    found: list[tuple[int, PlanePoint]] = []
-    costly = {look: _along(plane, places, look, problem) for look in wanted if look.test in COEFFICIENTS}
-    at: References | None = None
-    for i in range(len(places) - 1):
-        if not math.isfinite(plane.at(places[i])):
-            continue
-        at = References(plane, problem, at)
-        tests = [
-            (look, test)
-            for look in wanted
-            if look not in costly and (test := test_of(look, problem, at)) is not None
-        ]
-        ends = [_evaluated(plane, place, tests) for place in places[i : i + 2]]
-        pairs = [(look, test, a, b) for (look, test), a, b in zip(tests, *ends)]
-        for look, values in costly.items():
-            test = test_of(look, problem, at)
-            assert test is not None
-            pairs.append((look, test, values[i], values[i + 1]))
-        for look, test, a, b in pairs:
-            at_end = (
-                look.test == "angle"
-                and min(abs(a) if i == 0 else 1.0, abs(b) if i == len(places) - 2 else 1.0) < END
-            )
-            # a test that vanishes at a point itself changes its sign on one side of it
-            if not (((a >= 0.0) != (b >= 0.0) and np.isfinite(a + b)) or at_end):
-                continue
-            share = float(np.clip(a / (a - b), 0.0, 1.0)) if a != b else 0.5
-            guess, gap = _between(places[i], places[i + 1], share), _gap(problem, places[i], places[i + 1])
-            if look in costly:  # first with a few digits
-                rough = test_of(look, problem, at, rough=True)
-                assert rough is not None
-                if _through_infinity(plane, (look, rough), places[i : i + 2], (a, b)):
-                    continue
-                near = solved(plane, problem, at, look.kind, rough, guess, gap, ROUGHLY, rough)
-                if near is not None:
-                    guess, gap = Place(near.u, *near.value), 0.1 * gap
-            close, slopes = CLOSE, None
-            if look in costly:
-                close, slopes = NOISY, test_of(look, problem, at, rough=True)
-            point = solved(plane, problem, at, look.kind, test, guess, gap, close, slopes)
-            if point is not None and look in costly:
-                left = _evaluated(plane, Place(point.u, *point.value), [(look, test)])[0]
-                if not abs(left) <= VANISHED * max(abs(a), abs(b)):
-                    continue  # it changes its sign through infinity, where one more multiplier is critical
-            if point is not None and not set(point.margins) - set(problem.masked):
-                if look is TOUCH:
-                    point.coefficients = touching_form(plane, Place(point.u, *point.value), problem.index)
-                found.append((i, point))
-    born = _where_born(problem, places)
-    # where cycles begin other multipliers may be critical, too
-    found = [pair for pair in found if not any(_at_one_place(pair[1], own) for _, own in born)]
-    found += _at_borders(locus, plane, places) + _of_own_kinds(locus, plane, places) + born
-    return sorted((pair for pair in found if not _at_end(locus, pair[1])), key=lambda pair: pair[0])
+    ends = (0, points[0]), (len(points) - 1, points[-1])
+    both = [(index, beginning(problem, end, locus.within)) for index, end in ends]
+    born = [(index, point) for index, point in both if point is not None]
+    found: list[Found] = []
+    for index, point in _zeros(problem, points, locus.within, list(_sought(locus))):
+        # where cycles begin other multipliers may be critical, too
+        begins = any(_at_one_place(point, other) for _, other in born)
+        if not begins and not any(same_point(point, other) for _, other in found):
+            found.append((index, point))
+    return sorted([*found, *born], key=lambda pair: pair[0])
 
 
-def _singular(plane: Plane, places: list[Place]) -> bool:
-    """Whether the equations are singular at a few places of a border, and so at all of them."""
-    few = places[:: max(1, len(places) // FEW)]
+def _singular(problem: LocusProblem, points: Sequence[Solved]) -> bool:
+    """Whether the equations are singular at a few points of a border, and so at all of them."""
+    plane = Plane(problem)
+    few = [_place(problem, point) for point in points[:: max(1, len(points) // FEW)]]
     tests = [abs(plane.first.null_vectors().test) for place in few if math.isfinite(plane.at(place))]
     return bool(tests) and float(np.median(tests)) < SINGULAR
 
 
-def _at_end(locus: Locus, point: PlanePoint) -> bool:
-    """Whether the point is an end of the interval, or of what can be evaluated, rather than a point of the plane."""
-    low, high = locus.within
-    return min(abs(point.value[1] - low), abs(point.value[1] - high)) <= END * (high - low)
+def _place(problem: LocusProblem, point: Solved) -> Place:
+    u, p = problem.split(point.u)
+    return Place(u, float(p), float(point.p))
 
 
-def _along(plane: Plane, places: list[Place], look: Look, problem: LocusProblem) -> list[float]:
-    """A coefficient at all points, to a few digits; where its terms cancel it is zero, not the rounding that is left of them."""
-    values = []
-    at: References | None = None
-    for place in places:
-        plane.at(place)
-        at = References(plane, problem, at)
-        plane.at(place)
-        try:
-            found = coefficient_of(look, at, plane, rough=True)
-        except (ValueError, np.linalg.LinAlgError):
-            found = UNKNOWN
-        values.append(0.0 if abs(found.value) <= VANISHED * found.size else found.value)
-    return values
+# ------------------------------------------------------------------ what is looked for
+def _sought(locus: Locus) -> Iterator[Sought]:
+    """All that is looked for along a locus."""
+    problem = locus.problem
+    for look in looks(problem.base, problem.condition):
+        yield _of_look(look, problem)
+    yield from _borders(problem)
+    for own in locus.kinds:
+        test = partial(tested, own)
+        yield Sought(own.name, lambda at, test=test: test, partial(_of_own, own))
 
 
-def _evaluated(plane: Plane, place: Place, tests: list[tuple[Look, Test]]) -> list[float]:
-    values = []
-    for _, test in tests:
-        plane.at(place)
-        try:
-            values.append(test(plane))
-        except (ValueError, np.linalg.LinAlgError):
-            values.append(np.nan)
-    return values
-
-
-def _through_infinity(
-    plane: Plane, test: tuple[Look, Test], ends: list[Place], values: tuple[float, float]
-) -> bool:
-    """Whether a coefficient of opposite signs at two places grows between them, as it does where one more multiplier is critical."""
-    (one, other), (a, b) = ends, values
-    for _ in range(BISECTIONS):
-        middle = _between(one, other, 0.5)
-        value = _evaluated(plane, middle, [test])[0]
-        if (value >= 0.0) == (a >= 0.0):
-            one, a = middle, value
-        else:
-            other, b = middle, value
-    return abs(a) + abs(b) > abs(values[0]) + abs(values[1])
-
-
-def _between(a: Place, b: Place, share: float) -> Place:
-    return Place(
-        (1.0 - share) * a.u + share * b.u,
-        (1.0 - share) * a.p + share * b.p,
-        (1.0 - share) * a.q + share * b.q,
+def _of_look(look: Look, problem: LocusProblem) -> Sought:
+    rough = partial(_few_digits, look) if look.test in COEFFICIENTS else None
+    verify = partial(_inside, look.kind, frozenset(problem.masked))
+    return Sought(
+        look.kind, partial(test_of, look, problem), verify, rough, END if look.test == "angle" else 0.0
     )
 
 
-def _gap(locus: LocusProblem, a: Place, b: Place) -> float:
-    gap = np.append(np.abs(a.u - b.u), [abs(a.p - b.p), abs(a.q - b.q)])
-    return REACH * float((gap / locus.sizes_at(*a)).max())
+def _borders(problem: LocusProblem) -> Iterator[Sought]:
+    """One more margin that vanishes."""
+    kind = BORDER_KINDS.get(problem.condition, "border-fold")
+    if problem.condition == FLIP and problem.base.flip_kind == "symmetry-breaking":
+        kind = "border-symmetry-breaking"
+    for j in set(range(int(problem.base.n_margins))) - set(problem.masked):
+        yield Sought(kind, lambda at, j=j: partial(_margin, j=j), partial(_holds, kind), None, ZERO)
 
 
-def solved(
-    plane: Plane,
-    locus: LocusProblem,
-    at: References,
-    kind: str,
-    test: Test,
-    guess: Place,
-    reach: float,
-    close: float = CLOSE,
-    rough: Test | None = None,
-) -> PlanePoint | None:
-    """The point where a test vanishes on a locus; None if Newton's method does not find it near the guess."""
-    conditions = [*own_conditions(plane, locus, at), test]
-    try:
-        result = plane.refined(conditions, guess, reach, locus.unfolded, close, rough)
-    except (ValueError, np.linalg.LinAlgError):
-        return None
-    if result is None:
-        return None
-    place, error = result
-    low, high = locus.bounds
-    slack = 1e-9 * (high - low) if np.isfinite(high - low) else 0.0
-    if not low - slack <= place.p <= high + slack:
-        return None
-    residual = plane.at(place)
-    if not _holds(kind, plane):
-        return None
-    margins, problem = plane.row[2 * plane.m :], locus.at(place.q)
-    if isinstance(problem, Adaptive):
-        error = max(error, problem.accuracy(place.u, place.p))
-    zero = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < END))
-    return PlanePoint(
-        label="",
-        kind=kind,
-        parameters=(locus.inner, locus.over),
-        value=(place.p, place.q),
-        u=place.u,
-        multipliers=plane.problem.to_multipliers(plane.spectrum),
-        real=not bool((margins < -END).any()),
-        error=error,
-        residual=residual,
-        margins=zero,
-        problem=problem,
-    )
+def _margin(plane: Plane, j: int) -> float:
+    return float(plane.row[2 * plane.m + j])
+
+
+def _few_digits(look: Look, plane: Plane, at: References) -> float:
+    """A coefficient; where its terms cancel it is zero, not the rounding that is left of them."""
+    found = coefficient_of(look, at, plane, rough=True)
+    return 0.0 if abs(found.value) <= VANISHED * found.size else found.value
+
+
+def _of_own(kind: Any, plane: Plane) -> bool:
+    return kind.verify is None or bool(kind.verify(of_plane(plane)))
+
+
+def _inside(kind: str, masked: frozenset[int], plane: Plane) -> bool:
+    """Whether the multipliers are those of a kind, at no border but that of the locus itself."""
+    return _holds(kind, plane) and _vanishing(plane) <= masked
+
+
+def _vanishing(plane: Plane) -> set[int]:
+    return set(np.flatnonzero(np.abs(plane.row[2 * plane.m :]) < END).tolist())
 
 
 #: kind -> critical pairs of multipliers
@@ -248,72 +194,108 @@ BORDER_KINDS = {
 }
 
 
-def _at_borders(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[int, PlanePoint]]:
-    """Where the locus meets a border: one more margin vanishes."""
-    problem, found = locus.problem, []
-    kind = BORDER_KINDS.get(problem.condition, "border-fold")
-    if problem.condition == FLIP and plane.problem.flip_kind == "symmetry-breaking":
-        kind = "border-symmetry-breaking"
-    own = int(plane.problem.n_margins)
-    rows = []
-    for place in places:
+# ------------------------------------------------------------------ one loop
+def _zeros(
+    problem: LocusProblem, points: Sequence[Solved], within: tuple[float, float], wanted: Sequence[Sought]
+) -> Iterator[Found]:
+    """The zeros of tests between points of a locus that are what is looked for, each with the index of the point before it."""
+    plane, last = Plane(problem), len(points) - 2
+    places = [_place(problem, point) for point in points]
+    at: References | None = None
+    rough = {sought.kind: list[float]() for sought in wanted if sought.rough is not None}
+    for place in places if rough else ():
         plane.at(place)
-        rows.append(plane.row[2 * plane.m : 2 * plane.m + own].copy())
-    for i in range(len(places) - 1):
-        last = i == len(places) - 2
-        for j in range(own):
-            if j in problem.masked:
-                continue
-            a, b = rows[i][j], rows[i + 1][j]
-            ends = (last and abs(b) < ZERO) or (i == 0 and abs(a) < ZERO)
-            if not (np.isfinite(a) and np.isfinite(b)) or not (a * b < 0.0 or ends):
-                continue
-            guess = (
-                places[i]
-                if i == 0 and abs(a) < ZERO
-                else places[i + 1]
-                if ends
-                else _between(places[i], places[i + 1], a / (a - b))
-            )
-            plane.at(guess)
-            at = References(plane, problem)
-            point = solved(
-                plane,
-                problem,
-                at,
-                kind,
-                lambda x, j=j: float(x.row[2 * x.m + j]),
-                guess,
-                max(_gap(problem, places[i], places[i + 1]), 1e-3),
-            )
-            if point is not None and not any(same_point(point, other) for _, other in found):
-                found.append((0 if guess is places[0] else i + 1 if ends else i, point))
-    return found
+        at = References(plane, problem, at)
+        for sought in wanted:
+            if sought.rough is not None:
+                rough[sought.kind].append(
+                    _value(plane, place, lambda x, rough=sought.rough, at=at: rough(x, at))
+                )
+    at = None
+    for i, ends in enumerate(pairwise(places)):
+        if not math.isfinite(plane.at(ends[0])):
+            continue
+        at = References(plane, problem, at)
+        tests = [(sought, test) for sought in wanted if (test := sought.test(at)) is not None]
+        values = [
+            [rough[s.kind][i + k] if s.rough else _value(plane, end, test) for s, test in tests]
+            for k, end in enumerate(ends)
+        ]
+        segment: Segment | None = None
+        for (sought, test), a, b in zip(tests, *values):
+            root: tuple[Place, float] | None = None
+            index = i
+            if i == 0 and abs(a) < sought.zero:
+                root = ends[0], ROUNDING
+            elif i == last and abs(b) < sought.zero:
+                index, root = i + 1, (ends[1], ROUNDING)
+            elif (a >= 0.0) != (b >= 0.0) and math.isfinite(a + b):
+                segment = segment or _segment(problem, points[i : i + 2], within, at)
+                root = _root(plane, segment, test, abs(a) + abs(b))
+            point = None if root is None else _point(sought, plane, *root, within)
+            if point is not None:
+                yield index, point
 
 
-def _of_own_kinds(locus: Locus, plane: Plane, places: list[Place]) -> list[tuple[int, PlanePoint]]:
-    """Zeros of the tests of users' kinds."""
-    problem, found = locus.problem, []
-    for kind in locus.kinds:
-        values = []
-        for place in places:
-            plane.at(place)
-            values.append(tested(kind, plane))
-        for i, (a, b) in enumerate(pairwise(values)):
-            if not (np.isfinite(a + b) and (a >= 0.0) != (b >= 0.0)):
-                continue
-            guess, gap = _between(places[i], places[i + 1], a / (a - b)), _gap(problem, *places[i : i + 2])
-            plane.at(guess)
-            at = References(plane, problem)
-            test = partial(tested, kind)
-            point = solved(plane, problem, at, kind.name, test, guess, gap, NOISY)
-            if point is None:
-                continue
-            plane.at(Place(point.u, *point.value))
-            seen: Any = of_plane(plane)
-            if kind.verify is None or kind.verify(seen):
-                found.append((i, point))
-    return found
+def _value(plane: Plane, place: Place, test: Test) -> float:
+    """A test at a place; NaN where it cannot be computed."""
+    plane.at(place)
+    try:
+        return test(plane)
+    except (ValueError, np.linalg.LinAlgError):
+        return math.nan
+
+
+def _segment(
+    problem: LocusProblem, ends: Sequence[Solved], within: tuple[float, float], at: References
+) -> Segment:
+    """A segment of a locus, its equations with the borders and the pair that belong to its beginning."""
+    engine = Engine(problem.bordered_at(*_place(problem, ends[0]), at.reference), within, Settings())
+    row = np.zeros(engine.row_size)
+    return Segment(engine, *(end._replace(tangent=engine.unit(end.tangent), row=row) for end in ends))
+
+
+def _root(plane: Plane, segment: Segment, test: Test, size: float) -> tuple[Place, float] | None:
+    """Where a test vanishes on a segment, with the error; None where it jumps, or has a pole.
+
+    The coefficient of a normal form has one where one more multiplier is critical.
+    """
+
+    def value(point: Solved) -> float:
+        return _value(plane, _place(plane.locus, point), test)
+
+    root = None if size < NOTHING else locate(segment, value, TOLERANCE, fallback_zero=True, jump=size)
+    if root is None or not root.continuous or not abs(value(root.point)) <= VANISHED * size:
+        return None
+    one, other = (_place(plane.locus, end) for end in (segment.a, segment.b))
+    width = TOLERANCE * (abs(one.p - other.p) + abs(one.q - other.q))
+    return plane.place, max(root.error + width, root.point.correction) / (1.0 + abs(root.point.p)) + ROUNDING
+
+
+def _point(
+    sought: Sought, plane: Plane, place: Place, error: float, within: tuple[float, float]
+) -> PlanePoint | None:
+    """The point at a zero; None where it is not of its kind, or an end of the interval."""
+    residual, (low, high) = plane.at(place), within
+    if min(abs(place.q - low), abs(place.q - high)) <= END * (high - low) or not sought.verify(plane):
+        return None
+    locus, problem = plane.locus, plane.locus.at(place.q)
+    if isinstance(problem, Adaptive):
+        error += problem.accuracy(place.u, place.p)
+    return PlanePoint(
+        label="",
+        kind=sought.kind,
+        parameters=(locus.inner, locus.over),
+        value=(place.p, place.q),
+        u=place.u,
+        coefficients=touching_form(plane, place, locus.index) if sought.kind == TOUCH.kind else {},
+        multipliers=plane.problem.to_multipliers(plane.spectrum),
+        real=not bool((plane.row[2 * plane.m :] < -END).any()),
+        error=error,
+        residual=residual,
+        margins=tuple(sorted(_vanishing(plane))),
+        problem=problem,
+    )
 
 
 def same_point(one: PlanePoint, other: PlanePoint) -> bool:
@@ -322,9 +304,10 @@ def same_point(one: PlanePoint, other: PlanePoint) -> bool:
 
 
 def _at_one_place(one: PlanePoint, other: PlanePoint) -> bool:
-    return all(abs(a - b) <= NOISY * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
+    return all(abs(a - b) <= ONE_PLACE * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
 
 
+# ------------------------------------------------------------------ where a motion becomes a shorter or more symmetric one
 #: what is followed -> kinds of the points at which it begins beside equilibria, and beside cycles of half the period
 FIRST_OF_EQUILIBRIA = {
     FOLD: ("generalized-hopf",),
@@ -335,35 +318,58 @@ FIRST_OF_CYCLES = {
     FOLD: ("generalized-period-doubling",),
     PAIR: ("resonance-1-2", "fold-flip", "flip-neimark-sacker"),
 }
-LOOSE = 1e-3  # relative size of what has all but become an equilibrium, or a cycle of half the period
-NEAR_END = 0.02  # distance at which its point of codimension two is sought, relative to the unknowns
 
 
-def _where_born(locus: LocusProblem, places: list[Place]) -> list[tuple[int, PlanePoint]]:
-    """The points at whose motion the cycles of a locus begin: an equilibrium, or a cycle of half the period."""
-    found: list[tuple[int, PlanePoint]] = []
-    cycles: Any = locus.base
-    if not isinstance(cycles, Adaptive):
-        return found
-    for i, place in ((0, places[0]), (len(places) - 2, places[-1])):
-        whole: Any = locus.at(place.q)
-        root = whole.root(place.u, place.p, loose=LOOSE)
-        if root is None:
-            continue
-        own, u = root
-        still = own.spectrum == "flow"
-        kinds = (FIRST_OF_EQUILIBRIA if still else FIRST_OF_CYCLES).get(locus.condition, ())
-        parent = begin(own, "hopf" if still else own.flip_kind, u, place.p, locus.over, 0, locus.bounds)
-        plane, guess = Plane(parent), Place(u, place.p, place.q)
-        if not math.isfinite(plane.at(guess)):
-            continue
-        at = References(plane, parent)
-        for look in looks(own, parent.condition):
-            test = test_of(look, parent, at) if look.kind in kinds else None
-            point = (
-                None if test is None else solved(plane, parent, at, look.kind, test, guess, NEAR_END, NOISY)
-            )
-            if point is not None:
-                found.append((i, point))
-                break
-    return found
+def beginning(locus: LocusProblem, end: Solved, within: tuple[float, float]) -> PlanePoint | None:
+    """The point of codimension two at which a locus begins, or ends, whose motion there is an equilibrium, a shorter or a symmetric one.
+
+    It is the point of that motion: the equations of the locus are singular there, and no point of it comes nearer than to half the digits.
+    """
+    u, p, q = _place(locus, end)
+    met = becomes(locus, u, p, q)
+    if met is None or met.problem is None or met.u is None:
+        return None
+    still = met.problem.spectrum == "flow"
+    kinds = (FIRST_OF_EQUILIBRIA if still else FIRST_OF_CYCLES).get(locus.condition, ())
+    parent = begin(met.problem, met.kind, met.u, p, locus.over, 0, locus.bounds)
+    wanted = [_of_look(look, parent) for look in looks(met.problem, parent.condition) if look.kind in kinds]
+    if not isinstance(locus.base, Adaptive):
+        wanted += _borders(parent)
+    engine, start = first_point(parent, met.u, p, q, within, Settings())
+    beside = [] if start is None else [_beside(engine, start, by) for by in (-BESIDE, BESIDE)]
+    around = [point for point in beside if point is not None]
+    if len(around) < 2:
+        return None
+    found = [point for _, point in _zeros(parent, around, within, wanted)]
+    return min(found, key=lambda point: abs(point.value[0] - p) + abs(point.value[1] - q), default=None)
+
+
+class Becomes(NamedTuple):
+    """The motion that a motion all but is: the kind of special point at which it leaves that, its problem and unknowns, where there are some."""
+
+    kind: str
+    problem: Any = None
+    u: np.ndarray | None = None
+
+
+def becomes(locus: LocusProblem, u: np.ndarray, p: float, q: float) -> Becomes | None:
+    """What the motion at a place of a locus all but is, if it is more symmetric than others of its equations."""
+    whole: Any = locus.at(q)
+    if isinstance(locus.base, Adaptive):
+        root = whole.root(u, p, loose=LOOSE)
+        return (
+            None
+            if root is None
+            else Becomes("hopf" if root[0].spectrum == "flow" else root[0].flip_kind, *root)
+        )
+    sizes = locus.sizes_at(u, p, q)[:-2]
+    for symmetry in whole.symmetries:
+        if np.abs((image_of(symmetry, u, p) - u) / sizes).max() < NEARLY:
+            return Becomes(symmetry.kind, *(() if symmetry.root is None else symmetry.root(u)))
+    return None
+
+
+def _beside(engine: Engine, point: Solved, by: float) -> Solved | None:
+    """The point of a locus at a distance along its tangent."""
+    guess, border = engine.join(point.u, point.p) + by * point.tangent, engine.weights * point.tangent
+    return engine.solve(guess[:-1], float(guess[-1]), border, float(border @ guess), point.tangent)

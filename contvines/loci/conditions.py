@@ -1,4 +1,4 @@
-"""Test functions in the plane of two parameters: the conditions of a locus, and those of the points on it."""
+"""Test functions in the plane of two parameters: those of the points of codimension two on a locus."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 from ..bifurcation.normal_forms.coefficients import Coefficient, Forms
 from ..problems.abilities import Adaptive
 from .kinds import Look
-from .layout import BRANCH, FLIP, FOLD, PAIR
 from .linear import Null
 from .plane import Plane
 from .problem import LocusProblem
@@ -56,24 +55,6 @@ class References:
         distance = np.abs(upper.real) if plane.flow else np.abs(np.abs(upper) - 1.0)
         other = upper[np.argsort(distance)[1]]
         return float(np.abs(other) ** 2 if plane.flow else other.real)
-
-
-def own_conditions(plane: Plane, locus: LocusProblem, at: References) -> list[Test]:
-    """The conditions of the locus itself, with references held fixed."""
-    if locus.condition == FOLD:
-        return [lambda x: x.singular_test(at.plus.column, at.plus.row)]
-    if locus.condition == FLIP:
-        assert at.minus is not None
-        minus = at.minus
-        return [lambda x: x.singular_test(minus.column, minus.row, flipped=True)]
-    if locus.condition == BRANCH:
-        return [
-            lambda x: x.singular_test(at.plus.column, at.plus.row),
-            lambda x: x.unfolding_test(at.plus.column, at.plus.row),
-        ]
-    if locus.condition == PAIR:
-        return [lambda x: x.pair(at.reference)[0]]
-    return [lambda x: float(x.row[2 * x.m + locus.index])]
 
 
 def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False) -> Test | None:

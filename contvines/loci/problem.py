@@ -14,7 +14,7 @@ from ..core.records import pack
 from ..core.table import TableKernels, native_table
 from ..problems.abilities import notation_of
 from ..problems.protocol import Kernels, Problem, ProblemDefaults
-from .borders import fresh_borders
+from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
 from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
@@ -269,6 +269,13 @@ class LocusProblem(ProblemDefaults):
     def at(self, q: float) -> Any:
         """The problem of the branches at a value of the second parameter."""
         return self.base.against(self.inner, {self.over: float(q)})
+
+    def bordered_at(self, u: np.ndarray, p: float, q: float, reference: float) -> LocusProblem:
+        """The same locus, with the borders that belong to one of its points, and the pair at a position there."""
+        problem = self.at(q)
+        borders = borders_at(problem, self.condition, u, p)
+        about = self.kind, self.over, self.index, self.bounds, borders, reference, self.masked, self.unit
+        return type(self)(problem, *about)
 
     def margin_kind(self, j: int) -> str:
         """Kind of the border, "end" where p leaves its interval, "resonance" where a pair becomes real."""

@@ -13,12 +13,14 @@ from collections.abc import Callable
 import numpy as np
 
 from .linear import Null
-from .plane import Place, Plane, settled
+from .plane import Place, Plane
 
 STEP = 1e-4  # of the first derivative, along the branch, relative to the sizes of unknowns and parameter
 WIDE, NARROWER, WIDTHS = 8e-3, 0.35, 9  # widths of the differences, relative to the sizes of the parameters
 BEND = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / 180.0  # weights of a second derivative
 SWEEPS = 12  # of Newton's method on the branch
+SETTLED = 64.0 * np.finfo(float).eps  # corrections that are rounding
+CLOSE = 1e-9  # corrections below this are the last where they shrink no more
 
 
 def slope_along_branch(plane: Plane, null: Null, index: int) -> float:
@@ -89,7 +91,7 @@ def _on_branch(plane: Plane, guess: Place, index: int) -> float:
         step = x - (s / g) * v if g != 0.0 else np.full(len(x), np.nan)
         size = float((np.abs(step) / plane.locus.sizes_at(*place)[:-2]).max())
         place = place._replace(u=place.u + step)
-        if settled(size, last):
+        if size < SETTLED or (size < CLOSE and size > 0.3 * last):
             return _margin(plane, place, index)
         last = size
     return np.nan

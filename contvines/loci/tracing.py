@@ -12,8 +12,8 @@ from ..bifurcation.detect import Detector
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME, checked
 from ..bifurcation.located import Located, Role
-from ..bifurcation.symmetry_test import image_of
 from ..branches.assembly import make_branch
+from ..branches.branch import Branch
 from ..branches.ending import Ending
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
@@ -24,12 +24,15 @@ from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
 from ..interrupts import listening
 from ..journal import NullJournal
+from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
+from .codimension_two import becomes, beginning
 from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
 from .long_period import lengthened
 from .own_test import of_own_kind, with_condition
+from .plane_point import PlanePoint
 from .problem import LocusProblem
 from .sides import impossible_side
 from .starts import ZERO, begin, first_point, regular_side
@@ -37,7 +40,8 @@ from .starts import ZERO, begin, first_point, regular_side
 if TYPE_CHECKING:
     from ..journal import Journal
 
-NEARLY = 1e-5  # distance of a motion from its image, relative to the sizes, at which Newton's method may fail because they become one
+#: how a half may end where equations become singular
+SINGULAR = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE, Status.CREEPING, Status.BORDER)
 UNFOLDED = (
     1e-7  # an unfolding beyond this (in units of the equations) says that a branch point does not persist
 )
@@ -209,7 +213,7 @@ def _traced(
         if progress is not None:
             progress(label, points, value)
 
-    def go(first: Solved, side: str) -> tuple[HalfBranch, np.ndarray, str]:
+    def go(first: Solved, side: str) -> tuple[HalfBranch, np.ndarray, str, PlanePoint | None]:
         now, half = real, None
         flags = np.zeros(0, dtype=bool)
         for part in range(20):
@@ -223,21 +227,27 @@ def _traced(
                 break
             now, first = not now, border.point
         assert half is not None
-        return half, flags, _sentence(problem, half)
+        became, end = _becoming(problem, half, within)
+        return half, flags, became or _sentence(problem, half), end
 
     if start.tangent[-1] < 0.0:
         start = start._replace(tangent=-start.tangent, sign=-start.sign)
-    ahead, ahead_real, ahead_ended = go(start, "ahead")
+    ahead, ahead_real, ahead_ended, last = go(start, "ahead")
+    first = None
     if ahead.status == Status.CLOSED:
         whole, flags, ended = ahead, ahead_real, (ahead_ended, ahead_ended)
     else:
-        back, back_real, back_ended = go(start._replace(tangent=-start.tangent, sign=-start.sign), "back")
+        turned = start._replace(tangent=-start.tangent, sign=-start.sign)
+        back, back_real, back_ended, first = go(turned, "back")
         whole = back.reversed().extended(ahead, skip=1)
         flags = np.append(back_real[::-1], ahead_real[1:])
         ended = (back_ended, ahead_ended)
     endings = (Ending.said(ended[0]), Ending.said(ended[1]))
     branch = make_branch(label, engine, whole, real, endings, ahead.status == Status.CLOSED, seed)
     branch.description["unfolded"] = problem.unfolded
+    for index, end in ((0, first), (-1, last)):
+        if end is not None:
+            _put_at_end(problem, branch, index, end)
     if problem.condition == BRANCH and _unfolds(problem, branch.points):
         return None
     turns = tuple(
@@ -247,6 +257,15 @@ def _traced(
     )
     side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
     return Locus(label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side)
+
+
+def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoint) -> None:
+    """Let a locus end at the point of a shorter or more symmetric motion that is its end."""
+    nothing = np.zeros(len(end.u) + 1)
+    seen = end.problem.offspring(end.problem.flip_kind, end.u, end.value[0], nothing, -1.0 + 0.0j)[0]
+    branch.points, branch.values = branch.points.copy(), branch.values.copy()
+    branch.points[index] = problem.joined(np.asarray(seen.u, dtype=float), end.value[0])
+    branch.values[index] = end.value[1]
 
 
 def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:
@@ -260,18 +279,25 @@ def _border(half: HalfBranch) -> Located | None:
     return last if last.role is Role.BORDER else None
 
 
-def _becoming(problem: LocusProblem, half: HalfBranch) -> str:
-    """What the motion becomes where Newton's method fails: a shorter one run twice, or a symmetric one; empty where neither."""
-    if half.status not in (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE, Status.CREEPING):
-        return ""
-    U, q, _ = half.at(len(half) - 1)
+def _becoming(
+    problem: LocusProblem, half: HalfBranch, within: tuple[float, float]
+) -> tuple[str, PlanePoint | None]:
+    """What the motion becomes where its equations become singular, a shorter one run twice, or a symmetric one, and the point of
+    codimension two at which it does; empty where neither."""
+    if half.status not in SINGULAR:
+        return "", None
+    U, q, tangent = half.at(len(half) - 1)
     u, p = problem.split(U)
-    sizes = problem.sizes_at(u, float(p), q)[:-2]
-    for symmetry in problem.at(q).symmetries:
-        if np.abs((image_of(symmetry, u, float(p)) - u) / sizes).max() < NEARLY:
-            what = "a shorter one, run twice" if symmetry.kind == "period-doubling" else "symmetric"
-            return f"the motion becomes {what}, at {problem.inner} = {p:.7g}, {problem.over} = {q:.7g}"
-    return ""
+    met = None if isinstance(problem.base, Adaptive) else becomes(problem, u, float(p), q)
+    if met is None:
+        return "", None
+    what = "a shorter one, run twice" if met.kind == "period-doubling" else "symmetric"
+    end = beginning(problem, Solved(U, q, tangent, np.zeros(0), 0.0, 0.0, 0.0), within)
+    p, q, digits = (float(p), q, 7) if end is None else (*end.value, 10)
+    return (
+        f"the motion becomes {what}, at {problem.inner} = {p:.{digits}g}, {problem.over} = {q:.{digits}g}",
+        end,
+    )
 
 
 def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
@@ -282,7 +308,7 @@ def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
         what = "an equilibrium" if met.kind == "hopf" else "a cycle of half the period"
         return f"the cycle becomes {what}, at {problem.inner} = {problem.split(at.u)[1]:.10g}, {problem.over} = {at.p:.10g}"
     if border is None:
-        return _becoming(problem, half) or half.status.sentence(problem.over, half.end)
+        return half.status.sentence(problem.over, half.end)
     kind, p, q = problem.margin_kind(border.index), problem.split(border.point.u)[1], border.point.p
     if problem.condition == PERIOD and kind == "homoclinic":
         return (

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from ..loci.chart import Chart
 
 VALUE = 1e-10
-ENDS = 1e-8  # of branches and of stable stretches: borders of both kinds are located from either side
-LOCI = 1e-4  # ends of loci that run into a point of codimension two, where their equations are singular: rounding says how near they come
+ENDS = (
+    1e-8  # of branches, of loci and of stable stretches: borders of both kinds are located from either side
+)
 NEAR = 1e-8
 MULTIPLIERS = 1e-5  # at a fold they move with the square root of the location error
 
@@ -141,11 +142,11 @@ def _branches(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
         yield f"branch {label} ({after[label]['word']} k={after[label]['periods']}) is new"
 
 
-def _same_intervals(one: Any, other: Any, ends: float = ENDS) -> bool:
+def _same_intervals(one: Any, other: Any) -> bool:
     if one is None or other is None:
         return one is other
     a, b = np.array(sorted(one), dtype=float), np.array(sorted(other), dtype=float)
-    return a.shape == b.shape and bool(np.allclose(a, b, rtol=ends, atol=ends))
+    return a.shape == b.shape and bool(np.allclose(a, b, rtol=ENDS, atol=ENDS))
 
 
 def _loci(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
@@ -157,7 +158,7 @@ def _loci(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
         for name in ("kind", "seed", "closed"):
             if locus[name] != now[name]:
                 yield f"{label}: {name} was {locus[name]} and is {now[name]}"
-        if not _same_intervals(locus["ends"], now["ends"], LOCI):
+        if not _same_intervals(locus["ends"], now["ends"]):
             yield f"{label}: its ends were {locus['ends']} and are {now['ends']}"
     for label in set(after) - set(before):
         yield f"locus {label} ({after[label]['kind']} from {after[label]['seed']}) is new"
