@@ -43,7 +43,8 @@ class Simulated:
             "word" (None where there is none), "periods" and "kind" of each motion and "share" of the starts that lead to it, sorted; of
             one that does not recur "modulation" and its band, too (see `contvines.shared.modulation`), where it has one.
         """
-        from orbits.attractors.search import described, find_attractor, modulated
+        from orbits.attractors.observation import described, modulated
+        from orbits.attractors.search import find_attractor
 
         params, generator = self.values(p), np.random.default_rng(7)
         named: dict[str, Any] = dict(zip(self.model.parameter_names, map(float, params)))

@@ -279,7 +279,7 @@ def _from_sweep(
     from contvines.command.measured import Column, measured
     from contvines.command.physical_study import number_of
     from contvines.plots.style import axis_label
-    from orbits.attractors.search import measure_names
+    from orbits.attractors.observation import measure_names
     from orbits.design.calibration import from_sweep
 
     known = measure_names(model)

@@ -6,13 +6,11 @@ from contvines.shared.on_demand import on_demand
 
 if TYPE_CHECKING:
     from orbits.attractors.attractor import Attractor
-    from orbits.attractors.page import PageAttractor
     from orbits.attractors.search import different_attractors, find_attractor
     from orbits.attractors.sweeping import SweepRow, find_attractors, sweep, sweeps
 
 __all__ = [
     "Attractor",
-    "PageAttractor",
     "SweepRow",
     "different_attractors",
     "find_attractor",
@@ -25,7 +23,6 @@ __getattr__ = on_demand(
     __name__,
     {
         "Attractor": "orbits.attractors.attractor",
-        "PageAttractor": "orbits.attractors.page",
         "different_attractors": "orbits.attractors.search",
         "find_attractor": "orbits.attractors.search",
         **dict.fromkeys(("SweepRow", "find_attractors", "sweep", "sweeps"), "orbits.attractors.sweeping"),

@@ -2,204 +2,264 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors.motion import Settled
-from orbits.cycles.cycle import Cycle
-from orbits.machines.stepping import Machine
+from orbits.flows.trajectory import Trajectory
 from orbits.orbit import Orbit
-from orbits.simulation.native import NativeSimulator
-from orbits.simulation.return_map import cyclic_distance
-from orbits.simulation.trajectory import LETTERS, Trajectory
+from orbits.simulation.runs import simulator_of
 from orbits.words import Word
-from orbits.words.alphabet import shaken
 
 if TYPE_CHECKING:
-    from orbits.machines.base import Model
+    from orbits.machines.varying import Varying
+
+SETTLED = 0.01
+"""Largest relative change of two observations that tell the same."""
+LASTING = 16  # forcing periods of a motion that does not recur
+MOST_EVENTS = 100_000
+TOGETHER = 1e-4  # phase by which the simulated first event may be early
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Statistics of a motion.
+
+    Attributes
+    ----------
+    periods : float
+        Forcing periods looked at.
+    extremes : dict of float
+        How far it goes; see `orbits.flows.trajectory.Trajectory.extremes`.
+    impact_speed : float
+        Fastest approach.
+    impacts_per_period : float
+        Mean number of impacts per forcing period.
+    contacts : int
+        How often impacts piled up into persistent contact.
+    """
+
+    periods: float
+    extremes: Mapping[str, float]
+    impact_speed: float
+    impacts_per_period: float
+    contacts: int
+
+    def near(self, other: Observation) -> bool:
+        """Whether two observations tell the same, up to `SETTLED`."""
+        pairs = (
+            *((self.extremes[name], other.extremes[name]) for name in self.extremes),
+            (self.impact_speed, other.impact_speed),
+            (self.impacts_per_period, other.impacts_per_period),
+        )
+        return all(abs(a - b) <= SETTLED * max(abs(a), abs(b)) for a, b in pairs)
 
 
 @dataclass(frozen=True, eq=False)
-class Attractor(Settled):
+class Attractor:
     """The motion that is left after a transient.
 
     Attributes
     ----------
-    model : Model
+    model : Model or Machine
         The machine.
-    params : ndarray, shape (P,)
+    params : float array (P,)
         Parameter vector.
     kind : str
-        ``periodic`` (with impacts), ``sliding`` (periodic without impacts), ``stuck``, ``chatter`` (impacts
-        pile up into persistent contact, in every cycle or every 32 periods on average) or ``chaotic`` (nothing
-        recurs within the periods looked at).
+        ``periodic``; ``sliding`` (an absorber that hits no wall); ``stuck`` (at rest in its cavity), of a declared machine ``rest`` (a wall holds
+        the body for good, or a self-excited machine comes to rest); ``chatter`` (impacts pile up into persistent contact, in every cycle
+        or every 32 periods on average); ``chaotic``, of a declared machine ``aperiodic`` (nothing recurs within the periods looked at).
     periods : int
-        Forcing periods k until the motion recurs; 0 if it does not.
-    codes, modes : ndarray of int8, shape (n,)
-        The cycle's events (H = 5 begins a persistent contact) and the modes after them, rotated into canonical order.
-    nodes : ndarray, shape (n, NODE)
-        (Psi, B+) at impacts and (Psi, w) at other events, then (v, v') in the coupled model; the first phase lies in
-        [0, 2 pi), later ones are counted through.
-    residual : float
-        Largest difference between the first node and its image after one period.
-    multipliers : ndarray of complex, shape (NODE,)
-        Eigenvalues of the simulated return map's central differences; nan where they could not be taken.
-    symmetric : bool
-        Whether the orbit equals its mirror image.
-    state : ndarray, shape (S,)
+        Forcing periods until the motion recurs; 0 where it rests or does not.
+    orbit : Orbit or None
+        The solved orbit next to the simulated motion; None where no word describes that.
+    trajectory : Trajectory
+        The last part of the simulation.
+    length : int
+        Events of the trajectory until the motion recurs, the last ones; 0 if it does not.
+    state : float array (S,)
         A state on the attractor, from which a simulation goes on.
-    impacts_per_period, impact_speed : float
-        Impacts per forcing period and fastest approach |w'-|, over the motion looked at: the cycle, or what
-        `orbits.attractors.observation` needs where nothing recurs.
+    seen : Observation or None
+        What a motion that does not recur does in the long run, where it was followed.
     """
 
-    model: Model
+    model: Varying
     params: np.ndarray
-    machine: Machine
     kind: str
     periods: int
-    codes: np.ndarray
-    modes: np.ndarray
-    nodes: np.ndarray
-    residual: float
-    multipliers: np.ndarray
-    symmetric: bool
-    state: np.ndarray
-    impacts_per_period: float
-    impact_speed: float
+    orbit: Orbit | None
+    trajectory: Trajectory = field(repr=False)
+    length: int
+    state: np.ndarray = field(repr=False)
+    seen: Observation | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
         return f"Attractor({self.kind}, word={self.text!r}, periods={self.periods}, impacts={self.impacts})"
 
     @property
-    def letters(self) -> str:
-        """The cycle's events as one string, every slip written."""
-        return "".join(LETTERS[code] for code in self.codes)
+    def letters(self) -> tuple[str, ...]:
+        """The cycle's events, every slip written."""
+        if self.orbit is not None:
+            return self.orbit.word.events
+        return tuple(self.trajectory.letters[len(self.trajectory) - self.length :])
 
     @property
     def impacts(self) -> int:
-        """Impacts l in one cycle."""
-        return int(np.count_nonzero(self.codes < 2))
+        """Impacts in one cycle."""
+        if self.orbit is not None:
+            return self.orbit.impacts
+        return int(np.count_nonzero(self.trajectory.hits[len(self.trajectory) - self.length :]))
 
     @property
     def recurrent(self) -> bool:
-        """Whether the motion is periodic (stuck included)."""
-        return self.kind == "stuck" or self.periods > 0
+        """Whether the motion is periodic (the absorber at rest included)."""
+        return self.orbit is not None or self.periods > 0
 
     @property
-    def word(self) -> Any:
-        """The cycle as an `orbits.words.Word`.
+    def symmetric(self) -> bool:
+        """Whether it equals its mirror image."""
+        return self.orbit is not None and self.orbit.symmetric
 
-        None where the motion has none: chaos, persistent contact, frictionless motion off the walls.
-        """
-        if not self.recurrent or np.any(self.codes > 4) or (self.kind == "sliding" and not len(self.codes)):
-            return None
-        alphabet = shaken(self.model.frictionless(self.params))
-        return Word(tuple(LETTERS[c] for c in self.codes), tuple(int(m) for m in self.modes), alphabet)
+    @property
+    def word(self) -> Word | None:
+        """The cycle's word; None where no word describes the motion: chaos, persistent contact, frictionless motion off the walls."""
+        return None if self.orbit is None else self.orbit.word
 
     @property
     def text(self) -> str:
-        """The word in the one spelling of its motion; for motions with persistent contact the plain list of events."""
-        if self.word is not None:
-            return self.word.spelled(self.model.has_mirror(self.params))
-        return self.letters if self.periods else ""
+        """The word in the one spelling of its motion; of motions with persistent contact the plain list of events."""
+        if self.orbit is not None:
+            return self.orbit.spelling
+        return "".join(self.letters)
 
     @property
-    def cycle(self) -> Cycle:
-        """The attractor as plain data, with the word that its events read.
+    def nodes(self) -> np.ndarray:
+        """The orbit's nodes; see `orbits.cycles.cycle.Cycle`."""
+        return np.empty((0, self.model.node)) if self.orbit is None else self.orbit.nodes
 
-        A motion without impacts is moved so that the mean of its w is the middle between the walls, which continuation pins.
+    @property
+    def residual(self) -> float:
+        """Largest residual of the orbit's equations; nan without an orbit."""
+        return np.nan if self.orbit is None else self.orbit.residual
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Multipliers of the orbit; none without one."""
+        return np.empty(0, complex) if self.orbit is None else self.orbit.multipliers
+
+    @property
+    def approaches(self) -> np.ndarray:
+        """Approach speeds of the impacts of the cycle, or of the last part of the run."""
+        return self.trajectory.approaches(self.first)
+
+    @property
+    def first(self) -> int:
+        """The first event of the trajectory that belongs to the cycle; 0 where nothing recurs."""
+        return len(self.trajectory) - self.length if self.length else 0
+
+    @property
+    def impact_speed(self) -> float:
+        """Fastest approach of an impact."""
+        return self.seen.impact_speed if self.seen else float(self.approaches.max(initial=0.0))
+
+    @property
+    def impacts_per_period(self) -> float:
+        """Impacts per forcing period, of a self-excited machine per unit of time."""
+        if self.seen is not None:
+            return self.seen.impacts_per_period
+        run = self.trajectory
+        if self.orbit is not None or self.periods:
+            lasted = self.periods if self.model.forced or self.orbit is None else self.orbit.period
+            return self.impacts / lasted if lasted else 0.0
+        lasted = run.lasted if self.model.forced else 2.0 * np.pi * run.lasted
+        return run.impacts / lasted if lasted > 0.0 else 0.0
+
+    @property
+    def found(self) -> Orbit:
+        """The attractor as an orbit, ready for continuation.
 
         Raises
         ------
         ValueError
-            If the attractor is not periodic or has persistent contact, which no word describes.
+            If no word describes it.
         """
-        word = self.word
-        if word is None:
+        if self.orbit is None:
+            why = {
+                "chatter": "impacts pile up on it, so no finite word describes it",
+                "sliding": "without friction nothing happens on it",
+                "rest": "a wall holds the body for good"
+                if self.trajectory.held
+                else "it has come to rest; contvines.diagram(machine.smooth(state), ...) follows equilibria",
+            }.get(self.kind, "no period was found")
             raise ValueError(
-                f"the attractor is {self.kind}: only periodic motions without persistent contact are orbits"
+                f"this attractor of {self.model.name!r} is no orbit that can be continued ({self.kind}: {why}); choose other "
+                "parameters or another start, or give a word to machine.orbit"
             )
-        nodes = self.model.at_home(self.codes, self.nodes, self.params)
-        return Cycle(self.model, word, self.periods, nodes, self.params)
+        return self.orbit
 
-    @property
-    def found(self) -> Orbit:
-        """The attractor as an orbit, ready for continuation; see `cycle`."""
-        return Orbit.of(self.cycle)
+    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
+        """The attractor as a continuation problem, so that it can be handed to `contvines.diagram`.
 
-    orbit = found
+        Raises
+        ------
+        ValueError
+            If it is no orbit that can be continued.
+        """
+        return self.found.problem(parameter, symmetric)
+
+    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+        """Unknowns and parameter value in `problem`."""
+        return self.found.seed(problem)
+
+    @cached_property
+    def _reading(self) -> tuple[bool, int]:
+        """Whether the orbit's word is spelled in the mirror image, and from which event on."""
+        word = self.found.word
+        if not len(word) or word.alphabet.alone is None:  # words of declared machines stand as they are read
+            return False, 0
+        read, images = Word.parse(self.text, word.frictionless), (word, word.mirror())
+        return next((one is not word, k) for one in images for k in range(len(one)) if one.rotate(k) == read)
 
     @property
     def guess(self) -> np.ndarray | None:
         """The nodes as a study's `guess` takes them, read as the word is spelled; None where no word describes the motion."""
-        if self.word is None:
+        if self.orbit is None:
             return None
-        if not len(self.word):
-            return np.empty((0, self.machine.node))  # stuck
-        orbit, place = self.found, self._first_place
-        if orbit.word.rotate(place) != self._read:
-            orbit = orbit.mirror()
-        return (orbit.rotate(place) if place else orbit).nodes
-
-    @property
-    def _read(self) -> Word:
-        """The word as it is spelled."""
-        return Word.parse(self.text, self.word.frictionless)
-
-    @property
-    def _first_place(self) -> int:
-        """Which of the events is the first one of the word as it is spelled."""
-        read, images = self._read, (self.word, self.word.mirror())
-        return next(k for image in images for k in range(len(image)) if image.rotate(k) == read)
-
-    def follow(self, periods: float | None = None) -> Trajectory:
-        """The motion from `state`: over one cycle, or sixteen periods where nothing recurs."""
-        length = periods if periods is not None else self.periods or (1 if self.kind == "stuck" else 16)
-        simulator = NativeSimulator(self.model, self.params)
-        simulator.state = self.state.copy()
-        return simulator.run(length, 100_000)
+        mirrored, place = self._reading
+        return (self.orbit.mirror() if mirrored else self.orbit).rotate(place).nodes
 
     @property
     def dots(self) -> list[float]:
-        """B = (B+ - B-)/2, positive away from the wall, at every impact: from the word's first on.
+        """What a picture shows of the impacts of the cycle, from the word's first event on, or of the last part of the run."""
+        run, first = self.trajectory, self.first
+        shown = np.array(run.shown(first))
+        if self.orbit is not None and self.model.forced and len(shown) > 1:
+            began = self.orbit.nodes[self._reading[1], 0] - TOGETHER
+            since = run.clocks[1:][first:][run.hits[first:]] - began
+            shown = shown[np.argsort(since % (2.0 * np.pi * self.periods))]
+        return shown.tolist()
 
-        B = v' - w', and v' does not change at an impact: B is half the jump of -w'.
-        """
-        run = self.follow()
-        hits = run.codes < 2
-        away = 1.0 - 2.0 * run.codes[hits]  # L = 0, R = 1
-        jumps = 0.5 * away * (run.rows[hits, 3] - run.rows[hits, 4])
-        if self.periods and len(self.nodes):
-            first = self._first_place if self.word is not None else 0
-            since = run.phases[hits] - self.nodes[first, 0] + 1e-4
-            jumps = jumps[np.argsort(since % (2.0 * np.pi * self.periods))]
-        return [float(b * self.model.gauge("velocity", self.params)) for b in jumps]
+    def follow(self, periods: float | None = None) -> Trajectory:
+        """The motion from `state`: over one cycle, or sixteen periods where nothing recurs."""
+        simulator = simulator_of(self.model, self.params)
+        simulator.go_on(self.state)
+        return simulator.run(periods or self.periods or (1 if self.recurrent else LASTING), MOST_EVENTS)
 
     def distance(self, other: Attractor) -> float:
-        """Largest difference of the nodes, over all rotations, shifts by 2 pi and the mirror image.
-
-        Without impacts the mean position is free and left out. inf if the events differ.
-        """
-        if self.kind != other.kind or self.periods != other.periods or len(self.codes) != len(other.codes):
+        """Largest difference of the canonical nodes, relative to 1 + nodes: over all rotations, whole periods and the mirror image; inf if the words differ."""
+        if self.orbit is None or other.orbit is None:
+            alike = self.orbit is other.orbit and (self.kind, self.periods) == (other.kind, other.periods)
+            return 0.0 if alike and self.text == other.text else np.inf
+        one, two = (
+            x.orbit.problem(symmetric=False).canonical(*_seed(x.orbit)) for x in (self, other) if x.orbit
+        )
+        if one[0] != two[0]:
             return np.inf
-        if not len(self.codes):
-            return 0.0
-        mirror = np.array([1, 0, 2, 3, 4, 5], dtype=np.int8)
-        own = self.model.at_home(self.codes, self.nodes, self.params)
-        target = self.model.at_home(other.codes, other.nodes, self.params)
-        image = self.model.image(self.codes, own, self.params)
-        image[:, 0] += np.pi
-        images = [(self.codes, self.modes, own)]
-        if self.model.has_mirror(self.params):
-            images.append((mirror[self.codes], -self.modes, image))
-        best = np.inf
-        for codes, modes, nodes in images:
-            for k in range(len(codes)):
-                if np.array_equal(np.roll(codes, -k), other.codes) and np.array_equal(
-                    np.roll(modes, -k), other.modes
-                ):
-                    best = min(best, cyclic_distance(np.roll(nodes, -k, axis=0), target))
-        return best
+        return float(np.abs(one[1] - two[1]).max(initial=0.0) / (1.0 + np.abs(one[1]).max(initial=0.0)))
+
+
+def _seed(orbit: Orbit) -> tuple[np.ndarray, float]:
+    return orbit.seed(orbit.problem(symmetric=False))

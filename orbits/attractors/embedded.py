@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
-from orbits.flows.protocol import Record, Simulator
+from orbits.flows.protocol import Simulator
+from orbits.flows.trajectory import Trajectory
 
 NEAR = 0.1  # largest difference of a return, relative to the spread of the motion
 TRIES = 3  # returns with one and the same list of events
@@ -19,7 +20,7 @@ PER_PERIOD = (
 
 
 def embedded_cycles(
-    simulator: Simulator, longest: int, solve: Callable[[Record, int, int, int], Any]
+    simulator: Simulator, longest: int, solve: Callable[[Trajectory, int, int, int], Any]
 ) -> Iterator[Any]:
     """Cycles next to the nearest returns of a motion, of up to `longest` forcing periods.
 
@@ -44,7 +45,7 @@ def embedded_cycles(
     """
     periods, events = simulator.watched
     record = simulator.record(simulator.time + periods, events)
-    marks = np.flatnonzero(record.impacts) if record.impacts.sum() > 1 else np.arange(len(record))
+    marks = np.flatnonzero(record.hits) if record.hits.sum() > 1 else np.arange(len(record))
     if len(marks) < 2:
         return
     spread = np.ptp(record.points[marks], axis=0)
@@ -55,7 +56,7 @@ def embedded_cycles(
         for i, j in _returns(record, marks, spread, length, PER_PERIOD * longest):
             if record.piled[i:j].any():
                 continue
-            key = _list_of_events(record.events[i:j])
+            key = _list_of_events(record.labels[i:j].tolist())
             tried[key] = tried.get(key, 0) + 1
             if tried[key] > TRIES:
                 continue
@@ -65,7 +66,7 @@ def embedded_cycles(
 
 
 def _returns(
-    record: Record, marks: np.ndarray, spread: np.ndarray, periods: int, events: int
+    record: Trajectory, marks: np.ndarray, spread: np.ndarray, periods: int, events: int
 ) -> list[tuple[int, int]]:
     """Pairs of marks alike in what they are and so many forcing periods (0: up to so many events) apart, the nearest ones first."""
     times, points = record.times[marks], record.points[marks]
@@ -82,14 +83,13 @@ def _returns(
         size = np.abs((points[other] - points[one]) / spread).max(axis=1, initial=0.0)
         if periods:
             size = np.maximum(size, 2.0 * np.pi * np.abs(times[other] - times[one] - periods))
-        alike = [record.events[i] == record.events[j] for i, j in zip(marks[one], marks[other])]
-        size[~np.array(alike, dtype=bool)] = np.inf
+        size[record.labels[marks[one]] != record.labels[marks[other]]] = np.inf
         table.append(np.column_stack([marks[one], marks[other], size]))
     rows = np.concatenate(table)
     rows = rows[np.argsort(rows[:, 2], kind="stable")][:PER_LENGTH]
     return [(int(i), int(j)) for i, j, size in rows if size < NEAR and j - i <= LONGEST_WORD]
 
 
-def _list_of_events(events: Sequence[Hashable]) -> tuple:
+def _list_of_events(events: Sequence[int]) -> tuple:
     """The events and modes, the same wherever the cycle is begun."""
     return min(tuple(events[k:]) + tuple(events[:k]) for k in range(len(events)))

@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
 from contvines.shared.modulation import BAND, SILENT, modulation_of
-from orbits.machines.stepping import PSI, TURNS
-from orbits.simulation.driver import collect
-from orbits.simulation.trajectory import TWO_PI, Trajectory
+from orbits.flows.trajectory import TWO_PI, Trajectory
 
-PERIODS = 512  # forcing periods that are looked at
 PER_PERIOD = 48  # instants; events come on top
-MOST_EVENTS = 400  # per period
 
 
-@dataclass(frozen=True)
-class Modulation:
+class Modulation(NamedTuple):
     """Of a motion, over forcing periods.
 
     Attributes
     ----------
     low, mean, high : float
-        Of the largest |q1| in a period, in half-widths.
+        Of the largest displacement in a period, in the machine's own numbers.
     silent : float
         Share of the periods without an impact.
     """
@@ -36,8 +30,8 @@ class Modulation:
 
     @property
     def measures(self) -> dict[str, float]:
-        """By name, in half-widths."""
-        return dict(zip((*BAND, SILENT), (self.low, self.mean, self.high, self.silent)))
+        """By name."""
+        return dict(zip((*BAND, SILENT), self))
 
     @property
     def kind(self) -> str:
@@ -45,31 +39,13 @@ class Modulation:
         return modulation_of(self.measures)
 
 
-def modulation(
-    model: Any, engine: Any, params: np.ndarray, state: np.ndarray, periods: int = PERIODS
-) -> Modulation:
-    """Follow a motion of a machine with an oscillator.
-
-    Parameters
-    ----------
-    model : Model
-    engine : Machine
-        Its stepper (`orbits.machines.catalogue.stepper`).
-    params : float array (P,)
-    state : float array (S,)
-        On the motion; it stays as it is.
-    periods : int
-    """
-    moved = state.copy()
-    moved[TURNS] = 0.0
-    begin = moved.copy()
-    start = float(begin[PSI]) / TWO_PI
-    seen: Any = collect(engine, moved, params, start + periods, int(MOST_EVENTS * (periods + 1)))
-    run = Trajectory(model, params, engine, begin, moved.copy(), *seen)
-    sample = run.sample(per_period=PER_PERIOD)
-    place = np.clip(((sample.phase - sample.phase[0]) / TWO_PI).astype(int), 0, periods - 1)
-    tops = np.zeros(periods)
-    np.maximum.at(tops, place, np.abs(sample.cavity))
-    hits = np.clip(((run.phases[run.codes < 2] - sample.phase[0]) / TWO_PI).astype(int), 0, periods - 1)
-    silent = 1.0 - np.unique(hits).size / periods
+def modulation(run: Trajectory) -> Modulation:
+    """Of the whole forcing periods of a run."""
+    periods = max(1, int(run.lasted + 1e-9))
+    clocks, sizes = run.responses(PER_PERIOD)
+    place = ((clocks - run.clocks[0]) / TWO_PI).astype(int)
+    tops = np.full(periods, -np.inf)
+    np.maximum.at(tops, place[place < periods], sizes[place < periods])
+    hits = ((run.clocks[1:][run.hits] - run.clocks[0]) / TWO_PI).astype(int)
+    silent = 1.0 - np.unique(hits[hits < periods]).size / periods
     return Modulation(float(tops.min()), float(tops.mean()), float(tops.max()), float(silent))

@@ -3,71 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, SILENT, modulation_of
-from orbits.attractors.attractor import Attractor
-from orbits.attractors.batches import lyapunov
+from contvines.shared.modulation import BAND, modulation_of
+from orbits.attractors.attractor import Attractor, Observation
 from orbits.attractors.modulation import modulation
 from orbits.attractors.motion import wandering
-from orbits.flows.native.measures import gauged
-from orbits.machines.states import state_of
-from orbits.machines.stepping import EVENTS_FULL, HOLD, PSI, TIME_REACHED, TURNS
-from orbits.simulation.driver import collect
-from orbits.simulation.trajectory import TWO_PI, Trajectory
+from orbits.flows.catalogue import flow_of
+from orbits.flows.protocol import Simulator
+from orbits.flows.trajectory import Trajectory
+from orbits.machines.varying import Varying
+from orbits.simulation.runs import simulator_of
 
-if TYPE_CHECKING:
-    from orbits.machines.base import Model
-
-FIRST = 4096
-"""Forcing periods of the first window of a motion that does not recur; every later one doubles the whole."""
-LONGEST = 16384
-"""Forcing periods after which the observation ends in any case."""
-SETTLED = 0.01
-"""Largest relative change over the last doubling."""
 OFTEN = 32
 """A motion that does not recur is `chatter` if it rests on a wall at least once in so many periods, on average."""
-SOLVED = 1e-9  # largest residual of an orbit
 PIECE = 256  # periods simulated at a time: bounds the memory
-PER_OSCILLATION = 12  # instants between which an extremum of q1 is looked for; events come on top
 MOST_EVENTS = 400  # per period
-
-
-@dataclass(frozen=True)
-class Observation:
-    """Statistics of a motion.
-
-    Attributes
-    ----------
-    periods : float
-        Forcing periods looked at.
-    max_abs_q1, max_abs_w, impact_speed : float
-        Largest displacement of the cavity (nan in the reduced model), largest |w|, fastest approach |w'-|.
-    impacts_per_period : float
-        Mean number of impacts per forcing period.
-    contacts : int
-        How often impacts piled up into persistent contact.
-    """
-
-    periods: float
-    max_abs_q1: float
-    max_abs_w: float
-    impact_speed: float
-    impacts_per_period: float
-    contacts: int
-
-    def near(self, other: Observation) -> bool:
-        """Whether two observations tell the same, up to `SETTLED`."""
-        pairs = (
-            (self.max_abs_q1, other.max_abs_q1),
-            (self.max_abs_w, other.max_abs_w),
-            (self.impact_speed, other.impact_speed),
-            (self.impacts_per_period, other.impacts_per_period),
-        )
-        return all(np.isnan(a) or abs(a - b) <= SETTLED * max(abs(a), abs(b)) for a, b in pairs)
+PER_PERIOD = 200  # instants of a cycle
 
 
 def observe(found: Attractor) -> Observation:
@@ -75,15 +29,22 @@ def observe(found: Attractor) -> Observation:
 
     A motion that recurs is followed over one cycle. Another one is followed until its largest values and its mean
     number of impacts have changed by less than 1 % while the time of observation doubled: a modulated motion
-    grows, bursts and fades over tens or hundreds of periods, and a few of them show only a part of that.
+    grows, bursts and fades over tens or hundreds of periods, and a few of them show only a part of that. Where a simulation
+    takes long, the last part of that by which the motion was recognised must do.
     """
-    run = _Tally(found)
+    simulator = _simulator(found)
+    first, longest = simulator.observed
+    tally = _Tally(simulator)
     if found.recurrent:
-        return run.cycle()
-    length, before = float(FIRST), run.go_on(FIRST)
-    while run.moving and length < LONGEST:
+        seen = tally.go_on((found.periods or 1) + 1e-9, PER_PERIOD)  # the event it starts with comes again
+        speed = seen.impact_speed if found.impacts else 0.0
+        return replace(seen, impact_speed=speed, impacts_per_period=found.impacts_per_period)
+    if not longest:
+        return tally.add(found.trajectory)
+    length, before = first, tally.go_on(first)
+    while tally.moving and length < longest:
         length *= 2.0
-        now = run.go_on(length)
+        now = tally.go_on(length)
         if now.near(before):
             return now
         before = now
@@ -91,106 +52,97 @@ def observe(found: Attractor) -> Observation:
 
 
 def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
-    """The attractor with its kind and impacts as `observe` sees them; one that recurs is returned as it is."""
-    if found.recurrent:
+    """The attractor with its kind and impacts as `observe` sees them; one that recurs, or rests, is returned as it is."""
+    simulator = simulator_of(found.model, found.params)
+    if found.recurrent or found.kind == simulator.resting or not simulator.observed[1]:
         return found
     seen = seen or observe(found)
-    return replace(
-        found,
-        kind="chatter" if seen.contacts * OFTEN >= seen.periods else "chaotic",
-        impacts_per_period=seen.impacts_per_period,
-        impact_speed=seen.impact_speed,
-    )
+    kind = "chatter" if seen.contacts * OFTEN >= seen.periods else simulator.wandering
+    return replace(found, kind=kind, seen=seen)
 
 
-def measure_names(model: Model) -> tuple[str, ...]:
+def measure_names(model: Varying) -> tuple[str, ...]:
     """Measures in a sweep's rows.
 
-    ``max_abs_w``; ``impact_speed``: fastest approach |w'-|; ``impacts_per_period``: per forcing period; in the coupled model
-    ``max_abs_q1``: largest displacement of the cavity, and of motions that do not recur ``modulated_low``, ``modulated_mean``,
-    ``modulated_high``: of its largest displacements in each forcing period, ``silent``: share of the periods without an impact; in the
-    reduced model ``C2``: squared amplitude of its motion. Motions that do not recur are looked at until these numbers settle.
+    How far the motion goes: ``max_abs_q1`` of the oscillator and ``max_abs_w`` in the cavity (in the reduced model, whose cavity is shaken as
+    prescribed, ``C2``, the squared amplitude of its motion), of a declared machine ``max_`` and ``min_`` of its first state. The fastest
+    approach ``impact_speed``, of a declared machine ``approach_speed``; ``impacts_per_period``: per forcing period, of a self-excited machine per unit
+    of time. Where more than the absorber moves, and is forced, of motions that do not recur ``modulated_low``, ``modulated_mean``,
+    ``modulated_high``: of the largest displacements in each forcing period, and ``silent``: the share of the periods without an impact.
     """
-    reduced = "amplitude" in model.parameter_names
-    own = ("C2",) if reduced else ("max_abs_q1",)
-    return (*own, "max_abs_w", "impact_speed", "impacts_per_period", *(() if reduced else (*BAND, SILENT)))
+    return flow_of(model).simulated_names(model)
 
 
 def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
     """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
-    seen, model, params = observe(found), found.model, found.params
-    known = {name: getattr(seen, name, np.nan) for name in measure_names(model)}
-    if "C2" in known:
-        known["C2"] = float(params[model.parameter_names.index("amplitude")]) ** 2
-    elif not found.recurrent:
-        known |= modulation(model, found.machine, params, found.state).measures
-    return lasting(found, seen), gauged(model, params, known)
+    model, params, orbit, flow = found.model, found.params, found.orbit, flow_of(found.model)
+    names = measure_names(model)
+    known = dict.fromkeys(names, np.nan)
+    speed = next(name for name in names if name.endswith("_speed"))
+    if orbit is not None and len(orbit.nodes) and not flow.loose(model, orbit.word):
+        own = flow.measure_names(model)
+        taken = orbit.measures(*(name for name in names if name in own))
+        known |= {speed: 0.0, **taken, "impacts_per_period": found.impacts_per_period}
+        return found, known
+    seen = observe(found)
+    rate = seen.impacts_per_period / (1.0 if model.forced else 2.0 * np.pi)
+    known |= {**seen.extremes, speed: seen.impact_speed, "impacts_per_period": rate}
+    if BAND[0] in names and not found.recurrent and found.kind != _simulator(found).resting:
+        known |= modulation(_modulated_part(found)).measures
+    return lasting(found, seen), flow.in_units(model, params, known)
 
 
 def modulated(found: Attractor, measures: Mapping[str, float]) -> str:
     """How a motion is modulated, chaotic by its largest Lyapunov exponent; empty where it recurs or nothing but the absorber moves."""
     if not modulation_of(measures):
         return ""
-    growth = lyapunov(found.model.name, found.state, found.params)
-    return modulation_of(measures, wandering(*growth, True) == "chaotic")
+    return modulation_of(measures, wandering(*_simulator(found).growth(), True) == "chaotic")
 
 
 def dots(found: Attractor, measures: Mapping[str, float]) -> list[float]:
-    """What a picture shows: the largest |q1|, or B at every impact."""
-    return [float(measures["max_abs_q1"])] if "max_abs_q1" in measures else found.dots
+    """What a picture shows: one measure of the whole motion, B or the approach speed of every impact, or the extremes of the first state."""
+    names = flow_of(found.model).swept(found.model)
+    return [float(measures[name]) for name in names if name in measures] or found.dots
+
+
+def _simulator(found: Attractor) -> Simulator:
+    """On the motion."""
+    simulator = simulator_of(found.model, found.params)
+    simulator.go_on(found.state)
+    return simulator
+
+
+def _modulated_part(found: Attractor) -> Trajectory:
+    """Where the modulation is seen."""
+    simulator = _simulator(found)
+    periods = simulator.modulated
+    return simulator.run(periods, int(MOST_EVENTS * (periods + 1))) if periods else found.trajectory
 
 
 class _Tally:
     """A motion simulated piece by piece, and what has been seen of it so far."""
 
-    def __init__(self, found: Attractor) -> None:
-        self.found, self.state = found, found.state.copy()
-        self.begin = self._time()
-        self.impacts, self.contacts, self.moving = 0, 0, True
-        self.q1 = 0.0 if found.machine.moving_cavity else np.nan
-        self.w = self.speed = 0.0
-        frequency = float(found.params[found.model.parameter_names.index("frequency")])
-        self.per_period = int(np.ceil(min(200.0, PER_OSCILLATION * max(1.0, 1.0 / frequency))))
+    def __init__(self, simulator: Simulator) -> None:
+        self.simulator, self.moving = simulator, True
+        self.seen = Observation(0.0, {}, 0.0, 0.0, 0)
 
-    def cycle(self) -> Observation:
-        """One cycle, of the solved orbit where there is one: the motion itself may still be on its way to it."""
-        found = self.found
-        if len(found.codes) and found.residual < SOLVED:
-            code, mode = int(found.codes[0]), int(found.modes[0])
-            self.state = state_of(found.machine, found.params, code, mode, found.nodes[0])
-            self.begin = self._time()
-        self._add((found.periods or 1) + 1e-9, per_period=200)  # the event it starts with comes again
-        speed = self.speed if found.impacts else 0.0
-        return Observation(self._lasted(), self.q1, self.w, speed, found.impacts_per_period, self.contacts)
-
-    def go_on(self, length: float) -> Observation:
+    def go_on(self, length: float, per_period: int = 0) -> Observation:
         """Simulate until `length` periods have been seen in all."""
-        while self.moving and self._lasted() < length - 1e-9:
-            self._add(min(PIECE, length - self._lasted()), self.per_period)
-        lasted = self._lasted()
-        rate = self.impacts / lasted if lasted > 0.0 else 0.0
-        return Observation(lasted, self.q1, self.w, self.speed, rate, self.contacts)
+        while self.moving and self.seen.periods < length - 1e-9:
+            piece = min(PIECE, length - self.seen.periods)
+            run = self.simulator.run(piece, int(MOST_EVENTS * (piece + 1.0)))
+            self.moving = run.lasted > 0.0 and not run.stopped
+            self.add(run, per_period)
+        return self.seen
 
-    def _time(self) -> float:
-        return float(self.state[TURNS] + self.state[PSI] / TWO_PI)
-
-    def _lasted(self) -> float:
-        return self._time() - self.begin
-
-    def _add(self, periods: float, per_period: int) -> None:
-        found, begin, time = self.found, self.state.copy(), self._time()
-        most = int(MOST_EVENTS * (periods + 1.0))
-        seen: Any = collect(found.machine, self.state, found.params, time + periods, most)
-        run = Trajectory(found.model, found.params, found.machine, begin, self.state.copy(), *seen)
-        hits = np.abs(run.rows[run.codes < 2, 3])
-        self.impacts += hits.size
-        self.contacts += int(np.count_nonzero(run.codes == HOLD))
-        self.speed = max(self.speed, float(hits.max(initial=0.0)))
-        reach = np.append(run.states[:, 1], run.end[1])
-        if found.model.frictionless(found.params):  # turns are no events there
-            reach = np.append(reach, run.sample().w)
-        left, right = found.machine.walls(found.params)
-        self.w = min(max(left, -right), max(self.w, float(np.abs(reach).max())))
-        if found.machine.moving_cavity:
-            self.q1 = max(self.q1, run.peak_cavity(per_period))
-        self.moving = run.status in (TIME_REACHED, EVENTS_FULL) and self._time() > time
+    def add(self, run: Trajectory, per_period: int = 0) -> Observation:
+        """What has been seen with one more piece."""
+        seen, extremes = self.seen, run.extremes(per_period)
+        for name, value in seen.extremes.items():
+            extremes[name] = (min if name.startswith("min_") else max)(value, extremes[name])
+        impacts = round(seen.impacts_per_period * seen.periods) + run.impacts
+        periods = seen.periods + run.lasted
+        speed = max(seen.impact_speed, float(run.approaches().max(initial=0.0)))
+        rate = impacts / periods if periods > 0.0 else 0.0
+        self.seen = Observation(periods, extremes, speed, rate, seen.contacts + run.chatters)
+        return self.seen

@@ -1,196 +1,166 @@
-"""From a simulated motion to its attractor: recurrence of events, polished to an orbit."""
+"""From a simulated motion to its attractor: what nearly returns is solved for."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from orbits.attractors.attractor import Attractor
-from orbits.attractors.creeping import move_on
-from orbits.attractors.polish import first_event, is_symmetric, polish, root_length, rotate, touches
-from orbits.flows.protocol import SimulationError
-from orbits.machines.states import event_states, nodes_of
-from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, REST, TURNS, Machine, V
-from orbits.simulation.driver import collect, skip
-from orbits.simulation.native import NativeSimulator
-from orbits.simulation.return_map import cyclic_distance
-from orbits.simulation.trajectory import TWO_PI
+from orbits.contacts.letters import SLIP
+from orbits.flows.protocol import Simulator
+from orbits.flows.solving import solved_at
+from orbits.flows.trajectory import TWO_PI, Trajectory
+from orbits.orbit import Orbit
+from orbits.words import Word
 
-if TYPE_CHECKING:
-    from orbits.machines.base import Model
-
-EVENTS_PER_PERIOD = 400
-TRANSIENT, PATIENCE = 300.0, 2  # forcing periods left out first, and how often they are prolonged fourfold
-IN_SWEEPS = 2  # the same at each value of a sweep: weakly damped motions settle late
-UNSTABLE = 1e-5
-PASSING, CLOSED = 0.99, 1e-9  # a slower recurrence, open by more, passes beside a fold
-NEARLY = 1e-3  # nodes of a slow motion differ by less from one recurrence to the next
-LONGEST = 200_000  # forcing periods for which a slow or undamped transient is waited for
-DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed four times as long; t^(-1/2) gives 8
-TO_WALLS = 8  # times that a creeping motion is moved on to a wall
-AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
+NEARLY = 1e-3  # difference of points, relative to 1 + points, at which a motion may have returned
+SHORT = 4  # forcing periods of the cycles that are looked for first
+EXACT = 1e-13  # last step of Newton's method
+SOLVED = 1e-9  # largest residual of a cycle, in units of the unknowns above 1
+FAR = 0.1  # of a cycle from the simulated motion, relative to 1 + states
+REPELS = 1.0 + 1e-6  # an orbit with a larger multiplier repels, and ...
+CLOSED = 1e-9  # ... a return to it that is open by more, relative to 1 + points, only passes it by
+DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed longer; t^(-1/2) gives 8
+MOVES = 8  # times that a creeping motion is moved on
+PLAIN = 40  # events up to which the plainest reading is looked for
 
 
 def attracted(
-    simulator: NativeSimulator, transient: float, max_period: int, tolerance: float, patience: int
+    simulator: Simulator, transient: float, max_period: int, tolerance: float, patience: int
 ) -> Attractor:
-    """What the motion of a simulator leads to, one that does not recur not yet observed (see `orbits.attractors.observation.lasting`)."""
-    model, engine, params = simulator.model, simulator.engine, simulator.params
-    return settle(model, engine, params, simulator.state, transient, max_period, tolerance, patience)
+    """What the motion of a simulator leads to: simulated until it returns to itself; see `orbits.attractors.observation.lasting` for the rest.
 
-
-def settle(
-    model: Model,
-    engine: Machine,
-    params: np.ndarray,
-    state: np.ndarray,
-    transient: float = 300,
-    max_period: int = 16,
-    tolerance: float = 1e-6,
-    patience: int = 2,
-) -> Attractor:
-    """The attractor of a state, which is moved along."""
-    state[TURNS] = 0.0
-    length = float(transient)
-    window = _Window(engine, params)
-    attempt, recurring, moved = 0, None, 0
+    Parameters
+    ----------
+    simulator : Simulator
+        Moved on.
+    transient : float
+        Forcing periods (of a self-excited machine: events) simulated first; more each time nothing has returned.
+    max_period : int
+        Longest period looked for, in forcing periods (events per cycle: 25 times as many).
+    tolerance : float
+        Largest difference of points, relative to 1 + points, that counts as a return; later, and at last, what nearly returns and attracts.
+    patience : int
+        How often the transient is prolonged.
+    """
+    waiting, model, begun = simulator.waiting, simulator.model, simulator.time
+    early = transient // waiting.early if waiting.early else 0
+    if early:
+        simulator.skip(early)
+        for longest in sorted({min(SHORT, max_period), max_period}):
+            run = simulator.look(longest)
+            for found in _candidates(simulator, run, longest, tolerance):
+                if _attracts(found[0]):
+                    return _attractor(simulator, run, *found[:2])
+    attempt, moved, length, before = 0, 0, transient - early, None
     while True:
         last = attempt >= patience
-        status = skip(engine, state, params, state[TURNS] + length, int(EVENTS_PER_PERIOD * (length + 1)))
-        if status == FAILED:
-            raise SimulationError(
-                f"the motion of {model.name!r} is not finite: give parameters of moderate size"
+        simulator.skip(length)
+        run = simulator.look(max_period)
+        rests = simulator.rests(run, last)
+        if rests:
+            rest = Orbit.at_rest(model, simulator.params) if model.in_cavity else None
+            return Attractor(
+                model, simulator.params, simulator.resting, 0, rest, run, 0, simulator.state.copy()
             )
-        if status != REST:
-            window.record(state, max_period)
-        if window.at_rest and not last and _will_slip(model, params):
-            length, attempt = 4.0 * (length or window.length), attempt + 1
-            continue  # the oscillator is still growing, or between two beats
-        if status == REST or window.at_rest:
-            if not _comes_to_rest(engine, params, state) and not last:
-                length, attempt = 4.0 * (length or window.length), attempt + 1
-                continue  # it slips after all
-            return _attractor(model, engine, params, "stuck", 0, window, state)
-        if not len(window.codes):  # without friction a free motion between the walls has no events
-            return _attractor(model, engine, params, "sliding", 1, window, state)
-        if moved < TO_WALLS and move_on(
-            engine, params, state, window.nodes, window.codes, window.modes, max_period
-        ):
+        if rests is None:
+            attempt, length = attempt + 1, waiting.longer * (length or run.lasted)
+            continue
+        if model.in_cavity and not len(run):  # without friction a free motion between the walls has no events
+            return Attractor(model, simulator.params, "sliding", 1, None, run, 0, simulator.state.copy())
+        if moved < MOVES and simulator.move_on(run, max_period):
             moved += 1
             continue
-        found = _recognise(engine, params, window, max_period, tolerance, last)
-        before, recurring = recurring, next(iter(_returns(window, max_period, NEARLY)), None)
         # next to a bifurcation a motion may recur but for a drift that fades or grows: it is given time as long as it does; one that
         # stays as it is belongs to a longer cycle, or to narrow bands
-        slow = patience > 0 and state[TURNS] < LONGEST and _drifts(before, recurring)
-        if found is not None:
-            cycle = _cycle(model, engine, params, state, window, *found)
-            sizes = np.abs(cycle.multipliers)
-            passing = cycle.residual > CLOSED and np.any(sizes > PASSING)
-            if not passing and (not np.any(sizes > 1.0 + UNSTABLE) or (last and not slow)):
-                return cycle
-            state[RATE] *= 1.0 + 1e-6  # a motion that only rounding keeps where it is: help it to leave
-        if last and not slow:
-            break
-        length, attempt = 4.0 * (length or window.length), attempt + 1
-    kind = "chatter" if np.any(window.codes == HOLD) else "chaotic"
-    return _attractor(model, engine, params, kind, 0, window, state)
+        now = next(iter(returns(run, max_period, NEARLY)), None)
+        drifts, before = _drifts(before, now), now
+        waited = patience > 0 and simulator.time - begun < waiting.slow and drifts
+        last = last and not waited
+        for near in (tolerance, NEARLY) if last or attempt else (tolerance,):
+            for found in _candidates(simulator, run, max_period, near):
+                if _attracts(found[0]) or (last and found[2] <= CLOSED):
+                    return _attractor(simulator, run, *found[:2])
+                simulator.push()
+        if run.held or not (len(run) or model.forced):
+            last = True
+        if last or simulator.count > waiting.events:
+            kind = simulator.resting if run.held else "chatter" if run.chatters else simulator.wandering
+            return Attractor(model, simulator.params, kind, 0, None, run, 0, simulator.state.copy())
+        attempt, length = attempt + 1, waiting.longer * (length or run.lasted)
 
 
-def _comes_to_rest(engine: Machine, params: np.ndarray, state: np.ndarray) -> bool:
-    """Wait, with the absorber stuck, until its oscillator has settled; False if it slips meanwhile."""
-    if not engine.moving_cavity:
-        return True  # its cavity moves as prescribed
-    length = 64.0
-    while state[TURNS] < LONGEST:
-        before = state.copy()
-        skip(engine, state, params, before[TURNS] + before[PSI] / TWO_PI + length, 1)
-        if state[MODE] != 0.0:
-            return False
-        change = np.abs(state[V:] - before[V:]).max()
-        if change <= AT_REST * np.abs(state[V:]).max():
-            break
-        length *= 2.0
-    return True
+Found = tuple[Orbit | int, int, float]
+"""An orbit, or the events of a cycle that no word describes; its forcing periods; how far the motion is from having returned to it."""
 
 
-def _will_slip(model: Model, params: np.ndarray) -> bool:
-    """Whether friction cannot hold the absorber once the oscillator has settled."""
-    reserve = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params)))
-    return bool(reserve <= -1e-9)
-
-
-class _Window:
-    """The motion looked at: a few periods after the transient."""
-
-    def __init__(self, engine: Machine, params: np.ndarray) -> None:
-        self.engine, self.params = engine, params
-        self.codes, self.modes = np.empty(0, np.int8), np.empty(0, np.int8)
-        self.rows = np.empty((0, engine.row))
-        self.nodes = np.empty((0, 2))
-        self.length = 0.0
-        self.at_rest = False
-
-    def record(self, state: np.ndarray, max_period: int) -> None:
-        """Run on for two of the longest recurrences."""
-        begin = state[TURNS] + state[PSI] / TWO_PI
-        self.length = 2.0 * max_period + 1.0
-        most = int(EVENTS_PER_PERIOD * self.length)
-        self.codes, self.modes, self.rows, status = collect(
-            self.engine, state, self.params, begin + self.length, most
-        )
-        self.nodes = nodes_of(self.engine, self.params, self.codes, self.modes, self.rows)
-        self.at_rest = status == REST or (not len(self.codes) and state[RATE] == 0.0 and state[MODE] == 0.0)
-
-
-def _recognise(
-    engine: Machine, params: np.ndarray, window: _Window, max_period: int, tolerance: float, last: bool
-) -> tuple[int, int] | None:
-    """Events and periods of the shortest recurrence at the window's end.
-
-    At the last attempt a slowly converging motion may still be recognised: looser, but then the orbit must
-    exist and be stable.
-    """
-    for slack in (tolerance, NEARLY) if last else (tolerance,):
-        for length, periods, _ in _returns(window, max_period, slack):
-            if slack <= tolerance:
-                return length, periods
-            codes, modes = window.codes[-length:], window.modes[-length:]
-            nodes, residual, multipliers = polish(
-                engine, params, codes, modes, window.nodes[-length:], periods
-            )
-            gap = cyclic_distance(nodes, window.nodes[-length:])
-            if residual < 1e-9 and gap < 10.0 * slack and np.all(np.abs(multipliers) < 1.0 + 1e-6):
-                return length, periods
+def recurring(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Orbit | None:
+    """The shortest cycle at the end of a run that its equations confirm and that attracts, or on which the motion is."""
+    for orbit, _, gap in _candidates(simulator, run, max_period, near):
+        if isinstance(orbit, Orbit) and (gap <= CLOSED or _attracts(orbit)):
+            return plainest(orbit)
     return None
 
 
-def _returns(window: _Window, max_period: int, slack: float) -> list[tuple[int, int, float]]:
-    """Candidates (events, periods, largest difference), shortest first: the last cycle repeats the one before it."""
-    codes, modes, nodes = window.codes, window.modes, window.nodes
-    n = len(codes)
+def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Iterator[Found]:
+    """The cycles at the end of a run, the shortest first, as far as their equations confirm them."""
+    if not len(run):
+        yield from _eventless(simulator, run, max_period, near)
+        return
+    if near >= NEARLY and run.piled.any():
+        return  # what nearly returns between two rests on a wall is no cycle
+    tried = 0
+    for length, periods, gap in returns(run, max_period, near):
+        if run.piled[-length:].any():
+            yield length, periods, gap
+            return
+        if tried and length % tried:
+            continue
+        tried = length
+        orbit = _solved(run, len(run) - length, len(run), periods, FAR)
+        if orbit is not None:
+            yield orbit, orbit.periods, gap
+
+
+def _attracts(found: Orbit | int) -> bool:
+    """Whether a cycle does not repel; one without a word is only seen because it attracts."""
+    return isinstance(found, int) or not np.any(np.abs(found.multipliers) > REPELS)
+
+
+def _attractor(simulator: Simulator, run: Trajectory, found: Orbit | int, periods: int) -> Attractor:
+    model, params, state = simulator.model, simulator.params, simulator.state.copy()
+    if isinstance(found, int):
+        return Attractor(model, params, "chatter", periods, None, run, found, state)
+    kind = found.flow.kind(found) if len(found.word) else "periodic"
+    return Attractor(model, params, kind, found.periods, plainest(found), run, len(found.word), state)
+
+
+def returns(run: Trajectory, max_period: int, near: float) -> Iterator[tuple[int, int, float]]:
+    """Candidates (events, forcing periods, largest difference relative to 1 + points), shortest first: the last cycle repeats the one before it."""
+    n, labels = len(run), run.labels
     if n < 2:
-        return []
-    found = []
-    gaps = (nodes[-1, 0] - nodes[:, 0]) / TWO_PI
-    near = (codes == codes[-1]) & (modes == modes[-1]) & (np.abs(gaps - np.round(gaps)) * TWO_PI < slack)
-    for j in np.flatnonzero(near)[::-1]:
-        periods = int(np.round(gaps[j]))
-        length = n - 1 - j
-        if periods < 1 or length < 1:
-            continue
+        return
+    clocks, points, forced = run.clocks[1:], run.points, run.model.forced
+    size = 1.0 + float(np.abs(points).max())
+    alike = labels[: n - 1] == labels[-1]
+    turns = (clocks[-1] - clocks[: n - 1]) / TWO_PI
+    whole = np.round(turns) if forced else np.ones(n - 1)
+    if forced:
+        alike &= (np.abs(turns - whole) * TWO_PI < near * size) & (whole >= 1)
+    for j in np.flatnonzero(alike)[::-1]:
+        length, periods = n - 1 - int(j), int(whole[j])
         if periods > max_period or 2 * length > n:
-            break
+            return
         here, before = slice(n - length, n), slice(n - 2 * length, n - length)
-        if not (np.array_equal(codes[here], codes[before]) and np.array_equal(modes[here], modes[before])):
+        if not np.array_equal(labels[here], labels[before]):
             continue
-        shift = nodes[here] - nodes[before]
-        shift[:, 0] -= TWO_PI * periods
-        gap = float(np.abs(shift).max())
-        if gap < slack:
-            found.append((int(length), periods, max(gap, np.finfo(float).tiny)))
-    return found
+        gap = float(np.abs(points[here] - points[before]).max()) / size
+        if forced:
+            late = clocks[here] - clocks[before] - TWO_PI * periods
+            gap = max(gap, float(np.abs(late).max()) / size)
+        if gap < near:
+            yield length, periods, max(gap, np.finfo(float).tiny)
 
 
 def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] | None) -> bool:
@@ -200,101 +170,73 @@ def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] |
     return not 1.0 / DRIFTS < now[2] / before[2] < DRIFTS
 
 
-def _cycle(
-    model: Model,
-    engine: Machine,
-    params: np.ndarray,
-    state: np.ndarray,
-    window: _Window,
-    length: int,
-    periods: int,
-) -> Attractor:
-    """The polished attractor of a recurrence, in canonical order."""
-    codes, modes, nodes, rows = (
-        column[-length:] for column in (window.codes, window.modes, window.nodes, window.rows)
-    )
-    kept = ~touches(codes, nodes, np.abs(rows[:, 3]) / np.prod(model.natural_units(params)))
-    if not kept.all():
-        codes, modes, rows = codes[kept], modes[kept], rows[kept]
-        nodes = model.at_home(codes, nodes[kept], params)
-    # polish from an impact where there is one, else from a turn: there all unknowns of a node are free
-    for wanted in ((0, 1), (2,), (3,), (4, 5)):
-        places = np.flatnonzero(np.isin(codes, wanted))
-        if len(places):
-            break
-    speeds = np.abs(rows[places, 4])
-    codes, modes, nodes = rotate(codes, modes, nodes, int(places[np.argmax(speeds)]), periods)
-    nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
-    root = root_length(codes, modes, nodes, periods)
-    if root < len(codes):  # a slow approach that alternates looks like a longer recurrence
-        codes, modes, nodes, periods = codes[:root], modes[:root], nodes[:root], periods * root // len(codes)
-        nodes, residual, multipliers = polish(engine, params, codes, modes, nodes, periods)
-    codes, modes, nodes = rotate(codes, modes, nodes, first_event(codes, modes, nodes), periods)
-    impacts = int(np.count_nonzero(codes < 2))
-    kind = "chatter" if np.any(codes == HOLD) else "periodic" if impacts else "sliding"
-    return _attractor(
-        model, engine, params, kind, periods, window, state, codes, modes, nodes, residual, multipliers
-    )
+def solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
+    """Events `first` to `last` - 1 of a run as an orbit, if its equations have a real solution within `far` of them; see `polished`."""
+    orbit = _solved(run, first, last, periods, far)
+    return None if orbit is None else plainest(orbit)
 
 
-def recurring(
-    model: Model,
-    engine: Machine,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    rows: np.ndarray,
-    periods: int,
-) -> Attractor:
-    """The polished cycle next to a piece of a motion that nearly returns after so many forcing periods, stable or not."""
-    window = _Window(engine, params)
-    window.codes, window.modes, window.rows, window.length = codes, modes, rows, float(periods)
-    window.nodes = nodes_of(engine, params, codes, modes, rows)
-    state = event_states(engine, modes, rows)[0]
-    return _cycle(model, engine, params, state, window, len(codes), periods)
+def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
+    word, nodes = run.cycle(first, last)
+    if run.model.forced:
+        nodes[:, 0] -= TWO_PI * np.floor(nodes[0, 0] / TWO_PI)
+    return polished(Orbit(run.model, word, periods, nodes, run.params), far)
 
 
-def _attractor(
-    model: Model,
-    engine: Machine,
-    params: np.ndarray,
-    kind: str,
-    periods: int,
-    window: _Window,
-    state: np.ndarray,
-    codes: np.ndarray | None = None,
-    modes: np.ndarray | None = None,
-    nodes: np.ndarray | None = None,
-    residual: float = 0.0,
-    multipliers: np.ndarray | None = None,
-) -> Attractor:
-    width = engine.node
-    codes = np.empty(0, np.int8) if codes is None else codes
-    modes = np.empty(0, np.int8) if modes is None else modes
-    nodes = np.empty((0, width)) if nodes is None else nodes
-    hits = np.abs(window.rows[window.codes < 2, 3])
-    rate = (
-        np.count_nonzero(codes < 2) / periods
-        if periods
-        else hits.size / window.length
-        if window.length
-        else 0.0
-    )
-    home = model.at_home(codes, nodes, params)
-    return Attractor(
-        model=model,
-        params=params,
-        machine=engine,
-        kind=kind,
-        periods=periods,
-        codes=codes,
-        modes=modes,
-        nodes=nodes,
-        residual=residual,
-        multipliers=np.full(width, np.nan + 0j) if multipliers is None else multipliers,
-        symmetric=model.has_mirror(params)
-        and (kind == "stuck" or is_symmetric(codes, modes, home, model.image(codes, home, params))),
-        state=state.copy(),
-        impacts_per_period=0.0 if kind == "stuck" else float(rate),
-        impact_speed=float(hits.max()) if hits.size and kind != "stuck" else 0.0,
-    )
+def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:
+    """The real orbit with the same word next to a guess, its shortest form; None if there is none within `far` (relative to 1 + states)."""
+    system = orbit.system(symmetric=False)
+    u, residual = solved_at(system, system.reduce(orbit.nodes), system.value(orbit.params), EXACT)
+    if not residual < SOLVED * max(1.0, float(np.abs(u).max(initial=0.0))):
+        return None
+    nodes = system.expand(u)[: len(orbit.nodes)]
+    moved = nodes - orbit.nodes
+    for entry in orbit.flow.loose(orbit.model, orbit.word):  # shifted as a whole it is the same motion
+        moved[:, entry] -= moved[:, entry].mean()
+    if np.abs(moved).max() > far * (1.0 + np.abs(orbit.nodes[:, 1:]).max()):
+        return None
+    found = Orbit(orbit.model, orbit.word, orbit.periods, nodes, orbit.params)
+    if not found.real:
+        return None
+    root = found.root()
+    return found if root.periods == found.periods and len(root.nodes) == len(found.nodes) else root
+
+
+def plainest(orbit: Orbit) -> Orbit:
+    """The orbit read from the event from which its word is written shortest, never from a slip, in its first forcing period."""
+    word = orbit.word
+    if len(word) > 1:
+        places = [i for i in range(len(word)) if word.letter(i).kind != SLIP] or [0]
+        orbit = orbit.rotate(min(places, key=lambda i: _writing(orbit, i)))
+    if orbit.forced:
+        orbit.nodes[:, 0] -= TWO_PI * np.floor(orbit.nodes[0, 0] / TWO_PI)
+    return orbit
+
+
+def _writing(orbit: Orbit, place: int) -> tuple[int, str | tuple[str, ...], float]:
+    """Length and text of the word from an event on, then the phase."""
+    word, phase = orbit.word.rotate(place), float(orbit.nodes[place, 0]) % TWO_PI
+    return (len(word.text), word.text, phase) if len(word) <= PLAIN else (0, word.events, phase)
+
+
+def _eventless(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Iterator[Found]:
+    """The cycles of a motion without events: forced, once per forcing period at phase zero; self-excited, that on which it settles."""
+    model, params = run.model, run.params
+    word = Word((), (simulator.modes,), model.alphabet)
+    if not model.forced:
+        from orbits.flows.page.smooth import cycle_near
+
+        found = cycle_near(model, word, params, simulator.point)
+        orbit = None if found is None else polished(Orbit(model, word, 1, found[None], params))
+        if orbit is not None:
+            yield orbit, 1, 0.0
+        return
+    times = np.arange(np.ceil(run.clocks[0] / TWO_PI), np.floor(run.finish / TWO_PI) + 1.0)
+    states = run.coordinates(times)
+    size = 1.0 + float(np.abs(states).max())
+    for periods in range(1, min(max_period, len(states) - 1) + 1):
+        gap = float(np.abs(states[-1] - states[-1 - periods]).max()) / size
+        if gap <= near:
+            orbit = polished(Orbit(model, word, periods, np.array([[0.0, *states[-1]]]), params))
+            if orbit is not None:
+                yield orbit, orbit.periods, gap

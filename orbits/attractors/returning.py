@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors.fixed_points import fixed_point
-from orbits.flows.protocol import Record, SimulationError, Simulator, later
+from orbits.flows.protocol import SimulationError, Simulator, later
+from orbits.flows.trajectory import Trajectory
 
 WARM = (
     3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
@@ -22,7 +23,7 @@ def returning_cycles(
     starts: np.ndarray,
     box: np.ndarray,
     longest: int,
-    solve: Callable[[Record, int, int, int], Any],
+    solve: Callable[[Trajectory, int, int, int], Any],
 ) -> Iterator[Any]:
     """Cycles of up to `longest` forcing periods with events, each once.
 

@@ -7,37 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.attractors.attractor import Attractor
+from orbits.attractors.observation import described, lasting
+from orbits.attractors.recurrence import attracted
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.simulation.runs import simulator_of
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from orbits.machines.varying import Varying
     from orbits.orbit import Orbit
 
 
-def recognising(model: Varying) -> ModuleType:
-    """The module by which attractors of a machine are recognised."""
-    if model.flow == "page":
-        from orbits.attractors import page
-
-        return page
-    from orbits.attractors import recurrence
-
-    return recurrence
-
-
-def observing(model: Varying) -> ModuleType:
-    """The module that says what is observed on them."""
-    if model.flow == "page":
-        return recognising(model)
-    from orbits.attractors import observation
-
-    return observation
-
-
-TOLERANCE = 1e-6  # largest difference of two nodes that may count as a return
 SAME = 1e-4  # difference of the nodes of one motion met twice
 DRAWS = 200  # starts drawn at most to find one that can be simulated
 
@@ -48,11 +28,11 @@ def find_attractor(
     *,
     transient: float | None = None,
     max_period: int = 16,
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = None,
     patience: int | None = None,
     observed: bool = True,
     **parameters: float,
-):
+) -> Attractor:
     """Simulate, leave out the transient, and recognise what is left.
 
     Parameters
@@ -64,8 +44,8 @@ def find_attractor(
         Forcing periods left out first, 300 (of a self-excited machine events, 100).
     max_period : int
         Longest recurrence looked for, in forcing periods (events of a self-excited cycle: 25 times as many).
-    tolerance : float
-        Largest difference of two nodes of a built-in machine that may count as a return; the orbit is then polished.
+    tolerance : float, optional
+        Largest difference of two points, relative to 1 + points, that may count as a return, 1e-6 (1e-5 of a declared machine); the orbit is then solved for.
     patience : int, optional
         How often the transient is prolonged, fourfold (page: twofold, four times), when nothing recurs; 2.
     observed : bool
@@ -75,7 +55,7 @@ def find_attractor(
 
     Returns
     -------
-    Attractor or PageAttractor
+    Attractor
 
     Raises
     ------
@@ -86,30 +66,20 @@ def find_attractor(
         raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
     if transient is not None and not (np.isfinite(transient) and transient >= 0.0):
         raise SimulationError(f"transient = {transient}: give a number of forcing periods, 0 or above")
-    how = recognising(model)
     simulator = simulator_of(model, model.vector(parameters))
     simulator.put(start)
-    length = how.TRANSIENT if transient is None else transient
-    tries = how.PATIENCE if patience is None else patience
-    found = how.attracted(simulator, length, max_period, tolerance, tries)
-    return observing(model).lasting(found) if observed else found
+    how = simulator.waiting
+    length = how.transient if transient is None else transient
+    tries = how.tries if patience is None else patience
+    found = attracted(simulator, length, max_period, how.returned if tolerance is None else tolerance, tries)
+    return lasting(found) if observed else found
 
 
-def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0):
+def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0) -> Attractor:
     """The attractor of the motion on which a simulator is, which is moved on; None: as patient as a sweep."""
-    how = recognising(simulator.model)
-    tries = how.IN_SWEEPS if patience is None else patience
-    return how.attracted(simulator, transient, max_period, TOLERANCE, tries)
-
-
-def described(found: Any) -> tuple[Any, dict[str, float]]:
-    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
-    return observing(found.model).described(found)
-
-
-def modulated(found: Any, measures: Mapping[str, float]) -> str:
-    """How a motion is modulated, by its measures: ``weak modulation`` and the like (see `contvines.shared.modulation`); empty where it recurs."""
-    return observing(found.model).modulated(found, measures)
+    how = simulator.waiting
+    tries = how.in_sweeps if patience is None else patience
+    return attracted(simulator, transient, max_period, how.returned, tries)
 
 
 def beginning_with(orbit: Orbit, transient: float, max_period: int) -> dict[str, float]:
@@ -121,14 +91,9 @@ def beginning_with(orbit: Orbit, transient: float, max_period: int) -> dict[str,
     return described(goes_on(simulator, transient, max_period))[1]
 
 
-def measure_names(model: Varying) -> tuple[str, ...]:
-    """Measures in a sweep's rows; see `orbits.attractors.observation.measure_names` and `orbits.attractors.page.measure_names`."""
-    return observing(model).measure_names(model)
-
-
 def different_attractors(
     model: Varying, count: int, seed: int = 0, size: float = 1.0, **options: Any
-) -> list[Any]:
+) -> list[Attractor]:
     """The different attractors that `count` random starts lead to, in the order in which they are met; mirror images are one.
 
     Parameters
@@ -148,7 +113,7 @@ def different_attractors(
     """
     generator = np.random.default_rng(seed)
     params = model.vector({k: v for k, v in options.items() if k in model.parameter_names})
-    found: list[Any] = []
+    found: list[Attractor] = []
     for _ in range(count):
         refused = SimulationError("")
         for _ in range(DRAWS):

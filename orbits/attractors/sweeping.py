@@ -11,7 +11,9 @@ import numpy as np
 
 from contvines.shared.near_names import no_parameter
 from contvines.shared.processes import ATTEMPTS, spread
-from orbits.attractors.search import described, find_attractor, goes_on, modulated, observing
+from orbits.attractors.attractor import Attractor
+from orbits.attractors.observation import described, dots, modulated
+from orbits.attractors.search import find_attractor, goes_on
 from orbits.flows.protocol import SimulationError
 from orbits.simulation.runs import simulator_of
 
@@ -30,14 +32,14 @@ class SweepRow:
     direction : str
         ``up`` or ``down``.
     attractor : str
-        Its kind; see `orbits.attractors.attractor.Attractor` and `orbits.attractors.page.PageAttractor`.
+        Its kind; see `orbits.attractors.attractor.Attractor`.
     word : str
         Events of the cycle; empty where nothing recurs.
     periods, impacts : int
         k and l of the cycle; 0 where nothing recurs.
     measures : dict
-        Numbers by name, the same names in every row; see `measure_names`.
-    detail : Attractor or PageAttractor
+        Numbers by name, the same names in every row; see `orbits.attractors.observation.measure_names`.
+    detail : Attractor
         The attractor itself, with its nodes and the state reached.
     modulation : str
         ``weak modulation``, ``strong modulation`` (impacts stop and begin again), either with ``chaotic`` before it; empty where it recurs.
@@ -50,13 +52,13 @@ class SweepRow:
     periods: int
     impacts: int
     measures: Mapping[str, float]
-    detail: Any = field(repr=False)
+    detail: Attractor = field(repr=False)
     modulation: str = ""
 
     @property
     def dots(self) -> list[float]:
         """What a picture shows of it."""
-        return observing(self.detail.model).dots(self.detail, self.measures)
+        return dots(self.detail, self.measures)
 
 
 def sweep(
@@ -137,7 +139,7 @@ def find_attractors(
     *,
     workers: int = 1,
     **options: Any,
-) -> list[Any]:
+) -> list[Attractor]:
     """`find_attractor` from many starts; the result does not depend on the number of worker processes."""
     return _many(partial(_one_attractor, model, options), starts, workers)
 

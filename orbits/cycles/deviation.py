@@ -66,7 +66,7 @@ def by_events(orbit: Cycle, first: int = 0, count: int | None = None) -> float:
         record = simulator.record(begun + 2.0 * float(orbit.durations.sum()) / TURN + 1.0, len(wanted))
     except SimulationError:
         return math.inf
-    if record.events[:] != [(orbit.word.events[i], orbit.word.modes[i]) for i in wanted]:
+    if record.occurrences[:] != [(orbit.word.events[i], orbit.word.modes[i]) for i in wanted]:
         return math.inf
     late = TURN * (record.times - begun) - np.cumsum(np.roll(orbit.durations, -first)[: len(wanted)])
     apart = record.points - orbit.flow.points(orbit)[wanted]

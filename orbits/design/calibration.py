@@ -169,7 +169,7 @@ def from_sweep(
     unknown, limits, fixed, confidence
         As for `from_impacts`.
     measure : str
-        What was measured: of `orbits.attractors.search.measure_names`.
+        What was measured: of `orbits.attractors.observation.measure_names`.
     transient : float
         Forcing periods after which a response is taken as steady.
     """

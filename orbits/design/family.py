@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from orbits.attractors import find_attractor
-from orbits.attractors.search import described
+from orbits.attractors.observation import described
 from orbits.design.swept_responses import swept_responses
 from orbits.flows.protocol import SimulationError
 from orbits.machines.conditions import Table, resolved

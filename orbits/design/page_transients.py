@@ -120,7 +120,7 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
     known = machine.equations.energy is not None
     for own, run, shift in legs:
         speed = float(own.phase_speed(run.params))
-        length = run.end - run.clocks[0]
+        length = run.finish - run.clocks[0]
         period = TWO_PI if own.forced else TWO_PI / float(machine.phase_speed(run.params))
         clocks = run.clocks[0] + np.linspace(0.0, length, max(2, math.ceil(length / period * PER_PERIOD)) + 1)
         rows = run.sample(clocks)
@@ -131,7 +131,7 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
             numbers = np.zeros((len(rows), len(run.params) + len(own.equations.signed)))
             numbers[:, : len(run.params)] = run.params
             energy.append(own.compiled.energy()(rows, phases, numbers)[:, 0])
-        ends = np.append(run.clocks[1:], run.end)
+        ends = np.append(run.clocks[1:], run.finish)
         for i, (begin, end) in enumerate(zip(run.clocks, ends)):
             turn = TWO_PI * math.floor(begin / TWO_PI) if own.forced else 0.0
             here, lost = (begin - turn, end - turn), 0.0
@@ -151,7 +151,7 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
     time, table = np.concatenate(times), np.concatenate(states)
     impacts = np.array(hits).reshape(-1, 3)
     parts = np.array(taken if known else []).reshape(-1, 3)
-    count = max(1, round(float(legs[-1][1].end - legs[-1][1].clocks[0]) / TWO_PI)) if machine.forced else 0
+    count = max(1, round(float(legs[-1][1].finish - legs[-1][1].clocks[0]) / TWO_PI)) if machine.forced else 0
     last = len(times[-1])
     calm = {
         name: float(time[-last]) + settled(time[-last:] - time[-last], table[-last:, j], count)

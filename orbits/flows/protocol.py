@@ -8,12 +8,14 @@ The solving half, in words
 2. `equations` are F(u, p) = 0 for the cycles with one word: sizes, units, kernels (`contvines.problems.protocol`) with Newton's method and a
    look at one solution beside them (`Equations`). They know how unknowns and nodes go together and say which margin to follow along a locus.
    Margins come as the word's alphabet orders them (`Alphabet.watched`).
+   `coordinates` are what simulators call a point, `census` says how many starts of them are simulated.
 3. `loose` are the entries of a node along which any motion with a word may be shifted as a whole.
 4. `sample` has a motion over time, `positions` what no impulse moves, at equal phases from phase zero on, shape (m, c): motions are compared
    by it, and are one where they differ by less than `resolution`. `position_entries` are the entries of a node to which these belong, and
    `position_names` what samples call them. `points` are the simulator's coordinates just after the events, shape (L, d).
    `strobed` has a motion without events once per period.
-5. `measures` of many solutions at once, their names, which are angles, and the one that is shown first. `described` is what JSON has of events. `kind` is
+5. `measures` of many solutions at once, their names, which are angles, and the one that is shown first; `simulated_names` are those that a
+   simulation tells, `swept` those that a picture of a sweep shows, `in_units` has them in the units that are shown. `described` is what JSON has of events. `kind` is
    "stuck" where nothing moves that could be hit, "sliding" where a shaken absorber hits no wall, else "periodic".
 6. At a border, `vanishing` says what the vanishing margin watches, where, and what the laws of the contacts need to know of it; `placed` are
    the nodes of the events that they propose; `without_events` the node of a motion that has lost its last event (None: that is at rest).
@@ -35,20 +37,23 @@ A *simulator* moves one motion of a machine on at given parameters, from event t
 5. A motion that cannot go on (it leaves the range of numbers, or a law does not continue it) or cannot begin raises `SimulationError`.
 6. ``struck(point, near)`` tells the two points that are one motion at a wall: just before and just after the impact.
 7. ``mirrored`` says that the ``image`` of a point, half a period later, is a point of the same machine. ``hard`` says which coordinates walls limit by themselves.
-   ``watched`` is (periods, events) of the motion in which near returns are looked for.
+   ``watched`` is (periods, events) of the motion in which near returns are looked for, ``waiting`` how long it is followed until it settles,
+   ``observed`` for how many periods what does not recur is looked at, at first and at most (0: no more than that by which it is recognised),
+   ``modulated`` for how many its modulation. ``resting`` and ``wandering`` are what attractors at rest and such that do not recur are called, ``roomy`` says whether there is room for two incommensurate frequencies, ``count`` how many events there were, where they are counted.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 from orbits.contacts.changes import Change, Site
+from orbits.flows.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from orbits.words import Word
@@ -95,36 +100,91 @@ def checked_start(start: Mapping[str, float], allowed: Sequence[str]) -> dict[st
     return {key: float(value) for key, value in start.items()}
 
 
-@dataclass(frozen=True, eq=False)
-class Record:
-    """Events of a motion, one after the other.
+class Waiting(NamedTuple):
+    """How long a motion is followed until what it settles on is seen.
 
     Attributes
     ----------
-    times : float array (m,)
-        Forcing periods.
-    points : float array (m, d)
-        Just after the events.
-    events : sequence of hashable
-        What happened, by its letter, and the modes after it.
-    impacts, piled : bool array (m,)
-        Which are impacts; with which infinitely many impacts end, or a wall lets go.
-    whole : bool
-        Whether the record goes on to the time asked for.
-    source : Any
-        The simulation's own account.
+    transient : float
+        Forcing periods (of a self-excited machine: events) that are left out first.
+    tries, in_sweeps : int
+        How often they are prolonged where nothing recurs, and at each value of a sweep.
+    longer : int
+        So many times.
+    returned : float
+        Largest difference of points, relative to 1 + points, of a motion that has returned.
+    early : int
+        Part of the transient after which a first look is had, at short cycles; 0: none.
+    slow : float
+        Forcing periods for which a motion is waited for that recurs but for a drift which fades or grows.
+    events : float
+        After so many a motion is followed no further.
     """
 
-    times: np.ndarray
-    points: np.ndarray
-    events: Sequence[Hashable]
-    impacts: np.ndarray
-    piled: np.ndarray
-    whole: bool
-    source: Any
+    transient: float
+    tries: int
+    in_sweeps: int
+    longer: int
+    returned: float
+    early: int
+    slow: float
+    events: float
 
-    def __len__(self) -> int:
-        return len(self.times)
+
+class Census(NamedTuple):
+    """How starts are sampled.
+
+    Attributes
+    ----------
+    across : int
+        Starts along an edge of a picture of basins.
+    brief : (int, int)
+        Values, and starts at each, of a brief look.
+    price : float
+        What a simulated forcing period costs, as a multiple of one of a machine in closed form.
+    longest, embedded : int
+        Forcing periods of the longest recurrence that is looked for, and of the longest unstable cycle.
+    """
+
+    across: int
+    brief: tuple[int, int]
+    price: float
+    longest: int
+    embedded: int
+
+
+class Outcome(IntEnum):
+    """What became of a motion: it recurs, is at rest for ever, left the range of numbers, or does none of these yet."""
+
+    WANDERING = 0
+    SETTLED = 1
+    AT_REST = 2
+    LOST = 3
+
+
+class Batch(NamedTuple):
+    """Many motions that were run until they recur.
+
+    Attributes
+    ----------
+    outcomes, periods : int array (n,)
+        `Outcome` of each, and forcing periods of its recurrence.
+    gaps : float array (n,)
+        Least difference of a return.
+    states, points : float array (n, S), (n, d)
+        Where they are at the end, at a whole forcing period.
+    work, followed, growth : float
+        Forcing periods simulated, for which one that does not recur was followed, and that the growth of small differences takes.
+    """
+
+    outcomes: np.ndarray
+    periods: np.ndarray
+    gaps: np.ndarray
+    states: np.ndarray
+    points: np.ndarray
+    work: float
+    followed: float
+    growth: float
 
 
 class Simulator(Protocol):
@@ -144,6 +204,22 @@ class Simulator(Protocol):
     def hard(self) -> np.ndarray: ...
     @property
     def watched(self) -> tuple[float, int]: ...
+    @property
+    def waiting(self) -> Waiting: ...
+    @property
+    def observed(self) -> tuple[float, float]: ...
+    @property
+    def modulated(self) -> float: ...
+    @property
+    def modes(self) -> Any: ...
+    @property
+    def resting(self) -> str: ...
+    @property
+    def wandering(self) -> str: ...
+    @property
+    def roomy(self) -> bool: ...
+    @property
+    def count(self) -> float: ...
     @property
     def time(self) -> float: ...
     @property
@@ -182,9 +258,49 @@ class Simulator(Protocol):
         """
         ...
 
-    def record(self, until: float, most: int) -> Record: ...
+    def record(self, until: float, most: int) -> Trajectory: ...
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None: ...
+
+    def skip(self, count: float) -> bool:
+        """Move on by so many forcing periods, of a self-excited machine so many events; whether there were as many."""
+        ...
+
+    def look(self, longest: int) -> Trajectory:
+        """The run in which a recurrence of up to so many forcing periods (25 times as many events) is looked for."""
+        ...
+
+    def rests(self, run: Any, last: bool) -> bool | None:
+        """Whether the motion has come to rest for good; None where that is yet to be seen, unless it is the last look."""
+        ...
+
+    def move_on(self, run: Any, longest: int) -> bool:
+        """Move a motion that creeps to where that ends; whether it does."""
+        ...
+
+    def push(self) -> None:
+        """Help a motion to leave another one that repels, on which only rounding keeps it."""
+        ...
+
+    def section(self) -> tuple[str, np.ndarray]:
+        """Move on to the next whole forcing period, of a self-excited machine to the next event: that event, and the point there."""
+        ...
+
+    def box(self) -> np.ndarray:
+        """Smallest and largest value of phase and coordinates among which starts are drawn, shape (n, 2); no phase of a self-excited machine."""
+        ...
+
+    def free(self, points: np.ndarray) -> np.ndarray:
+        """Which starts lie outside the walls, bool array (m,)."""
+        ...
+
+    def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> Batch | None:
+        """Run starts, all at once, until they recur after at most so many forcing periods; None where nothing is gained by that."""
+        ...
+
+    def growth(self) -> tuple[float, float]:
+        """Largest Lyapunov exponent of the motion, per forcing period, and its standard error."""
+        ...
 
 
 def later(
@@ -321,6 +437,8 @@ class Flow(Protocol):
     @property
     def resolution(self) -> float: ...
 
+    def census(self, model: Any) -> Census: ...
+    def coordinates(self, model: Any) -> tuple[str, ...]: ...
     def position_entries(self, model: Any) -> tuple[int, ...]: ...
     def position_names(self, model: Any) -> tuple[str, ...]: ...
     def points(self, motion: Motion) -> np.ndarray: ...
@@ -352,6 +470,9 @@ class Flow(Protocol):
         params: np.ndarray,
         wanted: Sequence[str],
     ) -> dict[str, np.ndarray]: ...
+    def simulated_names(self, model: Any) -> tuple[str, ...]: ...
+    def swept(self, model: Any) -> tuple[str, ...]: ...
+    def in_units(self, model: Any, params: np.ndarray, values: dict[str, float]) -> dict[str, float]: ...
     def described(self, motion: Motion) -> dict[str, Any]: ...
     def kind(self, motion: Motion) -> str: ...
     def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing | None: ...

@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.near_names import no_parameter
 from orbits.attractors.motion import SOLVED, Motion, distinct
-from orbits.population.native import NativeStarts
+from orbits.attractors.recurrence import solved
+from orbits.flows.catalogue import flow_of
+from orbits.flows.protocol import SimulationError, Simulator
+from orbits.machines.base import Model
+from orbits.machines.notation import STARTS
+from orbits.orbit import Orbit
+from orbits.population.fleet import Fleet
 from orbits.population.sorting import Sorting, low_discrepancy
 from orbits.problem import rebuild
+from orbits.simulation.runs import simulator_of
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
+FAR, WIDE = 0.01, 0.5
+"""Largest distance of a cycle from its guess, relative to 1 + states; beside a chaotic motion all that is real counts."""
 DRAWS = 64  # times as many starts are drawn at most to find those outside the walls
 
 
@@ -44,15 +55,17 @@ class Population:
         parameters: Mapping[str, float] | None = None,
         workers: int | None = None,
     ) -> None:
+        if parameter not in model.amount_names:
+            names = model.amount_names
+            raise SimulationError(no_parameter(repr(parameter), f"the model {model.name!r}", names))
         self.model, self.parameter = model, parameter
         self.parameters = {k: v for k, v in dict(parameters or {}).items() if k != parameter}
-        kind: type = NativeStarts
-        if model.flow == "page":
-            from orbits.population.page import PageStarts as kind
-        self._sort = kind(model, parameter, self.parameters)
         self.workers = workers
-        self.across, self.brief, self.price = self._sort.across, self._sort.brief, self._sort.price
-        self.notation, self.leftward = self._sort.notation, self._sort.leftward
+        self.across, self.brief, self.price, self._longest, self._embedded = flow_of(model).census(model)
+        own = model.in_cavity  # states of a page are shown by the names on it
+        self.notation = STARTS if own else {"phase": STARTS["phase"]}
+        self.leftward = "w" if own else ""  # w = +1 is the left wall, and stands on the left
+        self._boxes: dict[float, np.ndarray] = {}
         self.work = 0.0
         """Forcing periods simulated so far, those that solve for cycles included; of a self-excited machine its time over 2 pi."""
 
@@ -64,7 +77,7 @@ class Population:
     @property
     def names(self) -> tuple[str, ...]:
         """Coordinates of a start: the phase of a forced machine, then positions and velocities."""
-        return self._sort.names
+        return (*(["phase"] if self.model.forced else []), *flow_of(self.model).coordinates(self.model))
 
     @property
     def units(self) -> dict[str, str]:
@@ -73,11 +86,11 @@ class Population:
 
     def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]:
         """What one of these coordinates is in the unit that is shown, and that unit; plain numbers have none."""
-        return self._sort.gauges([name for name in names if name != "phase"], self.vector(p))
+        return self.model.gauges([name for name in names if name != "phase"], self.vector(p))
 
     def vector(self, p: float) -> np.ndarray:
         """All parameters at the value `p` of the one that varies, shape (P,)."""
-        return self._sort.vector(p)
+        return self.model.vector_at(self.parameter, float(p), self.parameters)
 
     def box(self, p: float) -> np.ndarray:
         """Smallest and largest coordinate of the starts, shape (n, 2).
@@ -85,7 +98,9 @@ class Population:
         Of a built-in machine the cavity, and the velocities its walls can give; of a declared machine what it says (``starts=``), else twice what the motion
         from rest reaches in sixty periods.
         """
-        return self._sort.box(p)
+        if p not in self._boxes:
+            self._boxes[p] = self._simulator(p).box()
+        return self._boxes[p]
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
         """Low-discrepancy starts in the box and outside the walls, shape (count, n).
@@ -95,7 +110,7 @@ class Population:
         ValueError
             If the walls leave nearly none of the box.
         """
-        box, params = self.box(p), self.vector(p)
+        box, simulator = self.box(p), self._simulator(p)
         kept: list[np.ndarray] = []
         drawn = 0
         while sum(map(len, kept)) < count:
@@ -106,7 +121,7 @@ class Population:
                 )
             points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn) * (box[:, 1] - box[:, 0])
             drawn += len(points)
-            kept.append(points[self._sort.free(points, params)])
+            kept.append(points[simulator.free(points)])
         return np.concatenate(kept)[:count]
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion], np.ndarray, np.ndarray]:
@@ -127,7 +142,7 @@ class Population:
             Whether it reaches the mirror image of that motion.
         """
         starts = np.asarray(starts, dtype=float)
-        fleet = self._sort.fleet(starts, self.vector(p), self.workers)
+        fleet = Fleet(self._simulator(p), starts, self._longest, self.workers)
         try:
             return Sorting(len(starts), self.parameter, p).sort(fleet)
         finally:
@@ -144,10 +159,10 @@ class Population:
         """
         from orbits.attractors.embedded import embedded_cycles
 
-        params = self.vector(p)
-        simulator = self._sort.simulator(params, state)
-        cycles = list(embedded_cycles(simulator, self._sort.longest, self._sort.solver(params, wide=True)))
-        self.work += simulator.time + SOLVED * len(cycles)
+        simulator = self._simulator(p, state)
+        begun = simulator.time
+        cycles = list(embedded_cycles(simulator, self._embedded, partial(solved, far=WIDE)))
+        self.work += simulator.time - begun + SOLVED * len(cycles)
         return distinct(cycles, self.parameter, p)
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
@@ -163,18 +178,23 @@ class Population:
         """
         from orbits.attractors.returning import returning_cycles
 
-        params = self.vector(p)
-        simulator = self._sort.simulator(params)
+        simulator = self._simulator(p)
         if not simulator.forced:
             return []
-        starts, solver = np.asarray(starts, dtype=float), self._sort.solver(params)
-        cycles = list(returning_cycles(simulator, starts, self.box(p), self._sort.longest, solver))
+        starts, solver = np.asarray(starts, dtype=float), partial(solved, far=FAR)
+        cycles = list(returning_cycles(simulator, starts, self.box(p), self._embedded, solver))
         self.work += SOLVED * (len(starts) + len(cycles))
-        return distinct((*self._sort.closed(params), *cycles), self.parameter, p)
+        return distinct((*self._closed(p), *cycles), self.parameter, p)
 
     def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
         """The real motions known in closed form, stable or not: of built-in machines rest, sliding between the walls, symmetric impacts."""
-        return distinct(self._sort.closed(self.vector(p)), self.parameter, p)
+        return distinct(self._closed(p), self.parameter, p)
+
+    def _closed(self, p: float) -> Iterable[Orbit]:
+        from orbits.starts.closed import closed_orbits
+
+        model = self.model
+        return closed_orbits(model, self.vector(p), Orbit) if isinstance(model, Model) else ()
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
@@ -182,4 +202,16 @@ class Population:
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
         """Measures, in the machine's units, of the motion through a state; those of a sweep."""
-        return {} if state is None else self._sort.observed(state, p)
+        from orbits.attractors.observation import described
+        from orbits.attractors.search import goes_on
+
+        if state is None:
+            return {}
+        return described(goes_on(self._simulator(p, state), 0.0, self._longest))[1]
+
+    def _simulator(self, p: float, state: np.ndarray | None = None) -> Simulator:
+        """A simulator, on a motion if a state of it is given."""
+        simulator = simulator_of(self.model, self.vector(p))
+        if state is not None:
+            simulator.go_on(state)
+        return simulator

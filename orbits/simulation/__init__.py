@@ -10,9 +10,10 @@ from contvines.shared.on_demand import on_demand
 
 if TYPE_CHECKING:
     from orbits.flows.protocol import SimulationError
+    from orbits.flows.trajectory import Trajectory
+    from orbits.simulation.native_trajectory import Balance, Samples
     from orbits.simulation.replaying import Replay, replay, replay_nodes
     from orbits.simulation.runs import simulate
-    from orbits.simulation.trajectory import Balance, Samples, Trajectory
 
 __all__ = [
     "Balance",
@@ -31,6 +32,7 @@ __getattr__ = on_demand(
         "SimulationError": "orbits.flows.protocol",
         "simulate": "orbits.simulation.runs",
         **dict.fromkeys(("Replay", "replay", "replay_nodes"), "orbits.simulation.replaying"),
-        **dict.fromkeys(("Balance", "Samples", "Trajectory"), "orbits.simulation.trajectory"),
+        "Trajectory": "orbits.flows.trajectory",
+        **dict.fromkeys(("Balance", "Samples"), "orbits.simulation.native_trajectory"),
     },
 )

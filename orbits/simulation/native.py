@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
+import math
+import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.flows.protocol import Record, SimulationError
+from orbits.flows.protocol import Batch, SimulationError, Waiting
 from orbits.machines.catalogue import stepper
-from orbits.machines.states import event_states, state_of
-from orbits.machines.stepping import FAILED, HOLD, MODE, PSI, RATE, TURNS, W
+from orbits.machines.states import state_of
+from orbits.machines.stepping import FAILED, MODE, PSI, RATE, REST, TURNS, V, W
+from orbits.simulation.batches import GROWTH, lyapunov, settle_all
+from orbits.simulation.creeping import move_on
 from orbits.simulation.driver import MOST_EVENTS, buffers, collect, first_state, skip
-from orbits.simulation.trajectory import LETTERS, Trajectory
+from orbits.simulation.native_trajectory import NativeTrajectory
 
 if TYPE_CHECKING:
     from orbits.machines.base import Model
     from orbits.words import Word
 
 PER_PERIOD = 400  # events
+SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
+TRANSIENTS = (
+    40.0,
+    160.0,
+    640.0,
+    2560.0,
+)  # forcing periods of many starts, each for those that do not recur before
+TOLERANCE = 1e-8  # difference of two of their states that counts as a return
+AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
+NOTHING = 1e-9  # of the forces: friction that is short of no more may hold
 FOREVER = 1e6  # periods: only a motion that keeps off the walls lasts so long without events
 
 
@@ -33,6 +47,10 @@ class NativeSimulator:
 
     forced = True
     watched = (2000.0, 800_000)
+    waiting = Waiting(300.0, 2, 2, 4, 1e-6, 0, 200_000.0, np.inf)  # weakly damped motions settle late
+    observed, modulated = (4096.0, 16384.0), 512.0
+    resting, wandering = "stuck", "chaotic"
+    count = 0.0
 
     def __init__(self, model: Model, params: np.ndarray) -> None:
         self.model, self.params = model, np.asarray(params, dtype=float)
@@ -56,6 +74,16 @@ class NativeSimulator:
         image = -point
         image[0] += 2.0 * float(self.model.middle(self.params))
         return image
+
+    @property
+    def modes(self) -> int:
+        """What the friction does."""
+        return int(self.state[MODE])
+
+    @property
+    def roomy(self) -> bool:
+        """Two frequencies need four dimensions."""
+        return self.model.moving_cavity
 
     @property
     def hard(self) -> np.ndarray:
@@ -122,7 +150,7 @@ class NativeSimulator:
         n = len(self._places)
         return np.full((n, n), np.nan), np.full(n, np.nan)
 
-    def run(self, periods: float, most: int = MOST_EVENTS) -> Trajectory:
+    def run(self, periods: float, most: int = MOST_EVENTS) -> NativeTrajectory:
         """Move on and keep the motion; `SimulationError` if it leaves the range of numbers."""
         begin, state = self.state.copy(), self.state
         until = self.time + min(periods, FOREVER)
@@ -135,23 +163,12 @@ class NativeSimulator:
         if begin[MODE] == 0.0 and begin[W] not in walls and self.model.frictionless(self.params):
             # off the walls nothing rests without friction, not even at the instant at which nothing pushes
             begin[MODE] = 1.0
-        return Trajectory(
-            self.model, self.params, self.engine, begin, state.copy(), codes, modes, rows, status
-        )
+        events = codes, modes, rows, status
+        return NativeTrajectory.of(self.model, self.params, self.engine, begin, state.copy(), events)
 
-    def record(self, until: float, most: int) -> Record:
-        """Move on and list the events."""
-        codes, modes, rows, _ = collect(self.engine, self.state, self.params, until, most)
-        states = event_states(self.engine, modes, rows)
-        return Record(
-            states[:, TURNS] + states[:, PSI] / (2.0 * np.pi),
-            states[:, self._places],
-            [*zip(map(LETTERS.__getitem__, codes.tolist()), modes.tolist())],
-            codes < 2,
-            codes == HOLD,
-            bool(abs(self.time - until) < 1e-9),
-            (codes, modes, rows),
-        )
+    def record(self, until: float, most: int) -> NativeTrajectory:
+        """Move on, to a time or so many events."""
+        return self.run(until - self.time, most)
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Of a point at a wall the other one there and the direction away from the wall; None elsewhere."""
@@ -163,3 +180,102 @@ class NativeSimulator:
                 away[0] = -side
                 return (other, away) if np.all(np.isfinite(other)) else None
         return None
+
+    # ------------------------------------------------------------------ settling
+    def skip(self, count: float) -> bool:
+        """Move on by so many forcing periods."""
+        until = self.state[TURNS] + count
+        status = skip(self.engine, self.state, self.params, until, int(PER_PERIOD * (count + 1.0)))
+        if status == FAILED:
+            raise SimulationError(
+                f"the motion of {self.model.name!r} is not finite: give parameters of moderate size"
+            )
+        return True
+
+    def look(self, longest: int) -> NativeTrajectory:
+        """Run on for two of the longest recurrences."""
+        length = 2.0 * longest + 1.0
+        return self.run(length, int(PER_PERIOD * length))
+
+    def rests(self, run: NativeTrajectory, last: bool) -> bool | None:
+        """Whether the absorber sticks for good; an oscillator may still be growing, or between two beats."""
+        begin, rest = run.start, self.model.rest
+        if run.status != REST and (len(run) or begin[RATE] != 0.0 or begin[MODE] != 0.0):
+            return False
+        if last:
+            self._oscillator_settles()
+            return True
+        slips = rest.reserve(self.params, np.linalg.solve(*rest.equations(self.params))) <= -NOTHING
+        return None if slips or not self._oscillator_settles() else True
+
+    def _oscillator_settles(self) -> bool:
+        """Wait, with the absorber stuck, until its oscillator has settled; False if it slips meanwhile."""
+        if not self.engine.moving_cavity:
+            return True  # its cavity moves as prescribed
+        state, length = self.state, 64.0
+        while state[TURNS] < self.waiting.slow:
+            before = state.copy()
+            skip(self.engine, state, self.params, self.time + length, 1)
+            if state[MODE] != 0.0:
+                return False
+            if np.abs(state[V:] - before[V:]).max() <= AT_REST * np.abs(state[V:]).max():
+                break
+            length *= 2.0
+        return True
+
+    def move_on(self, run: NativeTrajectory, longest: int) -> bool:
+        """Move a motion that creeps along the cavity to a wall; see `orbits.simulation.creeping`."""
+        if self.engine.moving_cavity or not len(run):
+            return False
+        return move_on(self.engine, self.params, self.state, run.nodes, run.codes, run.modes, longest)
+
+    def push(self) -> None:
+        """Change its velocity a little."""
+        self.state[RATE] *= 1.0 + 1e-6
+
+    def growth(self) -> tuple[float, float]:
+        """See `orbits.simulation.batches.lyapunov`."""
+        return lyapunov(self.model.name, self.state, self.params)
+
+    def section(self) -> tuple[str, np.ndarray]:
+        """Move on to the next whole forcing period."""
+        self.follow(math.floor(self.time) + 1.0)
+        return "", self.point
+
+    # ------------------------------------------------------------------ many starts
+    def box(self) -> np.ndarray:
+        """The cavity, and the velocities its walls can give."""
+        model, names = self.model, self.model.parameter_names
+        shaking = 1.0  # largest velocity of the cavity's centre that the excitation gives, as far as it is known beforehand
+        if "amplitude" in names:
+            shaking = float(self.params[names.index("amplitude")] * model.phase_speed(self.params))
+        left, right = (float(wall) for wall in self.engine.walls(self.params))
+        rate, reach = SPEEDS * max(1.0, shaking), 2.0 * max(1.0, shaking)
+        rows = [[0.0, 2.0 * math.pi], [right, left], [-rate, rate], [-reach, reach], [-reach, reach]]
+        return np.array(rows[: 1 + len(self._places)])
+
+    def free(self, points: np.ndarray) -> np.ndarray:
+        """The box lies between the walls."""
+        return np.ones(len(points), dtype=bool)
+
+    def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> Batch:
+        """See `orbits.simulation.batches.settle_all`."""
+        states = np.zeros((len(points), self.engine.state))
+        states[:, [PSI, *self._places]] = points
+        found = settle_all(
+            self.model.name,
+            states,
+            self.params,
+            transients=TRANSIENTS,
+            longest=longest,
+            tolerance=TOLERANCE,
+            workers=workers or cores(),
+        )
+        work, followed = float(states[:, TURNS].sum()), sum(TRANSIENTS)
+        columns = found["outcome"], found["periods"], found["gaps"]
+        return Batch(*columns, states, states[:, self._places], work, followed, 2.0 * GROWTH)
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -5,123 +5,149 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
 
 import numpy as np
 
-from orbits.contacts.letters import HIT, HOLD, RELEASE
+from orbits.contacts.letters import HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
+from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.page.variations import Variations
-from orbits.flows.protocol import Record, SimulationError, checked_start
+from orbits.flows.protocol import SimulationError, Waiting, checked_start
+from orbits.flows.trajectory import Trajectory
 from orbits.machines.page.machine import Machine
-
-if TYPE_CHECKING:
-    from orbits.words import Word
+from orbits.words import Word
 
 REACHED, FULL, STILL = 0, 1, 2
+SAMPLES = 2000  # of a run, for its extremes
 AWAY = 1e3  # clock without an event of a cycle after which a motion does not come back to it
+LONG = 1e4  # clock of a self-excited machine without an event after which none is waited for
+LONGEST_WORD = 400  # events of its longest cycle
+REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
+WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
+LATE = 50  # instants of its motion by which it is told whether it has come to rest
 FOREVER = 1e5  # clock after which a run that waits for events gives up
 
 
 @dataclass(frozen=True, eq=False)
-class PageTrajectory:
-    """A simulated motion of a declared machine.
+class PageTrajectory(Trajectory):
+    """A simulated motion of a declared machine; see `orbits.flows.trajectory.Trajectory`.
 
     Attributes
     ----------
-    machine : Machine
-    params : float array (P,)
-    clocks : float array (m + 1,)
-        Phase (or time) of the start and of every event, counted through.
     states : float array (m + 1, n)
         At the start, and just after every event.
     modes : list of tuple of int, m + 1 entries
         After them.
     events : list of (contact, kind, sign), m entries
-    end : float
-        Clock at which the run ended.
     last : float array (n,)
-        State then.
-    status : int
-        REACHED the wanted time; FULL: as many events as were asked for; STILL: nothing happened for very long.
+        State at the end.
     """
 
-    machine: Machine
-    params: np.ndarray
-    clocks: np.ndarray
     states: np.ndarray
     modes: list[tuple[int, ...]]
     events: list[tuple[int, int, int]]
-    end: float
     last: np.ndarray
-    status: int
 
-    def __len__(self) -> int:
-        return len(self.events)
+    @property
+    def points(self) -> np.ndarray:
+        """The states just after the events."""
+        return self.states[1:]
+
+    @property
+    def whole(self) -> bool:
+        """Whether the run goes on to the time asked for."""
+        return self.status == REACHED
+
+    @property
+    def stopped(self) -> bool:
+        """Whether nothing happened for very long."""
+        return self.status == STILL
 
     @property
     def letters(self) -> list[str]:
         """The events as they are written; "(R" and "R)" are where wall R begins and ends to hold."""
-        return [letter_of(self.machine, event) for event in self.events]
+        return self._letters
+
+    @cached_property
+    def _letters(self) -> list[str]:
+        return [letter_of(self.model, event) for event in self.events]
 
     @property
-    def impacts(self) -> int:
-        """Number of impacts."""
-        return sum(kind == HIT for _, kind, _ in self.events)
-
-    @property
-    def impact_times(self) -> np.ndarray:
-        """Instants of the impacts, in the machine's time."""
-        hits = [kind == HIT for _, kind, _ in self.events]
-        return self.clocks[1:][hits] / self.machine.phase_speed(self.params)
-
-    @property
-    def chatters(self) -> int:
-        """How often infinitely many impacts piled up and a wall held the body."""
-        return sum(kind == HOLD for _, kind, _ in self.events)
+    def occurrences(self) -> list[tuple[str, tuple[int, ...]]]:
+        """Letters and modes."""
+        return [*zip(self.letters, self.modes[1:])]
 
     @property
     def held(self) -> bool:
         """Whether one of the walls holds the body from the beginning to the end."""
-        walls = [j for j, contact in enumerate(self.machine.contacts) if isinstance(contact, Wall)]
+        walls = [j for j, contact in enumerate(self.model.contacts) if isinstance(contact, Wall)]
         return any(all(mode[j] == HELD for mode in self.modes) for j in walls)
 
     @property
-    def ended(self) -> str:
-        """Why the run ended, and whether impacts piled up on the way."""
-        sentence = (
+    def reason(self) -> str:
+        """Why the run ended."""
+        return (
             "the requested time was reached",
             "the requested number of events was reached",
             f"no further event within {FOREVER:g} of the clock",
         )[self.status]
-        if self.chatters:
-            times = "once" if self.chatters == 1 else f"{self.chatters} times"
-            sentence += f"; impacts piled up and a wall held the body {times}"
-        return sentence
 
     def coordinates(self, times: np.ndarray) -> np.ndarray:
         """The states at these times (forcing periods, or time over 2 pi), shape (m, n)."""
         return self.sample(TWO_PI * times)
 
+    def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:
+        """Word and nodes; of a self-excited machine the first duration is that since the event before, or the cycle's last one again."""
+        part = slice(first, last)
+        modes = self.modes[1:][part]
+        word = Word(tuple(self.letters[part]), tuple(modes), self.model.alphabet)
+        clocks = self.clocks[1:][part]
+        if not self.model.forced:
+            clocks = np.append(np.diff(clocks), clocks[0] - self.clocks[first])
+        return word, np.column_stack([clocks, self.points[part]])
+
+    def approaches(self, first: int = 0) -> np.ndarray:
+        """The gap's rate after each impact over restitution."""
+        compiled, speeds = self.model.compiled, []
+        for k in first + np.flatnonzero(self.hits[first:]):
+            contact, clock = self.events[k][0], float(self.clocks[k + 1]) if self.model.forced else 0.0
+            numbers = compiled.numbers(self.params, self.modes[k + 1])
+            rate, restitution = compiled.rebound(contact).one(self.states[k + 1], clock, numbers)
+            speeds.append(float(rate / restitution))
+        return np.array(speeds)
+
+    def extremes(self, per_period: int = 0) -> dict[str, float]:
+        """Largest and least first state."""
+        x = self.sample(np.linspace(self.clocks[0], self.finish, SAMPLES))[:, 0]
+        first = self.model.states[0]
+        return {f"max_{first}": float(x.max()), f"min_{first}": float(x.min())}
+
+    def responses(self, per_period: int) -> tuple[np.ndarray, np.ndarray]:
+        """The first state over the phase."""
+        count = max(2, math.ceil(per_period * self.lasted))
+        clocks = np.linspace(self.clocks[0], self.finish, count, endpoint=False)
+        return clocks, self.sample(clocks)[:, 0]
+
     def onwards(self, clocks: np.ndarray) -> np.ndarray:
         """States, shape (m, n), so long after the end of a run of a self-excited machine, in its last mode and without events."""
-        compiled, mode = self.machine.compiled, self.modes[-1]
-        watch = compiled.watch(self.machine.equations.pattern_key(mode))
+        compiled, mode = self.model.compiled, self.modes[-1]
+        watch = compiled.watch(self.model.equations.pattern_key(mode))
         return watch.path(self.last, clocks, compiled.numbers(self.params, mode))
 
     def sample(self, clocks: np.ndarray) -> np.ndarray:
         """States, shape (m, n), at increasing clocks within the run."""
         clocks = np.asarray(clocks, dtype=float)
-        out = np.empty((len(clocks), self.machine.size))
+        out = np.empty((len(clocks), self.model.size))
         segment = np.clip(np.searchsorted(self.clocks, clocks, side="right") - 1, 0, len(self.clocks) - 1)
-        compiled, e = self.machine.compiled, self.machine.equations
+        compiled, e = self.model.compiled, self.model.equations
         for i in np.unique(segment):
             places = np.flatnonzero(segment == i)
             watch = compiled.watch(e.pattern_key(self.modes[i]))
             numbers = compiled.numbers(self.params, self.modes[i])
             first = self.clocks[i]
-            offset = TWO_PI * math.floor(first / TWO_PI) if self.machine.forced else first
+            offset = TWO_PI * math.floor(first / TWO_PI) if self.model.forced else first
             grid = np.concatenate([[first], clocks[places]]) - offset
             out[places] = watch.path(self.states[i], grid, numbers)[1:]
         return out
@@ -173,16 +199,19 @@ def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
         events.append(event)
         if math.isinf(length):
             until = clocks[-1] + FOREVER
+    kinds = np.array([kind for _, kind, _ in events], dtype=int)
+    ends, last = stepper.base + stepper.clock, stepper.state.copy()
     return PageTrajectory(
         stepper.machine,
         stepper.params,
         np.array(clocks),
+        ends,
+        kinds,
+        status,
         np.array(states),
         modes,
         events,
-        stepper.base + stepper.clock,
-        stepper.state.copy(),
-        status,
+        last,
     )
 
 
@@ -190,12 +219,16 @@ class PageSimulator:
     """A page's motion on its way; see the contract at the top of `orbits.flows.protocol`."""
 
     watched = (3000.0, 3000)
+    waiting = Waiting(100.0, 4, 0, 2, 1e-5, 5, 0.0, 50_000.0)
+    observed, modulated = (0.0, 0.0), 0.0
+    resting, wandering = "rest", "aperiodic"
 
     def __init__(self, machine: Machine, params: np.ndarray) -> None:
         self.model = self.machine = machine
         self.params = params
         self.stepper = Stepper(machine, params)
         self.forced, self.names = machine.forced, machine.states
+        self.roomy = machine.size > 2
         self.hard = np.zeros(machine.size, dtype=bool)  # a start within a wall is refused
 
     @property
@@ -206,6 +239,16 @@ class PageSimulator:
     def image(self, point: np.ndarray) -> np.ndarray:
         """A point mirrored about the origin."""
         return -point
+
+    @property
+    def modes(self) -> tuple[int, ...]:
+        """What the contacts do."""
+        return self.stepper.modes
+
+    @property
+    def count(self) -> float:
+        """Events so far."""
+        return float(self.stepper.count)
 
     @property
     def time(self) -> float:
@@ -241,8 +284,10 @@ class PageSimulator:
 
     def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
         """Begin where another simulation has ended, moved out of walls that are elsewhere now, its last state changed a little."""
-        clock = float(state[0])
-        self.stepper.start(outside(self.stepper, state[1:], clock), clock)
+        clock = (
+            float(state[0]) if len(state) > self.machine.size else 0.0
+        )  # older files have no clock of a self-excited machine
+        self.stepper.start(outside(self.stepper, state[-self.machine.size :], clock), clock)
         self.stepper.state[-1] += nudge
 
     def begin(self, word: Word, node: np.ndarray) -> None:
@@ -279,15 +324,9 @@ class PageSimulator:
         """Move on and keep the motion."""
         return collect(self.stepper, TWO_PI * periods, most)
 
-    def record(self, until: float, most: int) -> Record:
-        """Move on and list the events."""
-        run = self.run(until - self.time, most)
-        kinds = np.array([kind for _, kind, _ in run.events], dtype=int)
-        events = [*zip(run.letters, run.modes[1:])]
-        piled = (kinds == HOLD) | (kinds == RELEASE)
-        return Record(
-            run.clocks[1:] / TWO_PI, run.states[1:], events, kinds == HIT, piled, run.status == REACHED, run
-        )
+    def record(self, until: float, most: int) -> PageTrajectory:
+        """Move on, to a time or so many events."""
+        return self.run(until - self.time, most)
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere.
@@ -315,3 +354,86 @@ class PageSimulator:
             if rate != 0.0 and np.all(np.isfinite(jump)):
                 return here + jump, slopes / steep
         return None
+
+    # ------------------------------------------------------------------ settling
+    def skip(self, count: float) -> bool:
+        """Move on by so many forcing periods; of a self-excited machine, by so many events, and say whether there were as many."""
+        stepper = self.stepper
+        if self.forced:
+            self.follow(self.time + int(count))
+            return True
+        return all(
+            stepper.advance(stepper.base + stepper.clock + LONG) is not None for _ in range(int(count))
+        )
+
+    def look(self, longest: int) -> PageTrajectory:
+        """Run on for two of the longest recurrences; events of a self-excited machine."""
+        if self.forced:
+            return collect(self.stepper, TWO_PI * (2 * longest + 1), 50 * longest + 2000)
+        return collect(self.stepper, LONG, min(2 * LONGEST_WORD, 50 * longest))
+
+    def rests(self, run: PageTrajectory, last: bool) -> bool:
+        """Whether a wall holds the body, or a self-excited machine does not move any more."""
+        if len(run):
+            return False
+        if run.held or self.forced:
+            return run.held
+        states = run.onwards(np.linspace(0.0, TWO_PI, LATE))
+        size = 1.0 + np.abs(states).max(axis=0)
+        return bool((np.ptp(states, axis=0) <= self.waiting.returned * size).all())
+
+    def move_on(self, run: PageTrajectory, longest: int) -> bool:
+        """Creep is not told apart from motion."""
+        return False
+
+    def push(self) -> None:
+        """What sticks must not be moved: it leaves by itself."""
+
+    def growth(self) -> tuple[float, float]:
+        """See `orbits.flows.page.growth`."""
+        return growth(self.stepper)
+
+    def section(self) -> tuple[str, np.ndarray]:
+        """Move on to the next whole forcing period, or event."""
+        if self.forced:
+            self.follow(math.floor(self.time) + 1.0)
+            return "", self.point
+        event = self.stepper.advance(self.stepper.base + self.stepper.clock + LONG)
+        return "" if event is None else letter_of(self.machine, event), self.point
+
+    # ------------------------------------------------------------------ many starts
+    def box(self) -> np.ndarray:
+        """What the page says, else twice what the motion from rest reaches in sixty periods."""
+        given, names = self.machine.starts, self.machine.states
+        reached = self._reached() if any(name not in given for name in names) else np.zeros(len(names))
+        rows = [[0.0, TWO_PI]] if self.forced else []
+        rows += [list(given.get(name, (-REACH * far, REACH * far))) for name, far in zip(names, reached)]
+        return np.array(rows)
+
+    def _reached(self) -> np.ndarray:
+        """Largest absolute value of each state on the motion from rest (moved out of the walls), shape (S,)."""
+        zero = np.zeros(self.machine.size)
+        self.start(outside(self.stepper, zero, 0.0))
+        try:
+            run = self.run(WARM, 5000)
+            reach = np.abs(run.sample(np.linspace(run.clocks[0], run.finish, SAMPLES))).max(axis=0)
+        except SimulationError:
+            reach = zero
+        largest = float(reach.max())
+        return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
+
+    def free(self, points: np.ndarray) -> np.ndarray:
+        """Which starts have all gaps open, bool array (m,)."""
+        machine = self.machine
+        walls = [j for j, contact in enumerate(machine.contacts) if isinstance(contact, Wall)]
+        if not walls:
+            return np.ones(len(points), dtype=bool)
+        clocks = points[:, 0] if self.forced else np.zeros(len(points))
+        states = np.ascontiguousarray(points[:, 1:] if self.forced else points)
+        numbers = np.concatenate([self.params, np.zeros(len(machine.equations.signed))])
+        rows = np.repeat(numbers[None], len(points), axis=0)
+        values = machine.compiled.contact_values()(states, np.ascontiguousarray(clocks), rows)
+        return np.all(values[:, walls] >= 0.0, axis=1)
+
+    def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> None:
+        """Flights are integrated one by one: each start is followed no further than it has to be."""

@@ -11,8 +11,8 @@ from orbits.machines.catalogue import stepper as machine
 from orbits.machines.states import nodes_of, state_of
 from orbits.machines.stepping import EVENTS_FULL
 from orbits.simulation.driver import collect, skip
+from orbits.simulation.native_trajectory import TWO_PI, NativeTrajectory
 from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
-from orbits.simulation.trajectory import TWO_PI, Trajectory
 
 if TYPE_CHECKING:
     from orbits.machines.base import Model
@@ -168,16 +168,15 @@ def _motion(model: Model, cycle: _Cycle) -> float:
         return np.inf
     state = begin.copy()
     until = begin[4] + begin[0] / TWO_PI + periods
-    run = Trajectory(
-        model, params, engine, begin, state, *collect(engine, state, params, until, 100 * len(codes) + 1000)
-    )
+    seen = collect(engine, state, params, until, 100 * len(codes) + 1000)
+    run = NativeTrajectory.of(model, params, engine, begin, state, seen)
     if run.status == EVENTS_FULL:
         return np.inf
     if nodes[:, 0].min() < nodes[0, 0] or nodes[:, 0].max() > nodes[0, 0] + TWO_PI * periods:
         return np.inf  # time does not run forward through these nodes
     places = np.where(codes == 0, left, np.where(codes == 1, right, nodes[:, 1]))
-    seen = run.sample(np.append(nodes[:, 0], nodes[0, 0] + TWO_PI * periods))
-    return float(np.abs(seen.w - np.append(places, places[0])).max())
+    there = run.sample(np.append(nodes[:, 0], nodes[0, 0] + TWO_PI * periods))
+    return float(np.abs(there.w - np.append(places, places[0])).max())
 
 
 def _freest(codes: np.ndarray) -> int:

@@ -21,7 +21,7 @@ from orbits.machines.stepping import (
     W,
 )
 from orbits.simulation.driver import buffers
-from orbits.simulation.trajectory import LETTERS, TWO_PI
+from orbits.simulation.native_trajectory import LETTERS, TWO_PI
 
 ROUNDING = 1e-15  # of a simulated node
 ENOUGH = 2e-10  # estimated error of a derivative that asks for no smaller step

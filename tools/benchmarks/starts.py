@@ -3,9 +3,9 @@
 import numpy as np
 
 from orbits import Absorber
-from orbits.attractors.batches import settle
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import PSI, RATE, TURNS, V, W
+from orbits.simulation.batches import settle
 from orbits.simulation.driver import skip
 
 PERIODS = 100  # forcing periods of a start at amplitude 0.6, where the motion hits twice in each: 200 impacts

@@ -132,7 +132,7 @@ def _first(machine: Any, parameters: dict[str, float], rng: np.random.Generator)
     found = find_attractor(machine, start, max_period=4, patience=1, **parameters)
     if found.kind == "stuck":
         return _at_rest(machine, parameters)
-    if found.word is None or not len(found.codes):
+    if found.word is None or not len(found.word):
         return None  # chaos, impacts that pile up, or free motion off the walls
     return polish(found.orbit)
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.modulation import BAND, SILENT
 from orbits.contacts.changes import Change
 from orbits.flows.native import cycle_equations, measures, sampling, vanishing
 from orbits.flows.native.cycle_equations import Equations
-from orbits.flows.protocol import Motion, Vanishing
+from orbits.flows.protocol import Census, Motion, Vanishing
 from orbits.machines.base import Model
 from orbits.machines.events import events_of
 from orbits.words import Word
@@ -25,6 +26,14 @@ class NativeFlow:
     angles = measures.ANGLES
     closed_form = True
     resolution = 1e-7  # two borders whose values agree to 1e-12 may be 5e-6 apart
+
+    def census(self, model: Model) -> Census:
+        """Many at once, in closed form."""
+        return Census(across=200, brief=(5, 48), price=1.0, longest=24, embedded=6)
+
+    def coordinates(self, model: Model) -> tuple[str, ...]:
+        """Position and velocity in the cavity, and of a machine with an oscillator those of the centre of mass."""
+        return ("w", "w_rate", "v", "v_rate") if model.moving_cavity else ("w", "w_rate")
 
     def position_entries(self, model: Model) -> tuple[int, ...]:
         """w."""
@@ -90,6 +99,19 @@ class NativeFlow:
     ) -> dict[str, np.ndarray]:
         """See `orbits.flows.native.measures`."""
         return measures.measure(model, word, periods, nodes, params, wanted)
+
+    def simulated_names(self, model: Model) -> tuple[str, ...]:
+        """Of the reduced model the squared amplitude of its cavity's motion stands for the oscillator's."""
+        speeds = ("max_abs_w", "impact_speed", "impacts_per_period")
+        return ("max_abs_q1", *speeds, *BAND, SILENT) if model.moving_cavity else ("C2", *speeds)
+
+    def swept(self, model: Model) -> tuple[str, ...]:
+        """As the machine says."""
+        return (model.swept_measure,)
+
+    def in_units(self, model: Model, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
+        """See `orbits.flows.native.measures.gauged`."""
+        return measures.gauged(model, params, values)
 
     def described(self, motion: Motion) -> dict[str, Any]:
         """Velocities and positions at the events, in the units that are shown."""

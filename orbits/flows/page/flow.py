@@ -7,15 +7,17 @@ from typing import Any
 
 import numpy as np
 
+from contvines.shared.modulation import BAND, SILENT
 from orbits.contacts.changes import Change
 from orbits.contacts.wall import Wall
 from orbits.flows.page import measures, sampling, vanishing
 from orbits.flows.page.cycle_equations import PageEquations, loose_states
-from orbits.flows.protocol import Motion, Vanishing
+from orbits.flows.protocol import Census, Motion, Vanishing
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
 from orbits.words import Word
 
+LARGE = 5  # states
 STILL = 1e-9  # range of a state that does not move
 
 
@@ -25,6 +27,15 @@ class PageFlow:
     angles = ("phase",)
     closed_form = False
     resolution = 1e-5  # flights know a border to 1e-10, and grazes to its root
+
+    def census(self, model: Machine) -> Census:
+        """Flights are integrated one by one; of a machine with many states words are long, and a start is followed for seconds."""
+        few = 6 if model.size < LARGE else 2
+        return Census(across=60, brief=(3, few), price=20.0, longest=16, embedded=4)
+
+    def coordinates(self, model: Machine) -> tuple[str, ...]:
+        """The states."""
+        return model.states
 
     def position_entries(self, model: Machine) -> tuple[int, ...]:
         """States that no wall pushes."""
@@ -95,6 +106,23 @@ class PageFlow:
     ) -> dict[str, np.ndarray]:
         """See `orbits.flows.page.measures.measure`."""
         return measures.measure(model, word, periods, nodes, params, wanted)
+
+    def simulated_names(self, model: Machine) -> tuple[str, ...]:
+        """How far the first state goes, the fastest impact and how many there are; where it is forced a band, too."""
+        first = model.states[0]
+        forced = (*BAND, SILENT) if model.forced else ()
+        return (f"max_{first}", f"min_{first}", "approach_speed", "impacts_per_period", *forced)
+
+    def swept(self, model: Machine) -> tuple[str, ...]:
+        """What the page says; else impact speeds, which belong to the impacts, or how far the first state goes."""
+        if model.response not in (None, "approach_speed"):
+            return (model.response,)
+        walls = any(isinstance(contact, Wall) for contact in model.contacts)
+        return () if walls else self.simulated_names(model)[:2]
+
+    def in_units(self, model: Machine, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
+        """They are."""
+        return values
 
     def described(self, motion: Motion) -> dict[str, Any]:
         """Clock and states after the events."""

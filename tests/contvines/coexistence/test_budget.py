@@ -5,11 +5,11 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber
-from orbits.attractors import recurrence
-from orbits.attractors.recurrence import LONGEST, settle
+from orbits.attractors.recurrence import attracted
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import RATE, TURNS, W
 from orbits.simulation.driver import skip
+from orbits.simulation.runs import simulator_of
 
 pytestmark = pytest.mark.slow
 
@@ -63,15 +63,22 @@ def test_a_motion_between_the_given_values_that_all_starts_reach():
     assert any(low < there < high for low, high in atlas(0).settings["unknown"])
 
 
+def on(machine, params, state):
+    """A simulator on a motion."""
+    simulator = simulator_of(machine, params)
+    simulator.go_on(state)
+    return simulator
+
+
 def test_a_slow_motion_is_waited_for_ever_longer(monkeypatch):
     """Each wait is four times as long as the one before, with no transient to begin with as well: a few looks reach the longest."""
     absorber = Absorber(restitution=0.728, friction=0.747, gravity=0.404, mass_ratio=0.006)
-    engine, looks = machine(absorber.name), []
-    collect = recurrence.collect
-    monkeypatch.setattr(recurrence, "collect", lambda *a: looks.append(1) or collect(*a))
-    state = np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0])
-    settle(absorber, engine, absorber.vector({"amplitude": 1.59760071}), state, 0.0, 32, 1e-7, 1)
-    assert len(looks) <= 2 + np.log(LONGEST) / np.log(4.0)
+    state, looks = np.array([0.0, 0.9961627020, 0.417131927, 1.0, 1.0, 0.0]), []
+    simulator = on(absorber, absorber.vector({"amplitude": 1.59760071}), state)
+    look = simulator.look
+    monkeypatch.setattr(simulator, "look", lambda longest: looks.append(1) or look(longest))
+    attracted(simulator, 0.0, 32, 1e-7, 1)
+    assert len(looks) <= 2 + np.log(simulator.waiting.slow) / np.log(4.0)
 
 
 def test_a_cycle_longer_than_looked_for_is_not_waited_for():
@@ -85,5 +92,7 @@ def test_a_cycle_longer_than_looked_for_is_not_waited_for():
         strobed.append(state[[W, RATE]].copy())
     returns = {k: np.abs(strobed[-1] - strobed[-1 - k]).max() for k in (16, 32, 64)}
     assert returns[64] < 1e-11 and 1e-5 < returns[32] < 1e-3 < 10 * returns[16]
-    assert not settle(absorber, engine, params, state, 0.0, 32, 1e-7, 1).recurrent
-    assert state[TURNS] < 1000.0
+    state[TURNS] = 0.0
+    simulator = on(absorber, params, state)
+    assert not attracted(simulator, 0.0, 32, 1e-7, 1).recurrent
+    assert simulator.time < 1000.0

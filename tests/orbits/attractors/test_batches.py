@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from orbits.attractors import batches
-from orbits.attractors.batches import AT_REST, SETTLED, settle_all
-from orbits.simulation import simulate
+from orbits.simulation import batches, simulate
+from orbits.simulation.batches import AT_REST, SETTLED, settle_all
 from tests.machines import ABSORBER
 
 

@@ -8,7 +8,6 @@ from orbits import Coupled, Machine
 from orbits.attractors import find_attractor
 from orbits.attractors.modulation import modulation
 from orbits.attractors.sweeping import sweep
-from orbits.machines.catalogue import stepper
 from orbits.simulation import simulate
 from orbits.symbols import cos
 
@@ -19,8 +18,7 @@ MACHINE = Coupled(
 
 def of(parameters, periods=64):
     found = find_attractor(MACHINE, observed=False, **parameters)
-    params = MACHINE.vector(parameters)
-    return found, modulation(MACHINE, stepper("coupled"), params, found.state, periods)
+    return found, modulation(found.follow(periods))
 
 
 def test_a_periodic_motion_has_no_band():

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled
-from orbits.attractors import batches
 from orbits.design import record
 from orbits.machines.catalogue import stepper, usual
+from orbits.simulation import batches
 from orbits.simulation.driver import first_state, skip
 
 pytestmark = [

@@ -53,10 +53,9 @@ def test_a_stable_orbit_is_found_again():
 def test_a_wrong_event_list_is_refused():
     found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.9))
     assert sorted(found.text) == sorted("LRtt")
-    impacts = found.codes < 2
-    told = replay_nodes(
-        MACHINE, found.params, found.codes[impacts], found.modes[impacts], found.nodes[impacts], 1
-    )
+    codes, modes = found.word.codes, found.word.mode_codes
+    impacts = codes < 2
+    told = replay_nodes(MACHINE, found.params, codes[impacts], modes[impacts], found.nodes[impacts], 1)
     assert told.error == np.inf
     assert not told.matches
     assert "is t, listed was" in told.message
@@ -66,11 +65,12 @@ def test_a_wrong_event_list_is_refused():
 @pytest.mark.parametrize("c2", [0.012, 0.03, 0.1, 0.5, 0.74, 0.75, 0.9])
 def test_every_event_can_be_the_first(c2):
     found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(c2))
-    for k in range(len(found.codes)):
+    codes, modes = found.word.codes, found.word.mode_codes
+    for k in range(len(codes)):
         nodes = np.roll(found.nodes, -k, axis=0)
         nodes[len(nodes) - k :, 0] += 2 * np.pi * found.periods
         told = replay_nodes(
-            MACHINE, found.params, np.roll(found.codes, -k), np.roll(found.modes, -k), nodes, found.periods
+            MACHINE, found.params, np.roll(codes, -k), np.roll(modes, -k), nodes, found.periods
         )
         assert told.error < 1e-11, (k, told.message)
 
@@ -78,9 +78,8 @@ def test_every_event_can_be_the_first(c2):
 def test_an_ill_conditioned_orbit_attracts_although_it_is_known_less_well_than_starts_come_back():
     """Nodes that are off by 1e-7, as those of a steep orbit are by rounding: starts come to the orbit itself; off by 1e-5 they are no orbit's."""
     found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.9))
+    codes, modes = found.word.codes, found.word.mode_codes
     for off, back in ((1e-7, True), (1e-5, False)):
         nodes = found.nodes + [0.0, off]
-        told = replay_nodes(
-            MACHINE, found.params, found.codes, found.modes, nodes, found.periods, thorough=True
-        )
+        told = replay_nodes(MACHINE, found.params, codes, modes, nodes, found.periods, thorough=True)
         assert told.returned is back

@@ -9,6 +9,7 @@ from threading import Event
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from orbits.flows.protocol import Outcome
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.native_stepper import NUMBERS, floats, written
 from orbits.machines.stepping import (
@@ -26,8 +27,8 @@ from orbits.machines.stepping import (
 )
 from orbits.simulation.driver import buffers
 
-SETTLED, AT_REST, LOST, WANDERING = 1, 2, 3, 0
-"""What became of a motion: it recurs, is at rest for ever, left the range of numbers, or does none of these yet."""
+SETTLED, AT_REST, LOST, WANDERING = Outcome.SETTLED, Outcome.AT_REST, Outcome.LOST, Outcome.WANDERING
+GROWTH = 4000  # forcing periods over which the growth of small differences is followed
 
 BLOCK = 512  # motions that one thread takes at a time
 BUFFER = 1024  # events kept between two looks
@@ -277,7 +278,7 @@ def settle_all(
     return found
 
 
-def lyapunov(name: str, state: np.ndarray, params: np.ndarray, periods: int = 4000) -> tuple[float, float]:
+def lyapunov(name: str, state: np.ndarray, params: np.ndarray, periods: int = GROWTH) -> tuple[float, float]:
     """Largest Lyapunov exponent per forcing period and its standard error, from blocks of the growth's logarithms.
 
     A neighbour 1e-7 away is drawn back once a period (Benettin et al., Meccanica 15 (1980) 9). The error is that of

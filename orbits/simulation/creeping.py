@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
+from orbits.flows.trajectory import TWO_PI
 from orbits.machines.stepping import HOLD, Machine, W
-from orbits.simulation.trajectory import TWO_PI
 
 LEAST = 1e-11  # way that is none of rounding, in units of the cavity
 STEADY = 1e-3  # part of the way by which phases, and ways from event to event, may differ from one time to the next
@@ -58,8 +58,6 @@ def move_on(
     max_period: int,
 ) -> bool:
     """Move a creeping motion on to a wall, in place; whether it was moved."""
-    if engine.moving_cavity:
-        return False
     ways = creep(nodes, codes, modes, max_period)
     if ways is None:
         return False

@@ -1,23 +1,32 @@
-"""What a simulation returns: the exact list of events, and the motion between them in closed form."""
+"""A simulated motion of a built-in machine: the exact list of events, and the motion between them in closed form."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from orbits.machines.states import event_states
-from orbits.machines.stepping import HOLD, PSI, RATE, STATUS, TURNS, Machine
+from orbits.contacts import letters as kinds
+from orbits.flows.trajectory import TWO_PI, Trajectory
+from orbits.machines.states import event_states, nodes_of
+from orbits.machines.stepping import MODE, PSI, RATE, REST, STATUS, TIME_REACHED, TURNS, Machine, W
+from orbits.words import Word
+from orbits.words.alphabet import shaken
 
 if TYPE_CHECKING:
     from orbits.machines.base import Model
 
-TWO_PI = 2.0 * np.pi
 LETTERS = "LRtsuH"
+KINDS = np.array([kinds.HIT, kinds.HIT, kinds.TURN, kinds.STICK, kinds.SLIP, kinds.HOLD])
+NO_SPEED = 1e-7  # of the machine's own: a touch, not an impact
+AT_ONCE = 1e-6  # phase from a touch to the stick that follows it
 PLACED = 1e-8  # phases of a peak that differ by less: the peak itself is known to the square of that
 MOST_STEPS = 60  # towards a peak
+PER_PERIOD = 200  # instants
+PER_OSCILLATION = 12  # instants between which an extremum of q1 is looked for; events come on top
 
 
 class Samples(NamedTuple):
@@ -47,47 +56,58 @@ class Balance(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
-    """A simulated motion.
+class NativeTrajectory(Trajectory):
+    """A simulated motion of a built-in machine; see `orbits.flows.trajectory.Trajectory`.
 
     Attributes
     ----------
-    model : Model
-        The machine.
-    params : ndarray, shape (P,)
-        Parameter vector of the run.
+    machine : Machine
+        Its stepper.
     start, end : ndarray, shape (S,)
         First and last state; see :mod:`orbits.machines.stepping`.
     codes, modes : ndarray of int8, shape (n,)
         Event codes (L R t s u = 0 ... 4, H = 5: persistent contact begins) and the modes after the events.
     rows : ndarray, shape (n, ROW)
         Event rows; see :mod:`orbits.machines.stepping`.
-    status : int
-        Why the run ended; `ended` says it in words.
     """
 
-    model: Model
-    params: np.ndarray
     machine: Machine
     start: np.ndarray
     end: np.ndarray
     codes: np.ndarray
     modes: np.ndarray
     rows: np.ndarray
-    status: int
 
-    def __len__(self) -> int:
-        return self.codes.size
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        params: np.ndarray,
+        machine: Machine,
+        start: np.ndarray,
+        end: np.ndarray,
+        events: tuple[np.ndarray, np.ndarray, np.ndarray, int],
+    ) -> NativeTrajectory:
+        """From the states at both ends, and codes, modes, rows and the status of the stepper."""
+        codes, modes, rows, status = events
+        clocks = np.append(_clock(start), rows[:, 0] + TWO_PI * rows[:, 1])
+        ends = float(_clock(end))
+        return cls(model, params, clocks, ends, KINDS[codes], status, machine, start, end, codes, modes, rows)
 
     @property
-    def ended(self) -> str:
-        """Why the run ended, and whether impacts piled up on the way."""
-        sentence = STATUS[self.status]
-        contacts = int(np.count_nonzero(self.codes == HOLD))
-        if contacts:
-            times = "once" if contacts == 1 else f"{contacts} times"
-            sentence += f"; impacts piled up into persistent contact {times}"
-        return sentence
+    def points(self) -> np.ndarray:
+        """Positions and velocities just after the events."""
+        return self.states[1:, list(self.machine.places)]
+
+    @property
+    def whole(self) -> bool:
+        """Whether the run goes on to the time asked for."""
+        return self.status == TIME_REACHED
+
+    @property
+    def stopped(self) -> bool:
+        """Whether it has come to rest."""
+        return self.status == REST
 
     @property
     def letters(self) -> str:
@@ -95,20 +115,76 @@ class Trajectory:
         return "".join(LETTERS[code] for code in self.codes)
 
     @property
-    def impacts(self) -> int:
-        """Number of impacts."""
-        return int(np.count_nonzero(self.codes < 2))
+    def occurrences(self) -> list[tuple[str, int]]:
+        """Letters and modes."""
+        return [*zip(map(LETTERS.__getitem__, self.codes.tolist()), self.modes.tolist())]
+
+    @cached_property
+    def labels(self) -> np.ndarray:
+        """A number for each event."""
+        return 3 * self.codes.astype(int) + self.modes
+
+    @property
+    def held(self) -> bool:
+        """Whether the absorber rests on a wall all the time."""
+        return not len(self) and self.start[MODE] == 0.0 and self.start[W] in self.machine.walls(self.params)
+
+    @property
+    def reason(self) -> str:
+        """Why the run ended."""
+        return STATUS[self.status]
 
     @property
     def phases(self) -> np.ndarray:
         """Phase Psi of every event, shape (n,), counted through: 2 pi per forcing period."""
-        return self.rows[:, 0] + TWO_PI * self.rows[:, 1]
+        return self.clocks[1:]
 
     @property
-    def impact_times(self) -> np.ndarray:
-        """Instants of the impacts, in the machine's time."""
-        frequency = float(self.params[self.model.parameter_names.index("frequency")])
-        return self.phases[self.codes < 2] / frequency * float(self.model.gauge("time", self.params))
+    def nodes(self) -> np.ndarray:
+        """What continuation solves for, at every event, shape (n, NODE)."""
+        return nodes_of(self.machine, self.params, self.codes, self.modes, self.rows)
+
+    def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:
+        """Word and nodes of a cycle; touches of a wall are no impacts on it, and where no wall is hit it lies in the middle."""
+        model, part = self.model, slice(first, last)
+        codes, modes, rows = self.codes[part], self.modes[part], self.rows[part]
+        nodes = nodes_of(self.machine, self.params, codes, modes, rows)
+        speeds = np.abs(rows[:, 3]) / np.prod(model.natural_units(self.params))
+        kept = ~_touches(codes, nodes, speeds)
+        codes, modes = codes[kept], modes[kept]
+        alphabet = shaken(model.frictionless(self.params))
+        word = Word(tuple(LETTERS[code] for code in codes), tuple(map(int, modes)), alphabet)
+        return word, model.at_home(codes, nodes[kept], self.params)
+
+    def approaches(self, first: int = 0) -> np.ndarray:
+        """|w'| just before the impacts."""
+        return np.abs(self.rows[first:, 3][self.hits[first:]])
+
+    def shown(self, first: int) -> list[float]:
+        """B = (B+ - B-)/2, positive away from the wall, at the impacts: v' does not change there, so that it is half the jump of -w'."""
+        part = self.rows[first:][self.hits[first:]]
+        away = 1.0 - 2.0 * self.codes[first:][self.hits[first:]]  # L = 0, R = 1
+        jumps = 0.5 * away * (part[:, 3] - part[:, 4])
+        return (jumps * float(self.model.gauge("velocity", self.params))).tolist()
+
+    def extremes(self, per_period: int = 0) -> dict[str, float]:
+        """Largest |w|, and of a machine with an oscillator its largest displacement."""
+        reach = np.append(self.states[:, W], self.end[W])
+        if self.model.frictionless(self.params):  # turns are no events there
+            reach = np.append(reach, self.sample().w)
+        left, right = self.machine.walls(self.params)
+        far = min(max(left, -right), float(np.abs(reach).max()))
+        if not self.machine.moving_cavity:
+            amplitude = float(self.model.column(self.params, self.model.driven_by))
+            return {"C2": amplitude**2, "max_abs_w": far}
+        slow = max(1.0, 1.0 / float(self.model.phase_speed(self.params)))
+        often = per_period or math.ceil(min(PER_PERIOD, PER_OSCILLATION * slow))
+        return {"max_abs_q1": self.peak_cavity(often), "max_abs_w": far}
+
+    def responses(self, per_period: int) -> tuple[np.ndarray, np.ndarray]:
+        """|q1| over the phase."""
+        seen = self.sample(per_period=per_period)
+        return seen.phase, np.abs(seen.cavity)
 
     @cached_property
     def states(self) -> np.ndarray:
@@ -122,7 +198,7 @@ class Trajectory:
         turns = np.append(self.states[:, TURNS], self.end[TURNS])
         return np.maximum(np.diff(psi) + TWO_PI * np.diff(turns), 0.0)
 
-    def sample(self, phases: np.ndarray | None = None, per_period: int = 200) -> Samples:
+    def sample(self, phases: np.ndarray | None = None, per_period: int = PER_PERIOD) -> Samples:
         """Evaluate the motion in closed form.
 
         Parameters
@@ -141,7 +217,7 @@ class Trajectory:
         ValueError
             If a phase lies outside the run.
         """
-        first, last = self._span()
+        first, last = float(self.clocks[0]), self.finish
         if phases is None:
             phases = self._grid(per_period)
         phases = np.atleast_1d(np.asarray(phases, dtype=float))
@@ -151,8 +227,7 @@ class Trajectory:
                 f"phases from {phases.min():g} to {phases.max():g} leave the run, which lasts "
                 f"from {first:g} to {last:g}; simulate more periods"
             )
-        begins = self.states[:, PSI] + TWO_PI * self.states[:, TURNS]
-        place = np.clip(np.searchsorted(begins, phases, side="right") - 1, 0, len(begins) - 1)
+        place = np.clip(np.searchsorted(self.clocks, phases, side="right") - 1, 0, len(self.clocks) - 1)
         states = self.states[place]
         ahead = np.maximum((phases - TWO_PI * states[:, TURNS]) - states[:, PSI], 0.0)
         out = np.empty((phases.size, 4))
@@ -165,7 +240,7 @@ class Trajectory:
         seen = self.sample(TWO_PI * times)
         return np.column_stack([getattr(seen, name) for name in self.machine.coordinates])
 
-    def peak_cavity(self, per_period: int = 200) -> float:
+    def peak_cavity(self, per_period: int = PER_PERIOD) -> float:
         """Largest displacement |q1| of the cavity over the run: events, ends, and the zeros of q1' between samples."""
         grid = self._grid(per_period)
         marks = np.concatenate([grid, self.phases])
@@ -197,16 +272,9 @@ class Trajectory:
             before = side
         return peak
 
-    def _span(self) -> tuple[float, float]:
-        """Phases at which the run begins and ends, counted through."""
-        return (
-            float(self.start[PSI] + TWO_PI * self.start[TURNS]),
-            float(self.end[PSI] + TWO_PI * self.end[TURNS]),
-        )
-
     def _grid(self, per_period: int) -> np.ndarray:
         """Evenly spaced phases over the run."""
-        first, last = self._span()
+        first, last = float(self.clocks[0]), self.finish
         return np.linspace(first, last, max(2, int(np.ceil((last - first) / TWO_PI * per_period)) + 1))
 
     def balance(self) -> Balance:
@@ -232,3 +300,19 @@ class Trajectory:
         )
         error = abs(gap) / scale if scale > 0.0 else 0.0
         return Balance(change, float(excitation), float(damping), float(friction), impacts, float(error))
+
+
+def _clock(state: np.ndarray) -> float:
+    return state[PSI] + TWO_PI * state[TURNS]
+
+
+def _touches(codes: np.ndarray, nodes: np.ndarray, speeds: np.ndarray) -> np.ndarray:
+    """Which events of a cycle without other impacts are touches of a wall, after which the absorber stays where it is.
+
+    Stick-slip near a wall is pushed away from it until it only just reaches it. What is left of the impacts then is rounding; the
+    motion is that without impacts, somewhere in the cavity.
+    """
+    hits = codes < 2
+    wait = (np.roll(nodes[:, 0], -1) - nodes[:, 0]) % TWO_PI
+    soft = hits & (speeds < NO_SPEED) & (np.roll(codes, -1) == 3) & (wait < AT_ONCE)
+    return soft if np.array_equal(soft, hits) else np.zeros_like(soft)

@@ -1,0 +1,286 @@
+"""Many starts under way, and the motions they are found to reach."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from orbits.attractors.attractor import Attractor
+from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
+from orbits.attractors.recurrence import NEARLY, attracted, recurring
+from orbits.contacts.letters import RELEASE
+from orbits.flows.protocol import Batch, Outcome, SimulationError, Simulator
+from orbits.flows.trajectory import TWO_PI, Trajectory
+from orbits.orbit import Orbit
+from orbits.population.sorting import Sorting
+
+BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)
+"""Forcing periods (or events) between two looks at a motion that is followed alone."""
+SURE = 1e-7  # a point so near to a known motion, relative to 1 + points, lies on it
+FALLING = 1e-2  # so near, and nearer by half than at the look before, it is falling onto it
+NEAR = 1e-3  # a settled point lies so near to the solved motion that it belongs to
+RECOGNISED = 1e-7  # difference of two points that counts as a return of a single motion of many
+AGAIN = 8.0  # forcing periods after which a settled motion is looked at
+PATIENCE = 3  # times at most a motion that does not recur is looked at again
+ENOUGH = 20_000  # forcing periods that chaotic motions, all those alike together, have not ended in; events of a motion that is followed alone
+LATE = 3000.0  # forcing periods between two such looks
+TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
+UNENDING = ("chaotic", "quasi-periodic", "slow")
+RELEASED = 1e-6  # difference of the clocks of two releases that are one
+LONG = 1e4  # clock of a self-excited machine without an event after which none is waited for
+
+
+@dataclass(frozen=True, eq=False)
+class _Marks:
+    """Where a known motion passes the section, and its mirror image, by which another motion is seen to lie on it."""
+
+    place: int  # among the motions
+    own: dict[str, np.ndarray]
+    """By the event of a self-excited machine, (m, d); "" of a forced one, at whole forcing periods."""
+    image: dict[str, np.ndarray]
+    counted: np.ndarray  # which coordinates are known
+
+    def distances(self, event: str, points: np.ndarray) -> np.ndarray:
+        """Of points (n, d) to the motion and to its mirror image, shape (2, n)."""
+        rows = [table.get(event, np.empty((0, points.shape[-1]))) for table in (self.own, self.image)]
+        gaps = [(np.abs(points[:, None] - known) * self.counted).max(axis=2) for known in rows]
+        return np.array([gap.min(axis=1, initial=np.inf) for gap in gaps])
+
+
+class Fleet:
+    """Starts of a machine. Those of a flow that runs them all at once until they recur are looked at when they have; else each is followed
+    alone, and no further than until it falls onto a known motion.
+    """
+
+    def __init__(self, simulator: Simulator, points: np.ndarray, longest: int, workers: int | None) -> None:
+        self.simulator, self.points, self.longest = simulator, points, longest
+        self.model, self.params = simulator.model, simulator.params
+        self.free = simulator.free(points)
+        self.batch: Batch | None = simulator.settle_all(points, longest, workers)
+        self.work = 0.0 if self.batch is None else self.batch.work
+        self.marks: list[_Marks] = []
+        self._begun = 0.0
+
+    def sort(self, i: int, sorting: Sorting) -> None:
+        """Which motion start number i reaches, or its mirror image; with it all others of a batch whose points lie on that."""
+        if not self.free[i]:
+            return sorting.plain(i, "impossible")
+        simulator, point = self.simulator, self.points[i]
+        self._begun = simulator.time
+        try:
+            if self.batch is not None:
+                return self._of_batch(i, self.batch, sorting)
+            clock, point = (point[0], point[1:]) if self.model.forced else (0.0, point)
+            simulator.start(point, clock / TWO_PI)
+            self._begun = simulator.time
+            return self._followed(i, sorting)
+        except SimulationError:
+            return sorting.plain(i, "escaped")
+        finally:
+            self.work += simulator.time - self._begun
+
+    # ------------------------------------------------------------------ one of many
+    def _of_batch(self, i: int, batch: Batch, sorting: Sorting) -> None:
+        outcome = batch.outcomes[i]
+        if outcome == Outcome.AT_REST:
+            rest = Orbit.at_rest(self.model, self.params)
+            return self._rest(batch.outcomes == outcome, rest if rest.real else None, 1, None, sorting)
+        if outcome == Outcome.LOST:
+            return sorting.plain(batch.outcomes == outcome, "escaped")
+        self.simulator.go_on(batch.states[i])
+        self._begun = self.simulator.time
+        if outcome == Outcome.SETTLED:
+            return self._found(self._looked_at(AGAIN, self.longest, 1), i, sorting)
+        return self._unsettled(i, batch, sorting)
+
+    def _looked_at(self, transient: float, longest: int, patience: int) -> Attractor:
+        """What the motion settles on."""
+        self.work += SOLVED
+        return attracted(self.simulator, transient, longest, RECOGNISED, patience)
+
+    def _unsettled(self, i: int, batch: Batch, sorting: Sorting) -> None:
+        """A motion that does not recur, judged by its growth of small differences; where it may still recur it is looked at again.
+
+        A chaotic transient ends at a rate that does not depend on its age (T. Tel and Y.-C. Lai, Transient Chaos, 2011): that many motions have
+        not ended together tells as much as that one has not in as many times the periods.
+        """
+        alike = (sorting.index < 0) & (batch.outcomes == Outcome.WANDERING)
+        alike &= np.arange(len(alike)) >= i
+        gaps = np.maximum(batch.gaps, np.finfo(float).tiny)
+        alike &= np.abs(np.log10(gaps / gaps[i])) < 1.5
+        alike[i] = True
+        kind, exponent, error = self._grown()
+        followed = np.count_nonzero(alike) * batch.followed
+        for _ in range(PATIENCE):
+            if kind == "chaotic" and followed >= ENOUGH:
+                break
+            begun = self.simulator.time
+            found = self._looked_at(200.0, self.longest, 2)
+            if found.recurrent:
+                return self._found(found, i, sorting)
+            self.simulator.skip(LATE)
+            followed += self.simulator.time - begun
+        if kind != "chaotic":  # now that it is nearer to what it settles on
+            kind, exponent, error = self._grown()
+        if kind == "slow":  # neighbours come together: it may recur, but late
+            found = self._looked_at(0.0, RARE, 1)
+            if found.recurrent:
+                return self._found(found, i, sorting)
+        return sorting.plain(alike, kind, exponent=exponent, error=error, state=batch.states[i].copy())
+
+    # ------------------------------------------------------------------ followed alone
+    def _followed(self, i: int, sorting: Sorting) -> None:
+        simulator, begun = self.simulator, self.simulator.count
+        before: tuple[_Marks | None, float] = (None, np.inf)
+        for looks, block in enumerate(BLOCKS):
+            goes_on = simulator.skip(block)
+            marks, gap, mirrored = self._nearest()
+            near = marks is not None and gap < FALLING
+            if marks is not None and (gap < SURE or (near and marks is before[0] and gap < 0.5 * before[1])):
+                return sorting.assign(i, marks.place, mirrored)
+            before = marks, gap
+            if goes_on and (looks < 2 or (near and looks < 5)):
+                continue
+            run = simulator.look(self.longest)
+            if not run.held and simulator.rests(run, True):
+                return self._rest(i, _equilibrium(run), 0, simulator.state.copy(), sorting)
+            orbit = recurring(simulator, run, self.longest, NEARLY)
+            if orbit is not None:
+                return self._add(i, orbit, orbit.flow.kind(orbit), orbit.periods, orbit.spelling, sorting)
+            if run.held:
+                return sorting.plain(i, "stuck", state=simulator.state.copy())
+            if _chatters(run):
+                return sorting.plain(i, "chatter", periods=0, state=simulator.state.copy())
+            if looks >= TOLD and any(m.kind in UNENDING for m in sorting.motions):
+                break
+            if simulator.count - begun > ENOUGH:
+                break
+        known = next((k for k, m in enumerate(sorting.motions) if m.kind in UNENDING), None)
+        if known is not None:
+            return sorting.assign(i, known)
+        kind, exponent, error = self._grown()
+        state = simulator.state.copy()
+        if kind == "slow":  # neighbours come together: it may recur, but late
+            orbit = recurring(simulator, simulator.look(RARE), RARE, NEARLY)
+            if orbit is not None:
+                return self._add(i, orbit, orbit.flow.kind(orbit), orbit.periods, orbit.spelling, sorting)
+        return sorting.plain(i, kind, exponent=exponent, error=error, state=state)
+
+    def _grown(self) -> tuple[str, float, float]:
+        """Kind of a motion that does not recur, its Lyapunov exponent per forcing period and the error of that."""
+        exponent, error = self.simulator.growth()
+        self.work += 0.0 if self.batch is None else self.batch.growth
+        return wandering(exponent, error, self.simulator.roomy), exponent, error
+
+    def _nearest(self) -> tuple[_Marks | None, float, bool]:
+        """The known motion that the next point of the section lies nearest to, how far from it, relative to 1 + points, and whether that is its image."""
+        best: tuple[_Marks | None, float, bool] = (None, np.inf, False)
+        if not self.marks:
+            return best
+        event, point = self.simulator.section()
+        size = 1.0 + float(np.abs(point).max())
+        for marks in self.marks:
+            own, image = marks.distances(event, point[None])[:, 0] / size
+            if min(own, image) < best[1]:
+                best = marks, float(min(own, image)), bool(image < own)
+        return best
+
+    # ------------------------------------------------------------------ motions
+    def _rest(
+        self, members: np.ndarray | int, rest: Any, periods: int, state: np.ndarray | None, sorting: Sorting
+    ) -> None:
+        """Starts that come to rest, at a solution where one is known."""
+        k, problem, u = sorting.known(rest, "stuck", periods)
+        if k < 0:
+            k = sorting.add(rest, Motion("stuck", "", periods, problem, u, state=state))
+        sorting.assign(members, k)
+
+    def _found(self, found: Attractor, i: int, sorting: Sorting) -> None:
+        """What a motion of a batch settles on."""
+        orbit, periods = found.orbit, found.periods
+        if found.kind == self.simulator.resting:
+            orbit, periods = (orbit if orbit is not None and orbit.real else None), 1
+        self._add(i, orbit, found.kind, periods, found.text, sorting, free=not found.impacts)
+
+    def _add(
+        self,
+        i: int,
+        orbit: Orbit | None,
+        kind: str,
+        periods: int,
+        word: str,
+        sorting: Sorting,
+        free: bool = False,
+    ) -> None:
+        """Put the motion on which the simulator is on the list, unless it is there, and give it all starts whose points lie on it."""
+        k, problem, u = sorting.known(orbit, kind, periods)
+        if k < 0:
+            motion = Motion(kind, word, periods, problem, u, state=self.simulator.state.copy())
+            k = sorting.add(orbit, motion)
+        marks = next((marks for marks in self.marks if marks.place == k), None)
+        if marks is None:
+            marks = self._marks(k, orbit, max(periods, 1), free)
+            self.marks.append(marks)
+        batch = self.batch
+        if batch is None:
+            nearest, _, mirrored = self._nearest()
+            return sorting.assign(i, k, nearest is marks and mirrored)
+        own, image = marks.distances("", batch.points)
+        recurs = (batch.outcomes == Outcome.SETTLED) & (batch.periods == max(periods, 1))
+        if periods > self.longest:
+            recurs = batch.outcomes == Outcome.WANDERING
+        here = (np.minimum(own, image) < NEAR) & recurs
+        here[i] = True
+        return sorting.assign(here, k, image < own)
+
+    def _marks(self, place: int, orbit: Orbit | None, periods: int, free: bool) -> _Marks:
+        """Points of a motion and of its mirror image, where that is another one: of an orbit, or (of a batch) of that on which the simulator is."""
+        simulator, model = self.simulator, self.model
+        mirrored = model.has_mirror(self.params) and not (orbit is not None and orbit.symmetric)
+        counted = np.ones(len(simulator.names))
+        if orbit is not None:
+            counted[[entry - 1 for entry in orbit.flow.loose(model, orbit.word)]] = 0.0
+        if free:
+            counted[0] = 0.0  # a motion without impacts may lie anywhere between the walls
+        if orbit is not None and not model.forced:
+            image = _after_events(orbit.mirror()) if mirrored else {}
+            return _Marks(place, _after_events(orbit), image, counted)
+        state, begun = simulator.state.copy(), simulator.time
+        if orbit is not None and self.batch is None:
+            simulator.begin(orbit.word, orbit.nodes[0])
+        own, image, first = [], [], np.floor(simulator.time) + 1.0
+        simulator.follow(first)
+        for k in range(periods):
+            own.append(simulator.point)
+            simulator.follow(first + k + 0.5)
+            image.append(simulator.image(simulator.point))
+            simulator.follow(first + k + 1.0)
+        simulator.go_on(state)
+        self._begun += simulator.time - begun
+        return _Marks(place, {"": np.array(own)}, {"": np.array(image)} if mirrored else {}, counted)
+
+
+def _equilibrium(run: Any) -> Any:
+    """The solution near the end of a self-excited motion without events; None where none is known."""
+    from orbits.flows.page.smooth import rest_near
+
+    return rest_near(run.model, run.modes[-1], run.params, run.last)
+
+
+def _after_events(orbit: Orbit) -> dict[str, np.ndarray]:
+    """The nodes' states by their events."""
+    letters, states = np.array(orbit.word.events), orbit.nodes[:, 1:]
+    return {str(letter): states[letters == letter] for letter in np.unique(letters)}
+
+
+def _chatters(run: Trajectory) -> bool:
+    """Whether a wall takes hold again and again at the same clock: the motion recurs, with infinitely many impacts in between."""
+    releases = run.clocks[1:][run.kinds == RELEASE]
+    for step in range(1, len(releases) // 2 + 1):
+        spans = releases[step:] - releases[:-step]
+        turns = np.round(spans / TWO_PI) * TWO_PI if run.model.forced else spans[-1]
+        if np.all(np.abs(spans - turns)[-step:] < RELEASED) and np.ptp(spans[-step:]) < RELEASED:
+            return True
+    return False
