@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from orbits.design.calibration import Calibration
     from orbits.machines.base import Model
 
+INEXACT = 0.01  # of the time between impacts: clocks are better, so that data that scatter more are told to be doubtful
 CLOSE = 0.95  # correlation of two estimates from which on it is told
 
 
@@ -159,6 +160,11 @@ def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[st
     lines.append(
         f"from ... to: {100 * found.confidence:g} % confidence; {found.residuals.size} residuals scatter by {figures(found.scatter)}"
     )
+    if found.scatter > INEXACT * found.between:
+        lines.append(
+            f"doubtful: the scatter is {100.0 * found.scatter / found.between:.2g} % of the mean time between impacts, and clocks are better; the search may "
+            "have ended beside the true values, and the intervals do not know that. Ways out: narrower --limits, one --unknown less, fewer impacts"
+        )
     names = list(found.values)
     for i, first in enumerate(names):
         for j in range(i):

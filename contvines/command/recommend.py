@@ -160,9 +160,10 @@ def kept(place: Path) -> dict[str, Any]:
 
 def _target(text: str, study: Study) -> float:
     from contvines.command.amounts import amount
+    from orbits.flows.catalogue import flow_of
 
     model = study.model
-    value = amount("--target", text, model.default_measure, model.units)
+    value = amount("--target", text, flow_of(model).default_measure(model), model.units)
     if value <= 0.0:
         raise ValueError(f"--target {text}: give a response above 0.")
     return value

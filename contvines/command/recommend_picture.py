@@ -108,7 +108,8 @@ def draw_responses(axes: Axes, found: Recommendation) -> None:
         ylim=(0.0, ROOM * max(max(curve.y) for curve in found.curves)),
         xlim=found.within,
     )
-    axes.legend(loc="upper center", ncols=2, fontsize="x-small", handlelength=2.1, columnspacing=0.5)
+    columns = min(2, max(1, len(axes.get_legend_handles_labels()[0]) // 2))
+    axes.legend(loc="upper center", ncols=columns, fontsize="x-small", handlelength=2.1, columnspacing=0.5)
 
 
 def draw_start_up(axes: Axes, found: Recommendation) -> None:

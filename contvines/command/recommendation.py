@@ -25,7 +25,12 @@ MET = {
     "stuck": "stuck: moves with the oscillator",
 }
 """What simulated motions are."""
-PLAIN = {"impacts": MET["impacts"], "modulated": "modulated", "calm": "without impacts", "stuck": "stuck"}
+PLAIN = {
+    "impacts": "periodic, hits rigid walls",
+    "modulated": "modulated",
+    "calm": "periodic, hits no rigid wall",
+    "stuck": "stuck",
+}
 """The same of machines that are not known to have an absorber."""
 Number = Annotated[float, BeforeValidator(lambda value: math.nan if value is None else value)]
 """Not known where JSON has null."""

@@ -15,12 +15,13 @@ import numpy as np
 
 from contvines.command.recommendation import MET, Curve, Jump, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
-from contvines.shared.modulation import BAND
+from contvines.shared.modulation import BAND, modulation_of
 from contvines.shared.number_text import figures
 from orbits.flows.catalogue import flow_of
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
+    from contvines.survey.completion import Unbranched
     from contvines.survey.outcomes import Findings
     from contvines.survey.plan import Plan
     from orbits.machines.varying import Varying
@@ -95,9 +96,11 @@ def _kind(measures: Mapping[str, float], text: str) -> str:
     """What a simulated motion is, one of `MET`."""
     if text == "stuck":
         return "stuck"
+    if text in MODULATED or modulation_of(measures):
+        return "modulated"
     if measures.get("impacts_per_period", math.nan) == 0.0:
         return "calm"
-    return "modulated" if text in MODULATED else "impacts"
+    return "impacts"
 
 
 MODULATED = ("chaotic", "quasi-periodic", "slow")
@@ -540,6 +543,11 @@ class _Work:
         seen: list[Curve] = []
         compared: list[tuple[float, float]] = []
         measure = flow_of(model).default_measure(model)
+        loose: dict[str, Any] = {k: v for k, v in own.items() if k != over}
+
+        def response_of(one: Unbranched) -> float:
+            value = one.measures.get(measure, math.nan)
+            return value if math.isfinite(value) else -math.inf
 
         def keep(found: Findings) -> dict[str, float]:
             parts = stretches(found.graph)
@@ -549,6 +557,20 @@ class _Work:
                 u, p, response = inside(top, 0.5 * AGREES)
                 met = beginning_with(top.stretch.branch.problem.orbit(u, p), REPLAYED, LONGEST)
                 compared.append((response, met.get(measure, -math.inf)))
+            free = max(found.unbranched, key=response_of, default=None)
+            if (
+                free is not None
+                and free.state is not None
+                and response_of(free) > (top.response if top else -math.inf)
+            ):
+                begin: dict[str, Any] = {
+                    "start": free.state,
+                    "transient": REPLAYED,
+                    "nudge": 0.0,
+                    "exponents": False,
+                }
+                (longer,) = sweep(model, over, [free.value], **begin, **loose)
+                compared[:] = [(response_of(free), longer.measures[measure])]
             return peak(found)
 
         job = Job(self.family, over, (low, high), (keep,), options={**options_of(self.study), "depth": 0})
@@ -560,7 +582,6 @@ class _Work:
             max(low, top - ABOUT * step), min(high, top + ABOUT * step), ROUGH if self.integrated else FINE
         )
         grid = np.union1d(np.linspace(low, high, CHECK), near)
-        loose: dict[str, Any] = {k: v for k, v in own.items() if k != over}
         for run in (grid, grid[::-1]):
             rows = sweep(model, over, run, nudge=0.0, **loose)
             seen.append(Curve("simulated", [r.value for r in rows], [r.measures[measure] for r in rows]))

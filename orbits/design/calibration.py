@@ -6,6 +6,7 @@ Least squares through simulated motions (`orbits.design.estimates`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -93,7 +94,7 @@ def from_impacts(
             f"{found.scatter:.3g}, with {between:.3g} from one to the next. Is the machine the measured one, does the run begin as the "
             "measurement did, is an impact missing? Fewer impacts, other limits or one more unknown parameter may help"
         )
-    return found
+    return replace(found, between=between)
 
 
 def _nearer(

@@ -34,6 +34,8 @@ class Calibration:
     residuals : float array
     correlation : float array (n, n)
         Of the estimates: near 1 or -1 the data cannot tell two of them apart.
+    between : float
+        Of impacts: the mean time from one to the next, in the unit of the data.
     """
 
     values: dict[str, float]
@@ -42,6 +44,7 @@ class Calibration:
     scatter: float
     residuals: np.ndarray = field(repr=False)
     correlation: np.ndarray = field(repr=False)
+    between: float = math.nan
 
     def __str__(self) -> str:
         lines = [

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from contvines.command.calibrate import calibration_text
+from orbits.design.calibration import Calibration
 from tests.orbits.design.laboratory import STUDY, measurement
 
 pytestmark = pytest.mark.slow
@@ -61,3 +63,15 @@ def test_bad_data_and_options_get_a_sentence(run, study, tmp_path, data, options
 def test_one_measurement_is_needed(run, study, tmp_path):
     assert "neither is given" in run("calibrate", study)[2]
     assert "cannot be read" in run("calibrate", study, "--impacts", tmp_path / "no.csv")[2]
+
+
+def test_a_scatter_that_no_clock_has_is_doubtful():
+    """Hand-made estimates of impacts 4 s apart: 1 % of that is 40 ms."""
+    for scatter, doubtful in ((0.03, False), (0.09, True)):
+        interval = {"restitution": (0.6, 0.8)}
+        found = Calibration(
+            {"restitution": 0.7}, interval, 0.95, scatter, np.zeros(12), np.eye(1), between=4.0
+        )
+        assert (
+            "doubtful: the scatter is 2.2 % of" in calibration_text(found, {}, {"restitution": 0.6})
+        ) == doubtful
