@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from orbits.flows.protocol import SimulationError
     from orbits.flows.trajectory import Trajectory
     from orbits.simulation.native_trajectory import Balance, Samples
-    from orbits.simulation.replaying import Replay, replay, replay_nodes
+    from orbits.simulation.replaying import Replay, replay
     from orbits.simulation.runs import simulate
 
 __all__ = [
@@ -22,7 +22,6 @@ __all__ = [
     "SimulationError",
     "Trajectory",
     "replay",
-    "replay_nodes",
     "simulate",
 ]
 
@@ -31,7 +30,7 @@ __getattr__ = on_demand(
     {
         "SimulationError": "orbits.flows.protocol",
         "simulate": "orbits.simulation.runs",
-        **dict.fromkeys(("Replay", "replay", "replay_nodes"), "orbits.simulation.replaying"),
+        **dict.fromkeys(("Replay", "replay"), "orbits.simulation.replaying"),
         "Trajectory": "orbits.flows.trajectory",
         **dict.fromkeys(("Balance", "Samples"), "orbits.simulation.native_trajectory"),
     },

@@ -56,6 +56,11 @@ class PageTrajectory(Trajectory):
         return self.states[1:]
 
     @property
+    def nodes(self) -> np.ndarray:
+        """What continuation solves for, at every event of a forced machine, shape (m, n + 1)."""
+        return np.column_stack([self.clocks[1:], self.points])
+
+    @property
     def whole(self) -> bool:
         """Whether the run goes on to the time asked for."""
         return self.status == REACHED

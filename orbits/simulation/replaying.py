@@ -1,27 +1,30 @@
-"""Replay: does the simulator, which knows no word, follow a claimed periodic orbit?"""
+"""Replay: does the simulator, which knows no word, follow a claimed periodic orbit?
+
+Nothing here knows the equations that continuation solves, so it can check them. Derivatives are central differences of the simulated return map,
+from one of the orbit's events to itself.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from orbits.machines.catalogue import stepper as machine
-from orbits.machines.states import nodes_of, state_of
-from orbits.machines.stepping import EVENTS_FULL
-from orbits.simulation.driver import collect, skip
-from orbits.simulation.native_trajectory import TWO_PI, NativeTrajectory
-from orbits.simulation.return_map import cyclic_distance, go_round, monodromy
-
-if TYPE_CHECKING:
-    from orbits.machines.base import Model
-    from orbits.machines.stepping import Machine
+from orbits.contacts.letters import HIT, SLIP, STICK, TURN
+from orbits.flows.catalogue import flow_of
+from orbits.flows.protocol import Motion, SimulationError, Simulator
+from orbits.flows.trajectory import TWO_PI
+from orbits.simulation.runs import simulator_of
+from orbits.words import Word
 
 DISPLACED, NEAR = 1e-6, 1e-8  # a start off an orbit, and when it counts as back
 ILL = 1e-6  # an orbit is known at least as well
 SMALLER = (1e-7, 1e-8)  # displacements beside folds, of which no more ...
 SHRUNK = 1e-2  # ... than this part is to be left
+LONGEST = 200_000.0  # forcing periods that are waited for
+ROUNDING = 1e-15  # of a simulated node
+ENOUGH = 2e-10  # estimated error of a derivative that asks for no smaller step
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,7 @@ class Replay:
     returned : bool or None
         Whether a start moved off a stable orbit comes back to it (None for others, or if not asked for).
     motion : float
-        Where the events differ: largest difference of the positions w at the claimed nodes' phases over one
+        Where the events differ: largest difference of the positions at the claimed nodes' phases over one
         period. On a border events appear or vanish by rounding alone: the motion still agrees.
     """
 
@@ -62,29 +65,23 @@ class Replay:
         return bool(np.isfinite(self.error))
 
 
-class _Cycle(NamedTuple):
-    """A claimed cycle as bare arrays, for a stepper."""
+class Round(NamedTuple):
+    """Events after the first node, up to and including its return.
 
-    engine: Machine
-    params: np.ndarray
-    codes: np.ndarray
-    modes: np.ndarray
+    nodes : shape (n, NODE); message : "" or what went otherwise than listed.
+    """
+
     nodes: np.ndarray
-    periods: int
-
-    def begin(self) -> np.ndarray:
-        """The state just after the first event."""
-        return state_of(self.engine, self.params, int(self.codes[0]), int(self.modes[0]), self.nodes[0])
+    message: str
 
 
 def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int = 200) -> Replay:
-    """Replay an orbit: start exactly at its first node and compare events and nodes over one period.
+    """Replay an orbit of a forced machine: start exactly at its first node and compare events and nodes over one period.
 
     Parameters
     ----------
     orbit : orbit-like
-        With `model`, `params`, `periods`, `nodes` (shape (n, NODE)) and `word` (or `codes` and `modes`): an
-        `orbits.orbit.Orbit` or an `Attractor`.
+        With `model`, `params`, `periods`, `nodes` (shape (n, NODE)) and `word`: an `orbits.orbit.Orbit` or an `Attractor`.
     thorough : bool
         Also take multipliers, follow the orbit for as long as they allow and, if it is stable, start off it and see
         whether the motion comes back.
@@ -97,131 +94,176 @@ def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int 
     -------
     Replay
     """
-    word = getattr(orbit, "word", None)
-    codes = word.codes if word is not None else orbit.codes
-    modes = word.mode_codes if word is not None else orbit.modes
-    return replay_nodes(
-        orbit.model, orbit.params, codes, modes, orbit.nodes, orbit.periods, thorough, loss, most
-    )
-
-
-def replay_nodes(
-    model: Model,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    periods: int,
-    thorough: bool = False,
-    loss: float = 1e-4,
-    most: int = 200,
-) -> Replay:
-    """`replay` from bare arrays: events and modes of shape (n,), nodes of shape (n, NODE)."""
-    params = np.asarray(params, dtype=float)
-    engine = machine(model.name)
-    codes, modes = np.asarray(codes, np.int8), np.asarray(modes, np.int8)
     nothing = np.empty(0, complex)
-    if not len(codes):
-        return _stuck(model, params)
-    nodes = np.asarray(nodes, dtype=float).reshape(len(codes), -1)
-    there = go_round(engine, params, codes, modes, nodes[0])
+    simulator, word, nodes = simulator_of(orbit.model, orbit.params), orbit.word, orbit.nodes
+    if not len(word):
+        return _without_events(simulator, orbit)
+    there = go_round(simulator, word, nodes[0])
     if there.message:
-        motion = _motion(model, _Cycle(engine, params, codes, modes, nodes, periods))
-        return Replay(np.inf, there.message, nothing, motion=motion)
-    claimed = np.concatenate([nodes[1:], nodes[:1]])
-    claimed[-1, 0] += TWO_PI * periods
-    error = float(np.abs(there.nodes - claimed).max())
+        return Replay(np.inf, there.message, nothing, motion=_motion(simulator, orbit))
+    error = float(np.abs(there.nodes - _following(nodes, orbit.periods)).max())
     if not thorough:
         return Replay(error, "", nothing)
-    start = _freest(codes)
-    codes, modes = np.roll(codes, -start), np.roll(modes, -start)
-    nodes = np.roll(nodes, -start, axis=0)
-    if start:
-        nodes[-start:, 0] += TWO_PI * periods
-    matrix = monodromy(engine, params, codes, modes, nodes[0])
+    word, nodes = _from_freest(word, nodes, orbit.periods)
+    matrix = monodromy(simulator, word, nodes[0])
     if matrix is None:
         return Replay(
             error, "the return map is not smooth here: a displaced start takes other events", nothing
         )
     multipliers = np.linalg.eigvals(matrix).astype(complex)
-    free = 0 if np.any(codes < 2) else 1  # a motion without impacts may be moved as a whole
+    free = len(flow_of(orbit.model).loose(orbit.model, word))  # such a motion may be moved as a whole
     growth = float(np.sort(np.abs(multipliers))[::-1][free])
     expected = np.log(loss / 1e-15) / np.log(growth) if growth > 1.0 else np.inf
     wanted = int(min(most, max(1.0, expected)))
-    cycle = _Cycle(engine, params, codes, modes, nodes, periods)
-    returned = _returns(cycle, growth) if growth < 1.0 - 1e-6 else None
-    return Replay(error, "", multipliers, _tracked(cycle, loss, wanted), float(expected), returned)
+    cycle = simulator, word, nodes, orbit.periods
+    returned = _returns(*cycle, growth) if growth < 1.0 - 1e-6 else None
+    return Replay(error, "", multipliers, _tracked(*cycle, loss, wanted), float(expected), returned)
 
 
-def _stuck(model: Model, params: np.ndarray) -> Replay:
-    """The empty word: the absorber must not slip."""
-    held = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params))) >= 0.0
-    sentence = "" if held else "friction does not hold the absorber"
-    return Replay(0.0 if held else np.inf, sentence, np.empty(0, complex))
+def _without_events(simulator: Simulator, orbit: Any) -> Replay:
+    """A period without an event; the absorber must not slip."""
+    model, params, nothing = orbit.model, orbit.params, np.empty(0, complex)
+    if model.in_cavity:
+        held = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params))) >= 0.0
+        return (
+            Replay(0.0, "", nothing)
+            if held
+            else Replay(np.inf, "friction does not hold the absorber", nothing)
+        )
+    simulator.begin(orbit.word, orbit.nodes[0])
+    run = simulator.run(orbit.periods, 1)
+    if len(run):
+        return Replay(np.inf, f"event 1 is {run.letters[0]}, none was listed", nothing)
+    return Replay(float(np.abs(simulator.point - orbit.nodes[0, 1:]).max()), "", nothing)
 
 
-def _motion(model: Model, cycle: _Cycle) -> float:
-    engine, params, codes, _, nodes, periods = cycle
-    begin = cycle.begin()
-    left, right = engine.walls(params)
-    if not right <= begin[1] <= left:
-        return np.inf
-    state = begin.copy()
-    until = begin[4] + begin[0] / TWO_PI + periods
-    seen = collect(engine, state, params, until, 100 * len(codes) + 1000)
-    run = NativeTrajectory.of(model, params, engine, begin, state, seen)
-    if run.status == EVENTS_FULL:
-        return np.inf
-    if nodes[:, 0].min() < nodes[0, 0] or nodes[:, 0].max() > nodes[0, 0] + TWO_PI * periods:
-        return np.inf  # time does not run forward through these nodes
-    places = np.where(codes == 0, left, np.where(codes == 1, right, nodes[:, 1]))
-    there = run.sample(np.append(nodes[:, 0], nodes[0, 0] + TWO_PI * periods))
-    return float(np.abs(there.w - np.append(places, places[0])).max())
+def go_round(simulator: Simulator, word: Word, node: np.ndarray, times: int = 1) -> Round:
+    """Start exactly at the first event of a cycle, of which `node` is the node, and simulate it `times` times.
+
+    Returns
+    -------
+    Round
+        `nodes` has shape (times * n, NODE): events 1 ... n-1, the return to event 0, and so on.
+    """
+    wanted = times * len(word)
+    try:
+        simulator.begin(word, node)
+        run = simulator.run(np.inf, wanted)
+    except SimulationError as error:
+        return Round(np.empty((0, len(node))), str(error))
+    listed = (*zip(word.events[1:], word.modes[1:]), (word.events[0], word.modes[0])) * times
+    for i, (seen, said) in enumerate(zip(run.occurrences, listed)):
+        if seen[0] != said[0]:
+            return Round(run.nodes[: i + 1], f"event {i + 1} is {seen[0]}, listed was {said[0]}")
+        if seen[1] != said[1]:
+            leads = f"event {i + 1} ({seen[0]}) leads into mode {seen[1]}, listed was {said[1]}"
+            return Round(run.nodes[: i + 1], leads)
+    if len(run) < wanted:
+        missing = listed[len(run)][0]
+        return Round(run.nodes, f"after {len(run)} events {run.reason}, where {missing} was listed")
+    return Round(run.nodes, "")
 
 
-def _freest(codes: np.ndarray) -> int:
-    """An event whose node has no dependent entry: an impact, else a turn, else any."""
-    for wanted in ((0, 1), (2,), (3,), (4,)):
-        places = np.flatnonzero(np.isin(codes, wanted))
-        if len(places):
-            return int(places[0])
-    return 0
+def monodromy(simulator: Simulator, word: Word, node: np.ndarray, step: float = 1e-5) -> np.ndarray | None:
+    """Derivative of the return map at the first node, shape (NODE, NODE), by central differences, extrapolated once.
+
+    Next to an impact of small speed the map is strongly curved: the step is shortened there.
+
+    None if some displaced start goes through other events, however small the step.
+    """
+    result = np.empty((len(node), len(node)))
+    for j in range(len(node)):
+        best = np.inf
+        for size in (step, 0.1 * step, 0.01 * step, 1e-3 * step):
+            coarse = _slope(simulator, word, node, j, size)
+            fine = None if coarse is None else _slope(simulator, word, node, j, 0.5 * size)
+            if coarse is None or fine is None:
+                continue
+            error = float(np.abs(fine - coarse).max()) ** 2 + ROUNDING / size
+            if error < best:
+                best, result[:, j] = error, (4.0 * fine - coarse) / 3.0
+            if error < ENOUGH:
+                break
+        if best == np.inf:
+            return None
+    return result
 
 
-def _tracked(cycle: _Cycle, loss: float, wanted: int) -> int:
-    engine, params, codes, modes, nodes, periods = cycle
-    there = go_round(engine, params, codes, modes, nodes[0], wanted)
-    n = len(codes)
-    cycles = len(there.nodes) // n
+def _slope(simulator: Simulator, word: Word, node: np.ndarray, j: int, size: float) -> np.ndarray | None:
+    """Central difference of the return in entry `j` of the first node."""
+    ends = []
+    for sign in (1.0, -1.0):
+        moved = np.array(node, dtype=float)
+        moved[j] += sign * size
+        there = go_round(simulator, word, moved)
+        if there.message:
+            return None
+        ends.append(there.nodes[-1])
+    return (ends[0] - ends[1]) / (2.0 * size)
+
+
+def _following(nodes: np.ndarray, periods: int) -> np.ndarray:
+    """The nodes of a cycle from the second one on, up to the return of the first."""
     claimed = np.roll(nodes, -1, axis=0)
     claimed[-1, 0] += TWO_PI * periods
-    for c in range(cycles):
+    return claimed
+
+
+def _motion(simulator: Simulator, orbit: Motion) -> float:
+    """Largest difference of the positions at the phases of the nodes, the return of the first included."""
+    flow, phases = flow_of(orbit.model), orbit.nodes[:, 0]
+    last = phases[0] + TWO_PI * orbit.periods
+    if phases.min() < phases[0] or phases.max() > last:
+        return np.inf  # time does not run forward through these nodes
+    columns = [simulator.names.index(name) for name in flow.position_names(orbit.model)]
+    claimed = flow.points(orbit)[:, columns]
+    try:
+        simulator.begin(orbit.word, orbit.nodes[0])
+        run = simulator.run(orbit.periods, 100 * len(orbit.word) + 1000)
+        seen = run.coordinates(np.append(phases, last) / TWO_PI)[:, columns]
+    except (SimulationError, ValueError):
+        return np.inf
+    return float(np.abs(seen - np.concatenate([claimed, claimed[:1]])).max())
+
+
+def _from_freest(word: Word, nodes: np.ndarray, periods: int) -> tuple[Word, np.ndarray]:
+    """The cycle from an event whose node has no dependent entry: an impact, else a turn, else any."""
+    kinds = [word.letter(i).kind for i in range(len(word))]
+    first = next((kinds.index(kind) for kind in (HIT, TURN, STICK, SLIP) if kind in kinds), 0)
+    nodes = np.roll(nodes, -first, axis=0)
+    if first:
+        nodes[-first:, 0] += TWO_PI * periods
+    return word.rotate(first), nodes
+
+
+def _tracked(
+    simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, loss: float, wanted: int
+) -> int:
+    there = go_round(simulator, word, nodes[0], wanted)
+    n, claimed = len(word), _following(nodes, periods)
+    for c in range(len(there.nodes) // n):
         piece = there.nodes[c * n : (c + 1) * n].copy()
         piece[:, 0] -= TWO_PI * periods * c
         if np.abs(piece - claimed).max() > loss:
             return c
-    return cycles
+    return len(there.nodes) // n
 
 
-def _returns(cycle: _Cycle, growth: float) -> bool:
+def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, growth: float) -> bool:
     """Start a little off the orbit, wait until multipliers have shrunk that ten millionfold, and compare.
 
     Beside a border, or where deviations grow a thousandfold before they shrink, the orbit may attract from very near only: smaller
     displacements are tried as well. Where the orbit itself is known less well than that, because it is ill conditioned, starts are to
     come to where the simulation settles that starts on it.
     """
-    engine, params, codes, _, nodes, periods = cycle
-    cycles = min(200_000.0 / periods, np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3))) + 10.0)
+    cycles = min(LONGEST / periods, np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3))) + 10.0)
 
     def later(size: float, wanted: np.ndarray, wait: float = cycles) -> tuple[float, np.ndarray]:
         """The motion from a start so far off, after these cycles, and its distance from the nodes wanted."""
-        state = cycle.begin()
-        state[2] *= 1.0 + size
-        if codes[0] > 1:
-            state[0] += size
-        engine.launch(state, params)
-        skip(engine, state, params, state[4] + wait * periods, int(1000 * (1.0 + wait) * periods))
-        return _nearest(cycle._replace(nodes=wanted), state)
+        simulator.begin(word, nodes[0])
+        simulator.go_on(simulator.state, size)
+        simulator.skip(wait * periods)
+        return _nearest(simulator, word, wanted, periods)
 
     tries = ((DISPLACED, NEAR), (1e-8, 1e-9), (1e-10, 1e-8), (1e-11, 1e-8))
     if any(later(size, nodes)[0] < near for size, near in tries):
@@ -234,18 +276,19 @@ def _returns(cycle: _Cycle, growth: float) -> bool:
     return any(later(size, nodes)[0] < min(ILL, SHRUNK * later(size, nodes, 0.0)[0]) for size in SMALLER)
 
 
-def _nearest(cycle: _Cycle, state: np.ndarray) -> tuple[float, np.ndarray]:
-    """How near the motion from a state comes to the orbit's nodes, and its own nodes there."""
-    engine, params, codes, modes, nodes, periods = cycle
-    seen, after, rows, _ = collect(engine, state, params, state[4] + 2.0 * periods + 1.0, 3 * len(codes) + 3)
-    found = nodes_of(engine, params, seen, after, rows)
-    n, best = len(codes), (np.inf, nodes)
+def _nearest(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int) -> tuple[float, np.ndarray]:
+    """How near the motion comes to the orbit's nodes, and its own nodes there."""
+    n, best = len(word), (np.inf, nodes)
+    run = simulator.run(2.0 * periods + 1.0, 3 * n + 3)
+    listed, seen, found = [*zip(word.events, word.modes)], [*run.occurrences], run.nodes
     for k in range(max(0, len(seen) - n + 1)):
-        if np.array_equal(seen[k : k + n], codes) and np.array_equal(after[k : k + n], modes):
+        if seen[k : k + n] == listed:
             here = found[k : k + n].copy()
-            if not np.any(codes < 2):
-                here[:, 1] += nodes[0, 1] - here[0, 1]
-            gap = cyclic_distance(here, nodes)
-            if gap < best[0]:
-                best = gap, here
+            for j in flow_of(simulator.model).loose(simulator.model, word):
+                here[:, j] += nodes[0, j] - here[0, j]
+            gap = here - nodes
+            gap[:, 0] -= TWO_PI * np.round(gap[:, 0] / TWO_PI)
+            distance = float(np.abs(gap).max())
+            if distance < best[0]:
+                best = distance, here
     return best

@@ -8,9 +8,9 @@ import numpy as np
 
 from orbits.attractors import find_attractor
 from orbits.flows.protocol import SimulationError
-from orbits.machines.catalogue import stepper as machine
 from orbits.simulation import replay
-from orbits.simulation.return_map import monodromy
+from orbits.simulation.replaying import monodromy
+from orbits.simulation.runs import simulator_of
 from orbits.starts.find import polish
 from tools.fuzz.between import Between
 from tools.fuzz.many_digits import exact
@@ -158,13 +158,12 @@ def _compared(orbit: Any, seen: np.ndarray, said: str, tally: Tally, width: floa
     gap = alike(orbit.multipliers, seen)
     if gap < DIFFERENCES:
         return seen
-    engine, (letters, modes) = machine(orbit.model.name), (orbit.word.codes, orbit.word.mode_codes)
+    simulator, letters = simulator_of(orbit.model, orbit.params), orbit.word.codes
     places = np.flatnonzero(letters < 2) if orbit.impacts else range(len(letters))
     for place in places[:MOST]:
         turned = orbit.rotate(int(place))
-        letters, modes = turned.word.codes, turned.word.mode_codes
         for step in SMALLER:
-            matrix = monodromy(engine, orbit.params, letters, modes, turned.nodes[0], step)
+            matrix = monodromy(simulator, turned.word, turned.nodes[0], step)
             if matrix is not None:
                 gap = min(gap, alike(orbit.multipliers, _without_trivial(orbit, np.linalg.eigvals(matrix))))
         if gap < DIFFERENCES:

@@ -9,8 +9,8 @@ from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor
-from orbits.machines.catalogue import stepper as engine_of
-from orbits.simulation.return_map import monodromy
+from orbits.simulation.replaying import monodromy
+from orbits.simulation.runs import simulator_of
 from orbits.starts.find import polish
 from tests.machines import ABSORBER
 
@@ -66,7 +66,7 @@ def simulated(orbit):
     place = hard.segment if hard.value > 0.05 else orbit.word.events.index("s")
     start = orbit.rotate(place)
     word = start.word
-    matrix = monodromy(engine_of(orbit.model.name), orbit.params, word.codes, word.mode_codes, start.nodes[0])
+    matrix = monodromy(simulator_of(orbit.model, orbit.params), word, start.nodes[0])
     return None if matrix is None else np.poly(matrix).real
 
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from orbits.simulation import replay
 from tools.pages.pages import PAGES, page
 
 STARTS = {
@@ -18,3 +19,4 @@ def test_the_machine_of_a_page_moves(name):
     found = page(name).attractor(start, **parameters)
     assert found.kind == "periodic" and found.orbit.real and found.orbit.stable
     assert found.orbit.replay() < 1e-9
+    assert not found.orbit.forced or replay(found.orbit).error < 1e-8

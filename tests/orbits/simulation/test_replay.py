@@ -1,12 +1,16 @@
 """Replay of true and of false claims."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
 from orbits.attractors import find_attractor
+from orbits.cycles.cycle import Cycle
 from orbits.machines.absorber import Absorber
-from orbits.simulation import replay, replay_nodes
+from orbits.simulation import replay
+from orbits.words import Word
 
 R, A = 0.76, 1.006 * 0.5 * 0.211
 MACHINE = Absorber(restitution=R, friction=0.5, gravity=0.211, mass_ratio=0.006)
@@ -31,7 +35,7 @@ def test_an_unstable_orbit_is_tracked_as_long_as_it_can_be():
     c = np.sqrt(0.65)
     nodes = symmetric_nodes(c)
     params = MACHINE.vector({"amplitude": c})
-    told = replay_nodes(MACHINE, params, np.array([0, 1]), np.array([-1, 1]), nodes, 1, thorough=True)
+    told = replay(Cycle(MACHINE, Word.parse("LR"), 1, nodes, params), thorough=True)
     assert told.error < 1e-12
     assert told.message == ""
     growth = np.abs(told.multipliers).max()
@@ -53,9 +57,8 @@ def test_a_stable_orbit_is_found_again():
 def test_a_wrong_event_list_is_refused():
     found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.9))
     assert sorted(found.text) == sorted("LRtt")
-    codes, modes = found.word.codes, found.word.mode_codes
-    impacts = codes < 2
-    told = replay_nodes(MACHINE, found.params, codes[impacts], modes[impacts], found.nodes[impacts], 1)
+    impacts = found.word.codes < 2
+    told = replay(Cycle(MACHINE, Word.parse("LR"), 1, found.nodes[impacts], found.params))
     assert told.error == np.inf
     assert not told.matches
     assert "is t, listed was" in told.message
@@ -65,21 +68,14 @@ def test_a_wrong_event_list_is_refused():
 @pytest.mark.parametrize("c2", [0.012, 0.03, 0.1, 0.5, 0.74, 0.75, 0.9])
 def test_every_event_can_be_the_first(c2):
     found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(c2))
-    codes, modes = found.word.codes, found.word.mode_codes
-    for k in range(len(codes)):
-        nodes = np.roll(found.nodes, -k, axis=0)
-        nodes[len(nodes) - k :, 0] += 2 * np.pi * found.periods
-        told = replay_nodes(
-            MACHINE, found.params, np.roll(codes, -k), np.roll(modes, -k), nodes, found.periods
-        )
+    for k in range(len(found.word)):
+        told = replay(found.found.rotate(k))
         assert told.error < 1e-11, (k, told.message)
 
 
 def test_an_ill_conditioned_orbit_attracts_although_it_is_known_less_well_than_starts_come_back():
     """Nodes that are off by 1e-7, as those of a steep orbit are by rounding: starts come to the orbit itself; off by 1e-5 they are no orbit's."""
     found = find_attractor(MACHINE, {"w_rate": 1.0}, amplitude=np.sqrt(0.9))
-    codes, modes = found.word.codes, found.word.mode_codes
     for off, back in ((1e-7, True), (1e-5, False)):
-        nodes = found.nodes + [0.0, off]
-        told = replay_nodes(MACHINE, found.params, codes, modes, nodes, found.periods, thorough=True)
+        told = replay(replace(found.found, nodes=found.nodes + [0.0, off]), thorough=True)
         assert told.returned is back
