@@ -133,7 +133,7 @@ class Attractor:
         """The word in the one spelling of its motion; of motions with persistent contact the plain list of events."""
         if self.orbit is not None:
             return self.orbit.spelling
-        return "".join(self.letters)
+        return (" " if any(len(letter) > 1 for letter in self.letters) else "").join(self.letters)
 
     @property
     def nodes(self) -> np.ndarray:
