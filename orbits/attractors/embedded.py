@@ -44,7 +44,7 @@ def embedded_cycles(
     for Newton's method (D. P. Lathrop and E. J. Kostelich, Phys. Rev. A 40 (1989) 4028).
     """
     periods, events = simulator.watched
-    record = simulator.record(simulator.time + periods, events)
+    record = simulator.run(periods, events)
     marks = np.flatnonzero(record.hits) if record.hits.sum() > 1 else np.arange(len(record))
     if len(marks) < 2:
         return

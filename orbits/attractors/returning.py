@@ -83,7 +83,7 @@ def _solved(simulator: Simulator, x: np.ndarray, periods: int, solve: Callable) 
     """The cycle through a point; None if it is none that can be continued."""
     try:
         simulator.start(x)
-        record = simulator.record(float(periods), EVENTS * periods)
+        record = simulator.run(float(periods), EVENTS * periods)
     except SimulationError:
         return None
     if not record.whole or not len(record) or record.piled.any():

@@ -63,7 +63,7 @@ def by_events(orbit: Cycle, first: int = 0, count: int | None = None) -> float:
     try:
         simulator.begin(word, orbit.nodes[first])
         begun = simulator.time
-        record = simulator.record(begun + 2.0 * float(orbit.durations.sum()) / TURN + 1.0, len(wanted))
+        record = simulator.run(2.0 * float(orbit.durations.sum()) / TURN + 1.0, len(wanted))
     except SimulationError:
         return math.inf
     if record.occurrences[:] != [(orbit.word.events[i], orbit.word.modes[i]) for i in wanted]:

@@ -33,7 +33,7 @@ A *simulator* moves one motion of a machine on at given parameters, from event t
    ``put`` does so with a start as users give it, ``go_on`` with the ``state`` in which another simulation has ended.
 3. ``follow(until)`` moves it on; what may happen (gaps that close, velocities that vanish, limits of friction that are reached, switches that
    are crossed) is looked for all the way, and the laws of the contacts are applied. No event, hop or touch is passed unseen.
-4. ``record(until, most)`` does the same and lists the events; ``run(length, most)`` keeps the whole motion.
+4. ``run(length, most)`` does the same for a while or so many events, and keeps the motion (`orbits.flows.trajectory`).
 5. A motion that cannot go on (it leaves the range of numbers, or a law does not continue it) or cannot begin raises `SimulationError`.
 6. ``struck(point, near)`` tells the two points that are one motion at a wall: just before and just after the impact.
 7. ``mirrored`` says that the ``image`` of a point, half a period later, is a point of the same machine. ``hard`` says which coordinates walls limit by themselves.
@@ -257,8 +257,6 @@ class Simulator(Protocol):
             By the parameter with this index; both NaN where no index is given, or the simulator does not know them.
         """
         ...
-
-    def record(self, until: float, most: int) -> Trajectory: ...
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None: ...
 

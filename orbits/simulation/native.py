@@ -166,10 +166,6 @@ class NativeSimulator:
         events = codes, modes, rows, status
         return NativeTrajectory.of(self.model, self.params, self.engine, begin, state.copy(), events)
 
-    def record(self, until: float, most: int) -> NativeTrajectory:
-        """Move on, to a time or so many events."""
-        return self.run(until - self.time, most)
-
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Of a point at a wall the other one there and the direction away from the wall; None elsewhere."""
         walls, restitutions = self.engine.walls(self.params), self.model.restitutions(self.params)

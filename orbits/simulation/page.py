@@ -329,10 +329,6 @@ class PageSimulator:
         """Move on and keep the motion."""
         return collect(self.stepper, TWO_PI * periods, most)
 
-    def record(self, until: float, most: int) -> PageTrajectory:
-        """Move on, to a time or so many events."""
-        return self.run(until - self.time, most)
-
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere.
 
