@@ -443,29 +443,46 @@ class CycleProblem(FlowAttractors, CycleMeasures, ProblemDefaults):
         if new is None:
             return None
 
-        def image(v: np.ndarray, direction: bool = False) -> np.ndarray:
-            y = v[: self.states].reshape(x.shape)
-            moved = mesh.onto(self.rule, widths, y, new)
-            rest = v[self.states : self.states + self.free_period]
-            return np.concatenate([moved.reshape(-1), rest, np.zeros_like(new) if direction else new])
+        return lambda v, direction=False: self._onto(v, widths, new, direction)
 
-        return image
+    def _onto(self, v: np.ndarray, widths: np.ndarray, new: np.ndarray, direction: bool) -> np.ndarray:
+        """Unknowns, or a direction of unknowns, on another mesh."""
+        y = v[: self.states].reshape(self.intervals, self.rule.degree, self.node)
+        moved = mesh.onto(self.rule, widths, y, new)
+        rest = v[self.states : self.states + self.free_period]
+        return np.concatenate([moved.reshape(-1), rest, np.zeros_like(new) if direction else new])
 
     def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool:
-        """Whether a cycle asks for more intervals: its error is too large, or Newton's method fails beside it, as at canards on a coarse mesh."""
+        """Whether a cycle asks for more intervals: its error is too large, Newton's method fails beside it, as at canards on a coarse mesh,
+        or it becomes one of half the period, which takes a mesh with equal halves to tell."""
         if stuck:
             return self.intervals < ENOUGH * self.copies
+        if self.free_period and self.copies % 2 and self._asymmetry(u) < self.flow.settings.halving:
+            self.parts_of_refined = 2
+            return True
         return self.intervals < MOST and self.estimated_error(u) > self.flow.error
+
+    parts_of_refined = 1  # equal ones, into which `halved` divides the mesh
+
+    def _asymmetry(self, u: np.ndarray) -> float:
+        """How far a cycle is from itself half a period later, relative to its size: 0 of one that runs twice through a shorter one."""
+        x, widths = self._curve(u)
+        later = mesh.evaluate(self.rule, widths, x, mesh.node_places(self.rule, widths) + 0.5)
+        x = x.reshape(later.shape) / self.node_scale
+        return float(np.abs(x - later / self.node_scale).max() / max(np.ptp(x, axis=0).max(), TINY))
 
     def refined(self) -> CycleProblem:
         """The same cycles with twice as many intervals."""
         u = self.halved(self.u0)
-        return self.with_unknowns(u, self.p0, 2 * self.intervals, self.copies)
+        return self.with_unknowns(u, self.p0, 2 * self.intervals, self.parts_of_refined * self.copies)
 
     def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
-        """Unknowns, or a direction of unknowns, with every interval halved."""
+        """Unknowns, or a direction of unknowns, with twice as many intervals: every one halved, or the whole mesh twice in each period."""
         x, widths = self._curve(u)
         r = self.rule
+        if self.parts_of_refined == 2:
+            own = self._curve(self.u0)[1] if direction else widths
+            return self._onto(u, own, np.tile(0.5 * own, 2), direction)
         ends = mesh.closed(x)
         both = [
             np.einsum("cj,ijk->ick", r.interpolation(s + 0.5 * r.nodes[:-1]), ends)[:, None]

@@ -40,6 +40,8 @@ class FlowSettings:
         Recognition: relative distance of points, cycles and equilibria that are one; size of a cycle that is an equilibrium.
     at_rest : float
         Ends: size, in units of the scale, of a cycle that has shrunk to an equilibrium, and distance of halves of a cycle that is one of half the period.
+    halving : float
+        Ends: distance of a cycle from itself half a period later, relative to its size, below which it is followed on a mesh with equal halves.
     homoclinic, longest : float
         Ends: distance from an equilibrium relative to the size of a cycle, and period in units of the first one, at which a cycle counts as homoclinic.
     touch : float
@@ -74,6 +76,7 @@ class FlowSettings:
     near: float = 2e-3
     same: float = 1e-7
     at_rest: float = 1e-3
+    halving: float = 0.2
     homoclinic: float = 1e-6
     longest: float = 1e3
     touch: float = 1e-4

@@ -31,6 +31,7 @@ CONVERGED, STALLED = (
     1e-11,
     1e-8,
 )  # last step of Newton's method, relative; where rounding does not let it become smaller
+BROKEN = 1e-7  # singular value of the direction that breaks a symmetry, relative
 STEP = 1e-6  # relative, of differences of the period of the forcing
 TOLERANCE = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13}
 
@@ -166,8 +167,10 @@ def eigenvalue_condition(shooting: Shooting, kind: str, at: complex) -> Any:
     return condition
 
 
-def newton(residual: Any, y: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def newton(residual: Any, y: np.ndarray, scale: np.ndarray, least: float = 1e-14) -> np.ndarray:
     """A root, by the chord method with derivatives by differences, which are renewed every fourth step.
+
+    Directions whose singular value is below ``least`` of the largest one are left alone.
 
     Raises
     ------
@@ -181,7 +184,7 @@ def newton(residual: Any, y: np.ndarray, scale: np.ndarray) -> np.ndarray:
         if step % 4 == 0:
             steps = 1e-7 * np.diag(scale)
             matrix = np.column_stack([(residual(y + e) - value) / e.max() for e in steps])
-        change = np.linalg.lstsq(matrix * scale, -value, rcond=1e-14)[0] * scale
+        change = np.linalg.lstsq(matrix * scale, -value, rcond=least)[0] * scale
         y = y + change
         size = float(np.abs(change / scale).max())
         if size < CONVERGED:
@@ -221,7 +224,9 @@ def solve(kind: str, shooting: Shooting, multiplier: complex = -1.0) -> np.ndarr
     def both(z: np.ndarray) -> np.ndarray:
         return np.append(shooting.cycle(z)[0], condition(z))
 
-    return newton(both, y, scale)
+    # a cycle that is its own mirror image at every instant stays so: what breaks the symmetry is in the null space there
+    alike = kind == "symmetry-breaking" and shooting.turn is None
+    return newton(both, y, scale, BROKEN if alike else 1e-14)
 
 
 def hopf(rates: Any, u: np.ndarray, p: float) -> tuple[np.ndarray, float]:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.flows.orbit import CycleOrbit
 
 pytestmark = pytest.mark.slow
 
@@ -103,3 +104,36 @@ def test_folds_of_canards_where_the_parameter_stands_still():
     x = one.orbit(np.linspace(0.0, one.orbit.period, 20001))[:-1, 0]
     assert np.mean(1.0 - x**2 - 0.064) * one.orbit.period == pytest.approx(0.0, abs=1e-5)
     assert np.abs(np.diff(graph["B2"].stable.astype(int))).sum() == 2  # stable between the folds alone
+
+
+def neuron(x, p):
+    """Hindmarsh and Rose."""
+    return [
+        x[1] - x[0] ** 3 + 3.0 * x[0] ** 2 - x[2] + p.current,
+        1.0 - 5.0 * x[0] ** 2 - x[1],
+        0.01 * (4.0 * (x[0] + 1.6) - x[2]),
+    ]
+
+
+def test_cycles_of_a_bursting_neuron_go_on_after_their_canards():
+    """With the phase of the chunk before, no step was possible from 1.3546 on."""
+    flow = cv.FlowProblem(neuron, [-1.3, -7.5, 1.2], {"current": 1.3})
+    graph = cv.diagram(flow, over="current", within=(1.3, 1.5), depth=1)
+    cycles = next(b for b in graph.branches.values() if b.description["word"] == "cycle")
+    assert cycles.range[1] == 1.5
+
+
+def test_a_branch_whose_mesh_has_no_equal_halves_ends_where_its_cycles_become_shorter_ones():
+    """As those of a neuron do, which are born at a Hopf point. Doubled cycles of Lur'e's feedback begin at alpha = 0.63030200616 (shooting, docs/demos_cycles.md)."""
+    flow = cv.FlowProblem(
+        lambda x, p: [x[1], x[2], -p.alpha * x[2] - x[1] - x[0] + x[0] ** 2],
+        [0.0, 0.0, 0.0],
+        {"alpha": 1.1},
+    )
+    doubled = cv.diagram(flow, over="alpha", within=(0.6, 1.2), depth=2).branches["B3"]
+    u, p = doubled.points[-1], float(doubled.values[-1])
+    problem = doubled.problem.with_unknowns(u, p, doubled.problem.intervals, 1)
+    graph = cv.diagram(CycleOrbit(problem, u, p), over="alpha", within=(0.6, 1.2), depth=0)
+    (end,) = graph.of_kind("period-doubling")
+    assert end.value == pytest.approx(0.63030200616, abs=1e-9)
+    assert graph["B1"].range[1] == end.value
