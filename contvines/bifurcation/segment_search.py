@@ -196,12 +196,13 @@ class SegmentSearch:
         return [found], before
 
     def _meetings(self, segment: Segment) -> list[Located]:
-        events = []
+        events, settings = [], self.engine.settings
+        # beside multipliers near the inverse of rounding Newton's method stops at larger corrections, and what is not symmetric is noise
+        inexact = max(segment.a.correction, segment.b.correction) / settings.tolerance
+        least = settings.symmetric * max(1.0, inexact)
         for index, test in enumerate(self.symmetries):
             ends = test.part(np.array([segment.a.u, segment.b.u]), [segment.a.p, segment.b.p])
-            if not (
-                ends[0] @ ends[1] < 0.0 and np.abs(ends).max(axis=1).min() > self.engine.settings.symmetric
-            ):
+            if not (ends[0] @ ends[1] < 0.0 and np.abs(ends).max(axis=1).min() > least):
                 continue
             scale = float(np.sqrt(ends[0] @ ends[0]))
 

@@ -72,7 +72,8 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
             raise ValueError(
                 f"{label}: a study has no labels yet; leave the label out, or give a .vines file."
             )
-        return first_orbit(read_study(file))
+        study = read_study(file)
+        return _solution(first_orbit(study), study.within)
     from contvines.problems.registry import without_problem
 
     graph = load_file(file, trust, charts=True)
@@ -94,6 +95,18 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
             f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}."
         )
     return thing.orbit(int(place or 0))
+
+
+def _solution(start: Any, within: tuple[float, float]) -> Any:
+    """The start of a study: an orbit as it is; of a problem (equilibria, cycles of maps) its first solution."""
+    if not hasattr(start, "u0"):
+        return start
+    from contvines.continuation.engine import Engine
+    from contvines.continuation.settings import Settings
+    from contvines.continuation.starts import solve_start
+
+    first = solve_start(Engine(start, within, Settings()), start.u0, start.p0)
+    return start.orbit(first.u, first.p)
 
 
 def _plain(found: Any) -> dict[str, Any]:

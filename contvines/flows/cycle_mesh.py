@@ -1,0 +1,93 @@
+"""CycleMesh: the mesh of a cycle, adapted and refined."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Self
+
+import numpy as np
+
+from . import mesh
+from .cycle_unknowns import CycleUnknowns
+
+TINY = np.finfo(float).tiny
+MOST = 1280  # intervals
+ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
+
+
+class CycleMesh(CycleUnknowns):
+    """The error of a cycle, other meshes for it, and when there are too few intervals."""
+
+    chunk = 8  # points after which the mesh is adapted
+    parts_of_refined = 1  # equal ones, into which `halved` divides the mesh
+
+    def estimated_error(self, u: np.ndarray) -> float:
+        """Estimated largest error of the curve between the mesh points, in units of the size of the cycle."""
+        x, widths = self._curve(u)
+        return mesh.error(self.rule, widths, x, self._sizes(x))
+
+    def _curve(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        x = u[: self.states].reshape(self.intervals, self.rule.degree, self.node)
+        return x, u[self.states + self.free_period :]
+
+    def _sizes(self, x: np.ndarray) -> np.ndarray:
+        ranges, s = np.ptp(x.reshape(-1, self.node), axis=0), self.flow.settings
+        return np.maximum(
+            ranges, s.same * self.node_scale * (ranges / self.node_scale).max() + s.solved * self.node_scale
+        )
+
+    def adapted(self, u: np.ndarray) -> Callable[[np.ndarray], np.ndarray] | None:
+        """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
+        x, widths = self._curve(u)
+        if np.ptp(x.reshape(-1, self.node) / self.node_scale, axis=0).max() < self.flow.settings.same:
+            return None
+        new = mesh.equidistributed(self.rule, widths, x, self._sizes(x), self.copies)
+        if new is None:
+            return None
+
+        return lambda v, direction=False: self._onto(v, widths, new, direction)
+
+    def _onto(self, v: np.ndarray, widths: np.ndarray, new: np.ndarray, direction: bool) -> np.ndarray:
+        """Unknowns, or a direction of unknowns, on another mesh."""
+        y = v[: self.states].reshape(self.intervals, self.rule.degree, self.node)
+        moved = mesh.onto(self.rule, widths, y, new)
+        rest = v[self.states : self.states + self.free_period]
+        return np.concatenate([moved.reshape(-1), rest, np.zeros_like(new) if direction else new])
+
+    def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool:
+        """Whether a cycle asks for more intervals: its error is too large, Newton's method fails beside it, as at canards on a coarse mesh,
+        or it becomes one of half the period, which takes a mesh with equal halves to tell."""
+        if stuck:
+            return self.intervals < ENOUGH * self.copies
+        if self.free_period and self.copies % 2 and self._asymmetry(u) < self.flow.settings.halving:
+            self.parts_of_refined = 2
+            return True
+        return self.intervals < MOST and self.estimated_error(u) > self.flow.error
+
+    def _asymmetry(self, u: np.ndarray) -> float:
+        """How far a cycle is from itself half a period later, relative to its size: 0 of one that runs twice through a shorter one."""
+        x, widths = self._curve(u)
+        later = mesh.evaluate(self.rule, widths, x, mesh.node_places(self.rule, widths) + 0.5)
+        x = x.reshape(later.shape) / self.node_scale
+        return float(np.abs(x - later / self.node_scale).max() / max(np.ptp(x, axis=0).max(), TINY))
+
+    def refined(self) -> Self:
+        """The same cycles with twice as many intervals."""
+        u = self.halved(self.u0)
+        return self.with_unknowns(u, self.p0, 2 * self.intervals, self.parts_of_refined * self.copies)
+
+    def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
+        """Unknowns, or a direction of unknowns, with twice as many intervals: every one halved, or the whole mesh twice in each period."""
+        x, widths = self._curve(u)
+        r = self.rule
+        if self.parts_of_refined == 2:
+            own = self._curve(self.u0)[1] if direction else widths
+            return self._onto(u, own, np.tile(0.5 * own, 2), direction)
+        ends = mesh.closed(x)
+        both = [
+            np.einsum("cj,ijk->ick", r.interpolation(s + 0.5 * r.nodes[:-1]), ends)[:, None]
+            for s in (0.0, 0.5)
+        ]
+        finer = np.concatenate(both, axis=1).reshape(-1)
+        rest = u[self.states : self.states + self.free_period]
+        return np.concatenate([finer, rest, np.repeat(0.0 * widths if direction else 0.5 * widths, 2)])
