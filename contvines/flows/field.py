@@ -231,15 +231,17 @@ class Field:
             times = [None] * len(x) if t is None else t
             pairs = zip(x, times, strict=True)
             return np.array([self._one(self.given_jacobian, y, parameters, s, shape) for y, s in pairs])
+        d = self.node
+        if self.complex_step:  # all directions in one call
+            moved = x + 1j * COMPLEX_STEP * np.eye(d)[:, None]
+            found = (
+                np.imag(self(moved.reshape(-1, d), p, None if t is None else np.tile(t, d))) / COMPLEX_STEP
+            )
+            return np.ascontiguousarray(found.reshape(d, len(x), d).transpose(1, 2, 0))
         result = np.empty((len(x), *shape))
-        for j in range(self.node):
-            if self.complex_step:
-                moved = x.astype(complex)
-                moved[:, j] += 1j * COMPLEX_STEP
-                result[:, :, j] = np.imag(self(moved, p, t)) / COMPLEX_STEP
-                continue
+        for j in range(d):
             step = STEP * self.lengths[j]
-            unit = np.zeros(self.node)
+            unit = np.zeros(d)
             unit[j] = step
             result[:, :, j] = _difference(lambda s, unit=unit: self(x + s * unit, p, t)) / step
         return result
@@ -299,4 +301,8 @@ def _broadcast(given: Any, n: int, shape: tuple[int, ...]) -> np.ndarray:
     if len(shape) == 2:
         rows = [_broadcast(row, n, shape[1:]) for row in flat]
         return np.stack(rows, axis=1)
-    return np.stack(np.broadcast_arrays(*flat, np.empty(n))[:-1], axis=1)
+    values = [np.asarray(value) for value in flat]
+    result = np.empty((n, len(values)), dtype=np.result_type(*values))
+    for j, value in enumerate(values):
+        result[:, j] = value
+    return result
