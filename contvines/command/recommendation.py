@@ -67,9 +67,10 @@ class Place:
 
 @dataclass(frozen=True)
 class Jump:
-    """Where the worst response jumps beside the tolerance: at `at` it is at least `response`."""
+    """Where the worst response jumps beside the tolerance: it has done so at `at`, and is at least `response` at `beyond`, which is no nearer."""
 
     at: float
+    beyond: float
     response: float
 
 
@@ -277,9 +278,8 @@ class Recommendation:
             return []
         for jump in self.jumps:
             by, way = abs(jump.at - place.value), "lower" if jump.at < place.value else "higher"
-            found.append(
-                f"{self.shown(self.name, by)} {way} it jumps to {self.shown('peak', jump.response)} or more."
-            )
+            there = f"{self.shown('peak', jump.response)} at {self.shown(self.name, jump.beyond)}"
+            found.append(f"{self.shown(self.name, by)} {way} it jumps: {there}.")
         lowest = min(
             (p for p in self.places if p.samples == place.samples and not p.left and math.isfinite(p.worst)),
             key=lambda p: p.worst,

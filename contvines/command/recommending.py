@@ -407,7 +407,7 @@ class _Work:
             else:
                 near, inner = middle, response
             rise = outer - inner
-        return Jump(far, outer) if rise > JUMP * best.worst else None
+        return Jump(far, bad.value, bad.worst) if rise > JUMP * best.worst else None
 
     def at_choice(self, places: list[Place], best: Place) -> tuple[list[Place], Place | None, Survey | None]:
         """Diagrams of all samples at the choice, with simulated starts: all places, the choice, its rows.

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 DRAWN = 3  # starts at the first, the middle and the last value
 SAME = 1e-3  # relative difference of the responses of one motion
-HALVINGS = 5  # of the distance between values about the largest response
-NARROW = 1e-3  # of the interval: values that are nearer are not told apart
+CLIMBED = 24  # values to either side of the largest response
+NARROW = 1e-3  # of the interval: the least step between them
 
 
 def swept_responses(
     model: Varying, over: str, values: Sequence[float], parameters: Mapping[str, float]
 ) -> list[tuple[float, float]]:
     """Motions that simulations settle on: at each value those of a sweep up and one down, and those that drawn starts add, each followed both ways
-    to where another one takes over; values half-way from the largest response to its neighbours, a few times.
+    to where another one takes over; the largest response is followed to its top.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def swept_responses(
                 seen.rows.append(row)
                 for run in (range(k + 1, len(values)), range(k)[::-1]):
                     seen.run(run, row.detail.state, until_known=True)
-    seen.halve()
+    seen.climb()
     return [(row.value, seen.response(row)) for row in seen.rows]
 
 
@@ -104,16 +104,23 @@ class _Seen:
             self.rows.append(row)
             start = row.detail.state
 
-    def halve(self) -> None:
-        """Look between the values about the largest response."""
-        span = self.values[-1] - self.values[0]
-        for _ in range(HALVINGS):
-            top = max(self.rows, key=lambda row: _number(self.response(row)))
-            places = sorted({row.value for row in self.rows})
-            at = places.index(top.value)
-            for other in (*places[max(at - 1, 0) : at], *places[at + 1 : at + 2]):
-                if abs(other - top.value) > NARROW * span:
-                    self.rows.append(self.at(0.5 * (top.value + other), top.detail.state))
+    def climb(self) -> None:
+        """From the largest response on either way while it grows, in steps that are halved where it does not: a motion that steps of the values lose goes on
+        in smaller ones to where it ends."""
+        span, spacing = self.values[-1] - self.values[0], self.values[1] - self.values[0]
+        top = max(self.rows, key=lambda row: _number(self.response(row)))
+        for side in (-1, 1):
+            here, step = top, 0.5 * spacing
+            for _ in range(CLIMBED):
+                value = min(max(here.value + side * step, self.values[0]), self.values[-1])
+                if step < NARROW * span or value == here.value:
+                    break
+                row = self.at(value, here.detail.state)
+                self.rows.append(row)
+                if _number(self.response(row)) > _number(self.response(here)):
+                    here = row
+                else:
+                    step *= 0.5
 
 
 def _number(response: float) -> float:
