@@ -1,13 +1,16 @@
-"""docs/design.md: its study is the example, and its commands and snippet run as they stand, with a smaller study in its place."""
+"""docs/design.md and its sequel: its study is the example, and its commands and snippet run as they stand, with a smaller study in its place."""
 
 import re
 import shlex
+import shutil
 import tomllib
 from pathlib import Path
 
 import pytest
 
 from contvines.command.cli import main
+from contvines.command.study import read_study
+from contvines.command.survey_study import plan_and_machine
 
 TOP = Path(__file__).parents[1]
 PAGE = (TOP / "docs" / "design.md").read_text(encoding="utf-8")
@@ -46,3 +49,16 @@ def test_the_commands_and_the_snippet_of_the_page_run(tmp_path, monkeypatch, cap
     found = names["found"]
     assert 70.0 <= found.value <= 100.0 and found.loads["impulse"] > 0.0
     capsys.readouterr()
+
+
+def test_the_studies_of_the_page_on_other_machines_are_read_and_ask_for_one_choice(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(TOP / "examples" / "machines" / "rubber_wall.py", tmp_path)
+    text = (TOP / "docs" / "design_machines.md").read_text(encoding="utf-8")
+    studies = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    assert studies
+    for study in studies:
+        (tmp_path / "study.toml").write_text(study)
+        assert list(plan_and_machine(read_study(tmp_path / "study.toml"))[0].axes) == re.findall(
+            r"vary.(\w+) = { within", study
+        )
