@@ -1,6 +1,6 @@
 """Responses of a machine by simulation alone: sweeps up and down, and from drawn starts that lead elsewhere, nearer to the largest response.
 
-For machines whose flights are integrated, where a diagram takes as long as a thousand of these simulations.
+For machines whose flights are integrated, where a diagram takes as long as hundreds of these simulations.
 """
 
 from __future__ import annotations
