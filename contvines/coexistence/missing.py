@@ -14,6 +14,7 @@ from ..graph.run import Run
 from ..graph.shortening import short_word
 from ..journal import NullJournal
 from .census import census, locate
+from .places import UNBRANCHED
 from .population import Population
 
 
@@ -44,7 +45,7 @@ def look(graph: Graph, population: Population) -> list[Attractor]:
 def missing_text(graph: Graph, study: str) -> str:
     """What the look has found, in one line with the command that adds it; empty if nothing.
 
-    Motions that do not repeat are on no branch: a sweep shows them.
+    No branch holds motions that do not repeat.
     """
     if not graph.missing:
         return ""
@@ -58,6 +59,9 @@ def missing_text(graph: Graph, study: str) -> str:
         word = short_word(about.name)
         names.append(f"{word} ({about.share:.0%} of starts at {graph.parameter} = {about.value:.6g})")
     more = f" and {len(best) - 3} more" if len(best) > 3 else ""
-    periodic = any(about.recurrent for about in best.values())
-    way = f"run contvines atlas {study} to add " if periodic else f"run contvines sweep {study} to see "
-    return f"simulation also finds {', '.join(names)}{more}, not on any branch; {way}{'it' if len(best) == 1 else 'them'}"
+    found = f"simulation also finds {', '.join(names)}{more}, "
+    if all(about.kind in UNBRANCHED for about in best.values()):
+        return f"{found}which no branch can hold"
+    return (
+        f"{found}not on any branch; run contvines atlas {study} to add {'it' if len(best) == 1 else 'them'}"
+    )

@@ -118,3 +118,13 @@ def test_graphs_are_merged_without_doubles(graph):
                 depth=0,
             )
         )
+
+
+def test_the_look_says_that_chaos_has_no_branch():
+    """Of the Chebyshev map mu x (1 - x), mu = 4, every cycle is unstable; near it windows are narrower than what the look meets."""
+    logistic = cv.MapProblem(lambda x, mu: mu * x * (1 - x), [0.7], 3.98, parameter="mu")
+    graph = cv.diagram(logistic, within=(3.97, 4.0), depth=0)
+    look(graph, logistic.population())
+    assert "chaotic" in missing_text(graph, "x.toml") and "no branch can hold" in missing_text(
+        graph, "x.toml"
+    )
