@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise, product
 
 import numpy as np
@@ -175,12 +175,10 @@ def departures(
     """
     if directions is None:
         directions = null_vectors(engine, u, p, tangent, most=most)
+    point = _BranchPoint(engine, u, p, tangent, amplitude, one_sided)
     if len(directions) > 1:
-        return _multiple(engine, u, p, tangent, amplitude, one_sided, directions)
-    found = [
-        _depart(engine, u, p, tangent, amplitude, one_sided, direction, exchanged=exchanged)
-        for direction in directions
-    ]
+        return point.multiple(directions)
+    found = [point.leaving(direction, exchanged=exchanged) for direction in directions]
     return [departure for departure in found if departure is not None]
 
 
@@ -196,192 +194,163 @@ def _starts(k: int) -> np.ndarray:
     return both / np.linalg.norm(both, axis=1, keepdims=True)
 
 
-def _multiple(
-    engine: Engine,
-    u: np.ndarray,
-    p: float,
-    tangent: np.ndarray,
-    amplitude: float,
-    one_sided: bool,
-    directions: list[np.ndarray],
-) -> list[Departure]:
-    """Several null vectors: starts all round the sphere that they span, and at the parameter values found on the way."""
-    z = engine.join(u, p)
-    found: list[tuple[np.ndarray, float]] = []
+Exchanged = Callable[[Solved], bool] | None
 
-    def search(offsets: list[float]) -> None:
-        for share in _starts(len(directions)):
-            start = share @ np.array(directions)
-            for offset in offsets:
-                point = _at(engine, z, start, amplitude, offset)
+
+class _BranchPoint:
+    """A branch point from which branches are looked for; see :func:`departures`."""
+
+    def __init__(
+        self, engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray, amplitude: float, one_sided: bool
+    ) -> None:
+        self.engine, self.u, self.p, self.tangent = engine, u, p, tangent
+        self.amplitude, self.one_sided, self.z = amplitude, one_sided, engine.join(u, p)
+
+    def multiple(self, directions: list[np.ndarray]) -> list[Departure]:
+        """Several null vectors: starts all round the sphere that they span, and at the parameter values found on the way."""
+        engine, amplitude, basis = self.engine, self.amplitude, np.array(directions)
+        found: list[tuple[np.ndarray, float]] = []
+
+        def search(offsets: list[float]) -> None:
+            for share, offset in product(_starts(len(directions)), offsets):
+                point = self.at(share @ basis, amplitude, offset, 10.0)
                 if point is None:
                     continue
-                gap = engine.join(point.u, point.p) - z
-                direction = np.array([engine.inner(gap, v) for v in directions]) @ np.array(directions)
+                gap = engine.join(point.u, point.p) - self.z
+                direction = np.array([engine.inner(gap, v) for v in directions]) @ basis
                 size = engine.norm(direction)
                 direction = direction / size
                 near = (1.0 - abs(engine.inner(direction, other)) for other, _ in found)
                 if all(distance > engine.settings.near for distance in near):
-                    found.append((direction, (point.p - p) / size**2))
+                    found.append((direction, (point.p - self.p) / size**2))
 
-    search([0.0])
-    curvatures = [curvature for _, curvature in found]
-    search(sorted({c * amplitude**2 * share for c in curvatures for share in (0.7, 1.4, -1.0)}))
-    result = []
-    for direction, curvature in found[:MOST]:
-        departure = _depart(engine, u, p, tangent, amplitude, one_sided, direction, curvature)
-        if departure is None:
-            continue
-        if _in_a_family(engine, departure.ahead):
-            return [replace(departure, family=True)]
-        result.append(departure)
-    return result
+        search([0.0])
+        curvatures = [curvature for _, curvature in found]
+        search(sorted({c * amplitude**2 * share for c in curvatures for share in (0.7, 1.4, -1.0)}))
+        result = []
+        for direction, curvature in found[:MOST]:
+            departure = self.leaving(direction, curvature)
+            if departure is None:
+                continue
+            ahead = departure.ahead
+            if null_vectors(engine, ahead.u, ahead.p, ahead.tangent, isolated=True):
+                # off the branch point it is singular, too: one of a continuous family of equivalent solutions
+                return [replace(departure, family=True)]
+            result.append(departure)
+        return result
 
-
-def _in_a_family(engine: Engine, point: Solved) -> bool:
-    """Whether a point off the branch point is singular, too: one of a continuous family of equivalent solutions."""
-    return len(null_vectors(engine, point.u, point.p, point.tangent, isolated=True)) > 0
-
-
-def _at(
-    engine: Engine,
-    z: np.ndarray,
-    direction: np.ndarray,
-    amplitude: float,
-    offset: float = 0.0,
-    reach: float = 10.0,
-) -> Solved | None:
-    border = engine.weights * direction
-    guess = z + amplitude * direction
-    guess[-1] += offset
-    along = direction if amplitude > 0.0 else -direction
-    found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), along)
-    if found is None:
+    def leaving(
+        self, direction: np.ndarray, bend: float = 0.0, exchanged: Exchanged = None
+    ) -> Departure | None:
+        """The branch in a direction; `bend` is that of the parameter."""
+        ways = ((LEAST, SLANTED), (LEAST, GRAZING), (0.0, SLANTED))
+        for asked in (exchanged, None) if exchanged is not None else (None,):
+            for way in ways:
+                found = self._along(direction, bend, asked, *way)
+                straight = None if found is None else self._straight(found)
+                if straight is not None:
+                    found = self._along(straight, 0.0, asked, *way) or found
+                if found is not None:
+                    return found
         return None
-    there = engine.join(found.u, found.p)
-    # so close to the branch point Newton's method may end at roundoff, off the hyperplane
-    missed = abs(float(border @ (there - guess))) > MISSED * abs(amplitude)
-    far = engine.norm(there - z) > reach * abs(amplitude)
-    return None if far or missed else found
 
+    def at(self, direction: np.ndarray, amplitude: float, offset: float, reach: float) -> Solved | None:
+        """The solution at an amplitude in a direction, if it is not further off than that many times."""
+        engine, border = self.engine, self.engine.weights * direction
+        guess = self.z + amplitude * direction
+        guess[-1] += offset
+        along = direction if amplitude > 0.0 else -direction
+        found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), along)
+        if found is None:
+            return None
+        there = engine.join(found.u, found.p)
+        # so close to the branch point Newton's method may end at roundoff, off the hyperplane
+        missed = abs(float(border @ (there - guess))) > MISSED * abs(amplitude)
+        far = engine.norm(there - self.z) > reach * abs(amplitude)
+        return None if far or missed else found
 
-def _lined_up(engine: Engine, z: np.ndarray, point: Solved | None, near: Solved | None, least: float) -> bool:
-    """Whether two points, the second one at half the amplitude, come from the same branch through z, as their distances tell."""
-    if point is None or near is None:
-        return False
-    away, beside = (engine.join(p.u, p.p) - z for p in (point, near))
-    far, close = engine.norm(away), engine.norm(beside)
-    return least * close < far < 3.5 * close and engine.inner(away, beside) > 0.0
+    def _lined_up(self, point: Solved | None, near: Solved | None, least: float) -> bool:
+        """Whether two points, the second one at half the amplitude, come from the same branch, as their distances tell."""
+        if point is None or near is None:
+            return False
+        away, beside = (self.engine.join(p.u, p.p) - self.z for p in (point, near))
+        far, close = self.engine.norm(away), self.engine.norm(beside)
+        return least * close < far < 3.5 * close and self.engine.inner(away, beside) > 0.0
 
-
-def _origin(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
-    """The branch point with its row, if need be of a point beside it; see `_evaluated`."""
-    border = engine.weights * tangent
-    target = float(border @ engine.join(u, p))
-    solved = (engine.polish(near, p, border, target) for near in _aside(engine, u))
-    found = next((point for point in solved if point is not None), None)
-    return None if found is None else found._replace(u=np.array(u, dtype=float))
-
-
-def _depart(
-    engine: Engine,
-    u: np.ndarray,
-    p: float,
-    tangent: np.ndarray,
-    amplitude: float,
-    one_sided: bool,
-    direction: np.ndarray,
-    bend: float = 0.0,
-    exchanged: Callable[[Solved], bool] | None = None,
-) -> Departure | None:
-    """The branch in a direction; see :func:`departures`."""
-    ways = ((LEAST, SLANTED), (LEAST, GRAZING), (0.0, SLANTED))
-    for asked in (exchanged, None) if exchanged is not None else (None,):
-        for least, reach in ways:
-            found = _lined(engine, u, p, tangent, amplitude, one_sided, direction, bend, least, reach, asked)
-            if found is not None and (straight := _straight(engine, engine.join(u, p), found)) is not None:
-                again = _lined(
-                    engine, u, p, tangent, amplitude, one_sided, straight, 0.0, least, reach, asked
-                )
-                return again or found
-            if found is not None:
-                return found
-    return None
-
-
-def _straight(engine: Engine, z: np.ndarray, found: Departure) -> np.ndarray | None:
-    """Where one of the two sides lies on the known branch, which turns round here (at a pitchfork), the direction of the other one; else None.
-
-    What a smooth branch leaves of proportion at half the distance is a quarter, what one with a root does, at which it turns, more.
-    """
-    if found.back is None:
-        return None
-    settings, rough, straight = engine.settings, False, None
-    for side, first in ((1.0, found.ahead), (-1.0, found.back)):
-        nearer = (
-            _at(engine, z, found.direction, side * found.amplitude * part, 0.0, GRAZING)
-            for part in (0.5, 0.25)
+    @cached_property
+    def _origin(self) -> Solved | None:
+        """The branch point with its row, if need be of a point beside it; see `_evaluated`."""
+        border = self.engine.weights * self.tangent
+        solved = (
+            self.engine.polish(near, self.p, border, float(border @ self.z))
+            for near in _aside(self.engine, self.u)
         )
-        gaps = [engine.join(point.u, point.p) - z for point in (first, *nearer) if point is not None]
-        left = [engine.norm(wide - 2.0 * narrow) for wide, narrow in pairwise(gaps)]
-        if len(left) == 2 and left[1] <= max(settings.crooked * left[0], settings.critical * found.amplitude):
-            straight = engine.unit(side * gaps[0])
-        else:
-            rough = True
-    return straight if rough else None
+        found = next((point for point in solved if point is not None), None)
+        return None if found is None else found._replace(u=np.array(self.u, dtype=float), sign=0.0)
 
+    def _straight(self, found: Departure) -> np.ndarray | None:
+        """Where one of the two sides lies on the known branch, which turns round here (at a pitchfork), the direction of the other one; else None.
 
-def _lined(
-    engine: Engine,
-    u: np.ndarray,
-    p: float,
-    tangent: np.ndarray,
-    amplitude: float,
-    one_sided: bool,
-    direction: np.ndarray,
-    bend: float,
-    least: float,
-    reach: float,
-    exchanged: Callable[[Solved], bool] | None,
-) -> Departure | None:
-    """The branch in a direction whose first points are so much further away at twice the amplitude, and within reach."""
-    z = engine.join(u, p)
-    best: Departure | None = None
-    origin: Solved | None = None
-
-    def at(distance: float) -> Solved | None:
-        return _at(engine, z, direction, distance, bend * distance**2, reach)
-
-    near, behind = at(amplitude), None if one_sided else at(-amplitude)
-    for attempt in range(ATTEMPTS):
-        if attempt >= 7 and best is not None:
-            break
-        half = 0.5 * amplitude
-        ahead, near = near, at(half)
-        back, behind = behind, None if one_sided else at(-half)
-        if not _lined_up(engine, z, ahead, near, least) or (
-            ahead is not None and exchanged is not None and not exchanged(ahead)
-        ):
-            ahead = None
-        if not _lined_up(engine, z, back, behind, least):
-            back = None
-        both = one_sided or (back is not None and behind is not None)
-        if ahead is not None and near is not None and both:
-            if one_sided:
-                wide, narrow, slope = (ahead.p - p) / amplitude**2, (near.p - p) / half**2, 0.0
+        What a smooth branch leaves of proportion at half the distance is a quarter, what one with a root does, at which it turns, more.
+        """
+        if found.back is None:
+            return None
+        engine, settings, rough, straight = self.engine, self.engine.settings, False, None
+        for side, first in ((1.0, found.ahead), (-1.0, found.back)):
+            nearer = (
+                self.at(found.direction, side * found.amplitude * part, 0.0, GRAZING) for part in (0.5, 0.25)
+            )
+            gaps = [engine.join(point.u, point.p) - self.z for point in (first, *nearer) if point is not None]
+            left = [engine.norm(wide - 2.0 * narrow) for wide, narrow in pairwise(gaps)]
+            if len(left) == 2 and left[1] <= max(
+                settings.crooked * left[0], settings.critical * found.amplitude
+            ):
+                straight = engine.unit(side * gaps[0])
             else:
-                assert back is not None and behind is not None
-                wide = (0.5 * (ahead.p + back.p) - p) / amplitude**2
-                narrow = (0.5 * (near.p + behind.p) - p) / half**2
-                slope = (4.0 * (near.p - behind.p) - 0.5 * (ahead.p - back.p)) / (3.0 * amplitude)
-            curvature = (4.0 * narrow - wide) / 3.0
-            chord = engine.join(ahead.u, ahead.p) - (z if back is None else engine.join(back.u, back.p))
-            origin = origin or _origin(engine, u, p, tangent)
-            if origin is None:
-                return None
-            origin = origin._replace(tangent=engine.unit(chord if back is not None else direction), sign=0.0)
-            best = Departure(engine.problem, origin, ahead, back, direction, amplitude, curvature, slope)
-            if abs(wide - narrow) <= 0.02 * abs(narrow) + engine.settings.located / amplitude**2:
-                return best
-        amplitude = half
-    return best
+                rough = True
+        return straight if rough else None
+
+    def _along(
+        self, direction: np.ndarray, bend: float, exchanged: Exchanged, least: float, reach: float
+    ) -> Departure | None:
+        """The branch in a direction whose first points are so much further away at twice the amplitude, and within reach."""
+        engine, p, one_sided, amplitude = self.engine, self.p, self.one_sided, self.amplitude
+        best: Departure | None = None
+
+        def at(distance: float) -> Solved | None:
+            return self.at(direction, distance, bend * distance**2, reach)
+
+        near, behind = at(amplitude), None if one_sided else at(-amplitude)
+        for attempt in range(ATTEMPTS):
+            if attempt >= 7 and best is not None:
+                break
+            half = 0.5 * amplitude
+            ahead, near = near, at(half)
+            back, behind = behind, None if one_sided else at(-half)
+            if not self._lined_up(ahead, near, least) or (
+                ahead is not None and exchanged is not None and not exchanged(ahead)
+            ):
+                ahead = None
+            if not self._lined_up(back, behind, least):
+                back = None
+            both = one_sided or (back is not None and behind is not None)
+            if ahead is not None and near is not None and both:
+                if one_sided:
+                    wide, narrow, slope = (ahead.p - p) / amplitude**2, (near.p - p) / half**2, 0.0
+                else:
+                    assert back is not None and behind is not None
+                    wide = (0.5 * (ahead.p + back.p) - p) / amplitude**2
+                    narrow = (0.5 * (near.p + behind.p) - p) / half**2
+                    slope = (4.0 * (near.p - behind.p) - 0.5 * (ahead.p - back.p)) / (3.0 * amplitude)
+                curvature = (4.0 * narrow - wide) / 3.0
+                if self._origin is None:
+                    return None
+                chord = (
+                    direction if back is None else engine.join(ahead.u, ahead.p) - engine.join(back.u, back.p)
+                )
+                origin = self._origin._replace(tangent=engine.unit(chord))
+                best = Departure(engine.problem, origin, ahead, back, direction, amplitude, curvature, slope)
+                if abs(wide - narrow) <= 0.02 * abs(narrow) + engine.settings.located / amplitude**2:
+                    return best
+            amplitude = half
+        return best

@@ -14,14 +14,14 @@ from ..bifurcation.located import Role
 from ..bifurcation.multiplier_counts import counts
 from ..bifurcation.normal_forms.along_branch import criticality, crossing_speed, fold_coefficient
 from ..bifurcation.normal_forms.criticality import cubic_form
-from ..bifurcation.switching import departures
+from ..bifurcation.switching import Departure, departures
 from ..branches.branch import Branch
 from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..interrupts import OPEN
 from ..journal import NullJournal
 from ..problems.abilities import Adaptive, Onward
-from ..problems.protocol import Problem
+from ..problems.protocol import Problem, Seed
 from ..problems.registry import UnknownFactory, rebuild
 from .graph import Graph
 from .run import Origin, Pending, Run
@@ -34,7 +34,6 @@ FAMILY = (
     "give the problem conditions= that pick one of them"
 )
 VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
-SEED = ("problem", "u", "p", "tangent", "note", "persistence")
 SWITCHING, CROSSING = "the search for branches that leave here", "the search for solutions beyond the border"
 DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
@@ -128,80 +127,71 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 along = crossing_speed(engine, departure.origin, name, k) if engine.m else None
                 if point.criticality is None and curvature is not None:
                     point.criticality, point.coefficient = criticality(curvature, along, flip=False)
-            elif point.criticality is None and not transcritical:
-                curvature = departure.curvature / target.amplitude(departure.direction) ** 2
-                point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
-                own: Any = point.problem
-                if isinstance(own, Adaptive):
-                    # the form of the return map: amplitudes of unknowns that differ much in size say less
-                    exact = own.normal_form(point.kind, point.u, point.value)
-                    if exact is not None:
-                        rough = exact[0]
-                        supercritical = rough > 0.0 if name == "minus" else rough < 0.0
-                        point.criticality = "supercritical" if supercritical else "subcritical"
-                exactly = partial(_cubic, own, point.u, point.value, name, rough)
-                point.coefficient = rough if point.criticality is None else exactly
             elif transcritical:
                 run.remark(point.label, TRANSCRITICAL)
+            elif point.criticality is None:
+                _classify(
+                    point, departure.curvature / target.amplitude(departure.direction) ** 2, speed, name
+                )
             if departure.family:
                 run.remark(point.label, FAMILY)
-                continue
-            if depth + 1 > run.depth:
-                continue
-            run.queue.append(
-                Pending(
-                    departure.problem,
-                    departure.origin.u,
-                    departure.origin.p,
-                    kind=Origin.SWITCH,
-                    depth=depth + 1,
-                    source=branch.label,
-                    point=point.label,
-                    note="mirror image not traced" if point.mirror else "",
-                    origin=departure.origin,
-                    ahead=departure.ahead,
-                    back=departure.back,
-                    first_step=min(run.settings.first_step, departure.amplitude),
-                )
-            )
+            else:
+                _follow(run, departure, point, branch, depth)
+
+
+def _classify(point: SpecialPoint, curvature: float, speed: float | None, name: str) -> None:
+    """Criticality and coefficient from the curvature of the branch that leaves; of cycles on a mesh from the form of the return map.
+
+    Amplitudes of unknowns that differ much in size say less.
+    """
+    problem: Any = point.problem
+    point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
+    exact = problem.normal_form(point.kind, point.u, point.value) if isinstance(problem, Adaptive) else None
+    if exact is not None:
+        rough = exact[0]
+        point.criticality = "supercritical" if (rough > 0.0) == (name == "minus") else "subcritical"
+    exactly = partial(_cubic, problem, point.u, point.value, name, rough)
+    point.coefficient = rough if point.criticality is None else exactly
+
+
+def _follow(run: Run, departure: Departure, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """Queue a branch that leaves a special point, as far as the depth allows."""
+    if depth + 1 > run.depth:
+        return
+    origin = departure.origin
+    run.queue.append(
+        Pending(
+            departure.problem,
+            origin.u,
+            origin.p,
+            kind=Origin.SWITCH,
+            depth=depth + 1,
+            source=branch.label,
+            point=point.label,
+            note="mirror image not traced" if point.mirror else "",
+            origin=origin,
+            ahead=departure.ahead,
+            back=departure.back,
+            first_step=min(run.settings.first_step, departure.amplitude),
+        )
+    )
 
 
 def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """The cycles that are born at a Hopf point, of problems that have cycles."""
     if depth + 1 > run.depth:
         return
-    problem = point.problem
-    for child in problem.offspring("hopf", point.u, point.value, point.tangent, 1j):
+    for child in point.problem.offspring("hopf", point.u, point.value, point.tangent, 1j):
         target, _ = run.engine(child.problem)
         direction = target.unit(np.asarray(child.tangent, dtype=float))
-        found = departures(
-            target,
-            np.asarray(child.u, dtype=float),
-            point.value,
-            np.zeros(target.n + 1),
-            run.settings.amplitude,
-            one_sided=True,
-            directions=[direction],
-        )
+        start, nothing = np.asarray(child.u, dtype=float), np.zeros(target.n + 1)
+        found = departures(target, start, point.value, nothing, run.settings.amplitude, True, [direction])
         if not found:
             run.remark(point.label, "no cycle that leaves here was found")
         for departure in found:
             if departure.upright(run.unit(point.value), run.settings.near):
                 run.remark(point.label, VERTICAL)
-            run.queue.append(
-                Pending(
-                    departure.problem,
-                    departure.origin.u,
-                    departure.origin.p,
-                    kind=Origin.SWITCH,
-                    depth=depth + 1,
-                    source=branch.label,
-                    point=point.label,
-                    origin=departure.origin,
-                    ahead=departure.ahead,
-                    first_step=min(run.settings.first_step, departure.amplitude),
-                )
-            )
+            _follow(run, departure, point, branch, depth)
 
 
 def _exchange(
@@ -338,22 +328,19 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         elif all(_cost(seed) + depth > run.depth for seed in seeds):
             run.remark(point.label, DEEPER.format(depth=run.depth))
         for seed in seeds:
-            persistence = bool(seed["persistence"])
-            note = str(seed["note"]) or ("persistence" if persistence else "nonsmooth fold")
-            cost = _cost(seed)
-            if depth + cost > run.depth:
+            if depth + _cost(seed) > run.depth:
                 continue
             run.queue.append(
                 Pending(
-                    seed["problem"],
-                    np.asarray(seed["u"], dtype=float),
-                    float(seed["p"]),
-                    None if seed["tangent"] is None else np.asarray(seed["tangent"], dtype=float),
+                    seed.problem,
+                    np.asarray(seed.u, dtype=float),
+                    float(seed.p),
+                    None if seed.tangent is None else np.asarray(seed.tangent, dtype=float),
                     kind=Origin.BORDER,
-                    depth=depth + cost,
+                    depth=depth + _cost(seed),
                     source=branch.label,
                     point=point.label,
-                    note=note,
+                    note=str(seed.note) or ("persistence" if seed.persistence else "nonsmooth fold"),
                 )
             )
     if run.virtual:
@@ -389,39 +376,29 @@ def tell_dead_end(run: Run, point: SpecialPoint) -> None:
     run.remark(point.label, run.attempt(point.label, CROSSING, partial(point.problem.dead_end, point), ""))
 
 
-def _cost(seed: dict[str, Any]) -> int:
+def _cost(seed: Seed) -> int:
     """How many switches deeper a branch beyond a border is: one that goes on in the same direction is as deep."""
-    return 0 if seed["persistence"] else 1
+    return 0 if seed.persistence else 1
 
 
-def _seeds(run: Run, point: SpecialPoint, every: bool = True) -> list[dict[str, Any]]:
+def _seeds(run: Run, point: SpecialPoint, every: bool) -> list[Seed]:
     """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
     problem, brief = point.problem, not every and isinstance(point.problem, Onward)
     key = f"{run.serial}/{'onward' if brief else 'beyond'}/{point.label}"
-    known = run.journal.recall(key)
-    problems = _rebuilt(known)
-    if known is not None and problems is not None:
-        return [
-            {
-                "problem": problems[i],
-                "u": known[f"u{i}"],
-                "p": known["p"][i],
-                "tangent": known.get(f"tangent{i}"),
-                "note": known["note"][i],
-                "persistence": known["persistence"][i],
-            }
-            for i in range(len(problems))
-        ]
+    recorded = run.journal.recall(key)
+    known = _rebuilt(recorded)
+    if known is not None:
+        return known
     ask = problem.onward if brief else problem.beyond
     seeds = run.attempt(point.label, CROSSING, lambda: list(ask(point)), None)
     if seeds is None:
         return []
-    if known is None and not isinstance(run.journal, NullJournal):
+    if recorded is None and not isinstance(run.journal, NullJournal):
         run.journal.record(key, _recorded(seeds))
-    return [{name: getattr(seed, name) for name in SEED} for seed in seeds]
+    return seeds
 
 
-def _recorded(seeds: list[Any]) -> dict[str, Any]:
+def _recorded(seeds: list[Seed]) -> dict[str, Any]:
     """Seeds as a journal keeps them."""
     record: dict[str, Any] = {
         "problems": [dict(seed.problem.describe()) for seed in seeds],
@@ -436,15 +413,22 @@ def _recorded(seeds: list[Any]) -> dict[str, Any]:
     return record
 
 
-def _rebuilt(record: Any) -> list[Any] | None:
-    """The problems of a journal's record; None where one of them cannot be obtained from it, and is asked for again."""
+def _rebuilt(record: Any) -> list[Seed] | None:
+    """The seeds of a journal's record; None where a problem cannot be obtained from it, and is asked for again."""
     if record is None:
         return None
-    try:
-        problems = [rebuild(entry) for entry in record["problems"]]
-    except UnknownFactory:
-        return None
-    return None if any(problem is None for problem in problems) else problems
+    seeds = []
+    for i, entry in enumerate(record["problems"]):
+        try:
+            problem = rebuild(entry)
+        except UnknownFactory:
+            return None
+        if problem is None:
+            return None
+        tangent, note = record.get(f"tangent{i}"), record["note"][i]
+        persistence = bool(record["persistence"][i])
+        seeds.append(Seed(problem, record[f"u{i}"], record["p"][i], tangent, "border", note, persistence))
+    return seeds
 
 
 class _Same:
