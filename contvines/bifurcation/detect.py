@@ -13,10 +13,9 @@ from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from .consistency import at_one, inexact, leap
-from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, suspicious, turns_twice
-from .kinks import kinked, nearest, pointed
+from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, pointed, suspicious
 from .locate import locate
-from .located import NOWHERE, Located, Role
+from .located import Located, Role
 from .multiplier_counts import counts
 from .scan import Scan, scanner
 from .segment import Segment
@@ -73,16 +72,14 @@ class Detector(SegmentSearch):
         )
         sides, outside = filled(seen.sides), seen.outside
         borders = (outside[1:] != outside[:-1]) & (outside[1:] == real)
-        if real and outside[extra] and not outside[extra + 1 :].all():
-            borders |= outside[1:]
         columns, inside = suspicious(seen, scanned)
-        inside[:, SLOPE] |= turns_twice(seen.distances[:, SLOPE], np.diff(wide.values), lengths)
         smallest = seen.first_margin - 1
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
         born = pairs_born(seen) if engine.m > 2 else np.zeros(len(lengths), dtype=bool)
-        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths)
+        sharp = np.zeros(len(lengths), dtype=bool)
         if engine.many:
+            sharp = pointed(-wide.rows[:, 0], sides[:, 1], lengths)
             inside[:, SLOPE + 1 : SLOPE + 4] = False
         told = ((sides[1:] != sides[:-1]).any(axis=1) | borders | meets)[extra:]
         meets, lands = meets[extra:], lands[extra:]
@@ -98,7 +95,7 @@ class Detector(SegmentSearch):
             segment = Segment(engine, chunk.solved(i, signs[0]), chunk.solved(i + 1, signs[1]))
             suspects = columns[inside[i]].tolist()
             split = self.inside(segment, real, suspects) if suspects or born[i] else None
-            if engine.many and sharp[i]:
+            if sharp[i]:
                 found = self._closely(segment, real)
             elif split is not None:
                 found = [*self.both(segment, *split, real), _plain(*split)]
@@ -110,9 +107,7 @@ class Detector(SegmentSearch):
                     found = self.both(segment, *split, real)
             else:
                 found = []
-            if sharp[i] and not (engine.many or found) and kinked(segment):
-                return [*events, Located(float(i), "", 0, segment.a, NOWHERE, 0.0, Role.LEAP)]
-            if not (found or told[i] or split is not None or (engine.many and sharp[i])):
+            if not (found or told[i] or split is not None or sharp[i]):
                 continue
             found.sort(key=lambda e: e.position)
             leaping = leap(segment, found)
@@ -200,14 +195,9 @@ class Detector(SegmentSearch):
         return len({way > 0.0 for way, least in ways if abs(way) > least}) > 1 or self._passed(origin, start)
 
     def _passed(self, origin: Solved, start: Solved) -> bool:
-        """Whether multipliers (eigenvalues) have passed the circle (the axis) since a branch point, other than the critical ones at +1 (zero), which do not tell."""
-        engine, critical = self.engine, {"map": 1.0, "flow": 0.0}.get(self.engine.detection)
-        if critical is None:
-            return False
-        spectrum, near = engine.spectrum(origin.row), engine.settings.together * engine.rate
-        others = spectrum[np.abs(spectrum - critical) > near]
-        apart = np.abs(np.abs(others) - 1.0) if critical else np.abs(others.real)
-        if np.any(apart <= near):
+        """Whether multipliers (eigenvalues) have passed the circle (the axis) since a branch point, at other places than +1 (zero)."""
+        engine = self.engine
+        if engine.detection not in ("map", "flow"):
             return False
         (_, *before), (_, *after) = counts(engine, np.array([origin.row, start.row])).tolist()
         return before != after

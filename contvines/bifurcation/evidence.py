@@ -21,6 +21,7 @@ NEARBY = np.log(
     2.0
 )  # distance from the circle of a pair that may have been past it since two real multipliers met
 SLOPE, PAIR = 0, 3  # columns of `distances`
+AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
 
 
 class Evidence(NamedTuple):
@@ -165,14 +166,28 @@ def parabola_dips(
         return found & (middle - 0.25 * slope * slope / bend < 0.0)
 
 
-def turns_twice(slopes: np.ndarray, changes: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Segments with slopes of one sign at both ends in which the cubic with these, and this change, falls in between: two folds."""
+def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Segments with equal signs at both ends in which distances, continued from before and from behind in straight lines, reach zero.
+
+    Two eigenvalues may pass zero there at once; of problems with many unknowns only the nearest one is known along the branch.
+
+    Parameters
+    ----------
+    distances : ndarray, shape (n,)
+        Positive.
+    signs : ndarray, shape (n,)
+    lengths : ndarray, shape (n - 1,)
+    """
+    changes = np.diff(distances)
     with np.errstate(all="ignore"):
-        side = np.sign(slopes[:-1])
-        here, there, mean = side * slopes[:-1], side * slopes[1:], side * changes / lengths
-        bend, middle = 3.0 * (here + there - 2.0 * mean), 2.0 * here + there - 3.0 * mean
-        alike = (here > 0.0) & (there > 0.0)
-        return alike & (bend > 0.0) & (middle > 0.0) & (middle < bend) & (here * bend < middle * middle)
+        ahead = np.where(changes < 0.0, -distances[1:] / changes, np.inf) * lengths
+        back = np.where(changes > 0.0, distances[:-1] / changes, np.inf) * lengths
+    # at the ends of a chunk there is only one side to tell: its zero has to lie well inside
+    before, behind = np.append(np.inf, ahead[:-1]) / lengths, np.append(back[1:], np.inf) / lengths
+    inside = (before < AHEAD) & (behind < AHEAD)
+    if len(lengths) > 1:
+        inside[0], inside[-1] = behind[0] < EDGE, before[-1] < EDGE
+    return (signs[:-1] == signs[1:]) & inside
 
 
 def pairs_born(seen: Evidence) -> np.ndarray:

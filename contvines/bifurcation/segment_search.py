@@ -82,7 +82,6 @@ class SegmentSearch:
         found = stop
         for kind in self.kinds:
             found = [*found, *self._of_kind(kind, segment, found)]
-        found = _without_turnings(found, self.engine.settings.near)
         if not unaccounted(segment, found):
             return [*found, *self._own(segment)]
         middle = segment.at(0.5)
@@ -346,9 +345,3 @@ def _drowned(engine: Engine, point: Solved) -> bool:
     sizes = np.sort(np.abs(engine.spectrum(point.row)))
     near = np.abs(sizes[:-1] - 1.0).min(initial=np.inf) <= np.finfo(float).eps * sizes.max(initial=0.0)
     return bool(near or not np.isfinite(sizes).all())
-
-
-def _without_turnings(found: list[Located], near: float) -> list[Located]:
-    """Without folds at branch points of the segment: a side branch may turn where it meets the other one."""
-    points = [e.position for e in found if e.kind == "branch-point"]
-    return [e for e in found if e.kind != "fold" or not any(abs(e.position - s) <= near for s in points)]

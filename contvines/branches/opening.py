@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..bifurcation.detect import Detector
 from ..bifurcation.locate import Root
 from ..bifurcation.located import Located, Role
@@ -26,10 +24,6 @@ if TYPE_CHECKING:
 
 SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
-UNRESOLVED = (
-    4.0 * np.finfo(float).eps
-)  # changes of the parameter (in its unit), times the distance at which they are seen, that are rounding
-TURNING = ("fold", "branch-point")  # what rounding makes of solutions of nearly singular systems
 
 
 def opening(
@@ -92,28 +86,6 @@ def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
         return None
     missed = engine.norm(engine.join(found.u, found.p) - guess)
     return found if missed <= ASTRAY * SHORTER * abs(along) else None
-
-
-def without_rounding(engine: Engine, origin: Solved, half: HalfBranch) -> HalfBranch:
-    """The half of a branch that leaves a special point (or meets one, reversed) without turns of the parameter that are rounding, and solutions up to these.
-
-    The nearer to where p = p0 + a s^2 the more singular the equations, and the less of p is known: where a s^2 is not, tangents and
-    multipliers do not tell either.
-    """
-    if abs(origin.tangent[-1]) > engine.settings.stationary * engine.parameter_unit(origin.p):
-        return half
-    turns = {i for i, e in half.events if e.kind in TURNING and not e.ends_branch}
-    last = max((i for i in turns if _unresolved(engine, origin, half, i)), default=0)
-    kept = {i for i, _ in half.events if i not in turns}
-    return half.without([i for i in range(1, last + 1) if i not in kept]) if last else half
-
-
-def _unresolved(engine: Engine, origin: Solved, half: HalfBranch, i: int) -> bool:
-    u, p, _ = half.at(i)
-    distance = engine.norm(engine.join(u - origin.u, p - origin.p))
-    return distance < engine.settings.near and abs(
-        p - origin.p
-    ) * distance < UNRESOLVED * engine.parameter_unit(origin.p)
 
 
 def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:

@@ -14,7 +14,7 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.trace import Retrace, chunks
 from ..journal import NullJournal
 from .half_branch import HalfBranch, Piece, pack, piece_of, single, unpack
-from .opening import SHORTER, opening, without_rounding
+from .opening import SHORTER, opening
 
 if TYPE_CHECKING:
     from ..journal import Journal
@@ -127,8 +127,4 @@ def trace_half(
             notice(len(half), half.end)
         if status != Status.RUNNING:
             break
-    if half.status == Status.CLOSED:
-        return half
-    if half.events and half.events[-1][1].role is Role.MEETING:
-        half = without_rounding(engine, half.events[-1][1].point, half.reversed()).reversed()
-    return half if origin is None else without_rounding(engine, origin, half)
+    return half

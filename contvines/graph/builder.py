@@ -21,7 +21,6 @@ from ..continuation.layout import MARGIN
 from ..continuation.starts import solve_start, start_remark
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
-from .identity import parts_further_on
 from .label_special_points import mark, origin_index
 from .match_borders import is_border, same_border, tie_borders
 from .run import Origin, Pending, Run
@@ -165,9 +164,6 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
             run.remark(pending.point, "the branch that leaves here begins beyond a border; it is virtual")
         return None
     known = run.register.find(pending.problem, first.u, first.p, real)
-    if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
-        itself = run.engine(known.problem)[0]
-        known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:
             run.remark(pending.point, "the solution found beyond lies on the same branch")
@@ -331,16 +327,11 @@ def room(engine: Engine, border: Solved, step: float) -> float | None:
 
 
 def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved:
-    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part.
-
-    Where it leaves shorter solutions at so small a distance that a step leaps to these, none is off the point.
-    """
-    root = engine.problem.root
-    primitive = root(point.u, point.p) is None
+    """A point of the same branch at a small distance, ahead if there is one: real (or virtual) where `real` says so, however short that part."""
     for length in (step, 0.1 * step, 0.01 * step):
         for side in (length, -length):
             found = beside(engine, point, side)
-            if found is None or (primitive and root(found.u, found.p) is not None):
+            if found is None:
                 continue
             if real is None or (float(engine.smallest_margin(found.row)) >= MARGIN) == real:
                 return found

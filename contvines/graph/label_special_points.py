@@ -43,7 +43,7 @@ def mark(
     ends: dict[int, Ending] = {}
     last = len(branch) - 1
     known = [pair for pair in half.events if pair[1].role is not Role.UNRESOLVED]
-    events = _without_turnings(run, engine, known)
+    events = _without_turnings(engine, known)
     if not branch.closed:
         for index, side in ((0, 0), (last, 1)):
             if branch.endings[side].reason is Reason.LEFT_INTERVAL:
@@ -212,10 +212,6 @@ def _known(
                 other.reached = branch.real
                 return other.point
     form, beside, near = None, [], UNSTATED * run.settings.same * run.unit(point.p)
-    if kind == "fold":
-        turning = _turning_at(run, engine, event)
-        if turning is not None:
-            return turning
     for known in run.graph.special.values():
         if known.kind != kind or abs(known.value - point.p) > near or known.problem is None:
             continue
@@ -233,9 +229,7 @@ def _known(
     return min(beside)[1] if beside else None
 
 
-def _without_turnings(
-    run: Run, engine: Engine, events: list[tuple[int, Located]]
-) -> list[tuple[int, Located]]:
+def _without_turnings(engine: Engine, events: list[tuple[int, Located]]) -> list[tuple[int, Located]]:
     """Events of one branch without folds that are its own branch points: a side branch only turns there."""
     places = [event.point for _, event in events if event.kind in TURNING_KINDS]
     return [
@@ -255,14 +249,6 @@ def _stands_still(
     first, last = sorted((origin, fold.index))
     away = np.append(branch.values[first : last + 1], fold.value) - start.value
     return bool(np.abs(away).max() <= doubt)
-
-
-def _turning_at(run: Run, engine: Engine, event: Located) -> str | None:
-    """Label of a branch point at which a side branch only turns: the parameter is stationary there, but it is no fold."""
-    for known in run.graph.special.values():
-        if known.kind in TURNING_KINDS and turns_at(engine, event.point, known.u, known.value):
-            return known.label
-    return None
 
 
 def _doubt(engine: Engine, special: SpecialPoint) -> None:
