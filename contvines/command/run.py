@@ -256,7 +256,10 @@ def _look(study: "Study", target: Path):
         with interruptible(
             f"the diagram is kept in {target}; the same command looks again for what it does not have"
         ):
-            look(graph, population(study))
+            try:
+                look(graph, population(study))
+            except ValueError as error:  # no start lies between the walls: the diagram is whole all the same
+                say(f"what else may settle was not simulated: {error}", quiet=False)
         store.checkpoint(graph)
         store.tidy()
     return graph

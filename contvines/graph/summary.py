@@ -29,7 +29,7 @@ def summary(graph: Graph, width: int | None = None) -> str:
         Characters to a line; those of the terminal by default.
     """
     width = terminal_width() if width is None else width
-    measure, number = default_measure(graph), figures_in(graph.within)
+    measure = default_measure(graph)
     met: dict[tuple[str, str], list[Any]] = {}
     for part in stretches(graph):
         about = part.branch.description
@@ -37,10 +37,11 @@ def summary(graph: Graph, width: int | None = None) -> str:
     length = graph.within[1] - graph.within[0]
     found = sorted(((_length(parts), key, parts) for key, parts in met.items()), key=lambda row: -row[0])
     listed = [row for row in found if row[0] >= LEAST * length][:MOST] or found[:MOST]
-    rows = []
-    for _, (word, kind), parts in listed:
+    rows, ends_of = [], [_united(parts) for _, _, parts in listed]
+    number = figures_in(graph.within, [end for ends in ends_of for interval in ends for end in interval])
+    for (_, (word, kind), parts), stable in zip(listed, ends_of):
         top = max((at_points(part) for part in parts), key=lambda top: top.response)
-        ends = [f"{number(a)}..{number(b)}" for a, b in _united(parts)]
+        ends = [f"{number(a)}..{number(b)}" for a, b in stable]
         rows.append(
             (
                 word,

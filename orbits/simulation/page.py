@@ -24,6 +24,7 @@ SAMPLES = 2000  # of a run, for its extremes
 AWAY = 1e3  # clock without an event of a cycle after which a motion does not come back to it
 LONG = 1e4  # clock of a self-excited machine without an event after which none is waited for
 LONGEST_WORD = 400  # events of its longest cycle
+AT_REST = 1e-6  # of the room between walls: what reaches less rests
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
 WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
 LATE = 50  # instants of its motion by which it is told whether it has come to rest
@@ -420,8 +421,15 @@ class PageSimulator:
             reach = np.abs(run.sample(np.linspace(run.clocks[0], run.finish, SAMPLES))).max(axis=0)
         except SimulationError:
             reach = zero
-        largest = float(reach.max())
+        largest, room = float(reach.max()), self._room()
+        if largest < AT_REST * room:  # it stays where it is
+            return np.full(self.machine.size, room)
         return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
+
+    def _room(self) -> float:
+        """The widest gap of a wall at the state; 0 without walls."""
+        gaps = zip(self.stepper.contact_values(), self.machine.contacts)
+        return max((float(gap) for gap, contact in gaps if isinstance(contact, Wall)), default=0.0)
 
     def free(self, points: np.ndarray) -> np.ndarray:
         """Which starts have all gaps open, bool array (m,)."""

@@ -309,7 +309,7 @@ class Stepper:
         for value, rate, guard in zip(*self._guards(self.modes)):
             if value <= 0.0 and rate < 0.0 and guard.kind == HIT:  # a gap that opens is negative by roundoff
                 self.state, self.clock = before, begin
-                if self.contact_values()[guard.contact] <= 0.0:
+                if self.contact_values()[guard.contact] <= FIRST_EVENT * (1.0 + np.abs(self.state).max()):
                     self._off(guard.contact)
                 return
 
