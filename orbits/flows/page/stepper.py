@@ -75,6 +75,7 @@ class Stepper:
         self._impacts = {w: self.compiled.impact_map(w) for w in self._touched}
         self._fresh = False  # something starts from rest: leave the surface before looking for events
         self._hop = 0.0  # time to the top of a short hop from a wall
+        self._due: list[int] = []  # walls that an impact elsewhere makes hit at the same instant
 
     # ------------------------------------------------------------------ beginning
     def renew(self, params: np.ndarray) -> None:
@@ -99,7 +100,7 @@ class Stepper:
             self.base, self.clock = TWO_PI * turns, clock - TWO_PI * turns
         else:
             self.clock = 0.0
-        self._last = -1
+        self._last, self._due = -1, []
         if modes is not None:
             self.modes = tuple(modes)
             self._fresh = True
@@ -116,8 +117,18 @@ class Stepper:
         for j in self._frictions * len(self._frictions):  # one that slips may be too much for another
             if self.modes[j] == STUCK:
                 self.modes = self._with(j, self._at_rest(j))
+        self._agree()
         self._fresh = True
         self._impacts_at_start(values)
+
+    def _agree(self) -> None:
+        """Frictions that begin at rest, until each slides the way it is pushed by what the others do."""
+        for _ in self._frictions:
+            before = self.modes
+            for guard in self._vanishing():
+                self._happened(guard)
+            if self.modes == before:
+                return
 
     def contact_values(self) -> np.ndarray:
         """Gaps, velocities and surfaces at the state: one value per contact."""
@@ -128,7 +139,7 @@ class Stepper:
     def _impacts_at_start(self, values: np.ndarray) -> None:
         for j, contact in enumerate(self.machine.contacts):
             if isinstance(contact, Wall) and abs(values[j]) <= FIRST_EVENT and self._gap_rate(j) < 0.0:
-                self._impact(j)
+                self._struck(j)
 
     # ------------------------------------------------------------------ laws
     def _tools(self, modes: tuple[int, ...]) -> Tools:
@@ -188,6 +199,33 @@ class Stepper:
                 self._hop = -self._gap_rate(wall) / push
         return HIT
 
+    def _struck(self, wall: int) -> int:
+        """An impact, and what it does to the other walls that are touched: one that holds lets go; one that is pressed hits at the same instant."""
+        kind = self._impact(wall)
+        near = FIRST_EVENT * (1.0 + np.abs(self.state).max())
+        gaps = self.contact_values()
+        self._due = []
+        for other in self._touched:
+            if other == wall or (self.modes[other] != HELD and abs(gaps[other]) > near):
+                continue
+            rate = self._gap_rate(other)
+            if abs(rate) <= near:
+                continue
+            if self.modes[other] == HELD:
+                self._let_go(other, opening=rate > 0.0)
+            if rate < 0.0:
+                self._due.append(other)
+        return kind
+
+    def _let_go(self, wall: int, opening: bool = True) -> None:
+        """A wall holds no more; frictions that it held slide as its gap opens or closes."""
+        modes = list(self._with(wall, FREE))
+        for (of, k), sign in self.machine.alphabet.flips.items():
+            if of == wall and sign is not None and k not in self.absent:
+                modes[k] = sign if opening else -sign
+        self.modes = tuple(modes)
+        self._fresh = True
+
     def _off(self, wall: int) -> None:
         """Of a body that sticks at a wall: the gap is opened by roundoff, for it would fall through zero by that again and again."""
         numbers = self._tools(self.modes)[3]
@@ -208,8 +246,10 @@ class Stepper:
         self.state[:] = self.compiled.settled(wall).one(
             self.state, self.clock, self.compiled.numbers(self.params, self.modes)
         )
-        modes = list(self.modes)
-        modes[wall] = HELD
+        modes = list(self._with(wall, HELD))
+        values = self.contact_values()
+        for j, _ in self._touched[wall]:  # the last impact may have turned a velocity that bodies at rest together do not have
+            modes[j] = 1 if values[j] > 0.0 else -1 if values[j] < 0.0 else self.modes[j]
         for j in self._tied[wall]:  # the same contact keeps the velocity at zero: friction need not
             modes[j] = ABSENT
         self.modes = tuple(modes)
@@ -230,6 +270,10 @@ class Stepper:
             If the motion blows up, or a switch would slide.
         """
         end = until - self.base
+        if self._due:
+            wall = self._due.pop()
+            self.count += 1
+            return wall, self._struck(wall), 0
         if self._last >= 0:
             event = self._at_once()
             if event is not None:
@@ -253,12 +297,11 @@ class Stepper:
                 return None
             if place < 0:
                 raise SimulationError(self._lost(before, began))
-            guard, alone = self._first(guards[place])
+            guard = self._first(guards[place])
             event = self._happened(guard)
             if event is not None:
                 self.count += 1
-                stuck = any(self.modes[j] == STUCK for j in self._frictions if j != event[0])
-                self._last = -1 if alone and not stuck else event[0]
+                self._last = event[0] if self._frictions else -1
                 self._rebase()
                 return event
 
@@ -270,24 +313,23 @@ class Stepper:
         self._last = -1 if guard is None else guard.contact
         return None if guard is None else self._happened(guard)
 
-    def _first(self, guard: Guard) -> tuple[Guard, bool]:
-        """Of the turns and slips of several bodies at one instant the first in the machine's order, and whether there is one only.
+    def _first(self, guard: Guard) -> Guard:
+        """Of the turns and slips of several bodies at one instant the first in the machine's order.
 
         Which one roundoff meets first is chance. What follows is the same: each changes its own mode, no state, and one that the others undo
         happens again at once.
         """
         if len(self._frictions) < 2 or guard.kind not in (SLIP, TURN):
-            return guard, True
-        found = [one for one in self._vanishing() if one is not guard]
-        return min([guard, *found], key=lambda one: one.contact), not found
+            return guard
+        return min([guard, *self._vanishing()], key=lambda one: one.contact)
 
     def _vanishing(self) -> list[Guard]:
-        """Turns and slips that happen now."""
+        """Turns and slips that happen now, and walls that would have to pull."""
         return [
             guard
             for value, rate, guard in zip(*self._guards(self.modes))
             if (guard.kind in (SLIP, TURN) and rate < -TOUCH and abs(value) < TOGETHER * (1.0 - rate))
-            or (guard.kind == SLIP and value < -TOUCH)
+            or (guard.kind in (SLIP, RELEASE) and value < -TOUCH)
         ]
 
     def _lost(self, state: np.ndarray, clock: float) -> str:
@@ -373,7 +415,7 @@ class Stepper:
             if any(self.modes[f] == STUCK for f in self._tied[j]):
                 self._off(j)
                 return None
-            return j, self._impact(j), 0
+            return j, self._struck(j), 0
         if kind == TURN:
             before = self.modes[j]
             after = self._at_rest(j)
@@ -386,12 +428,7 @@ class Stepper:
             self._fresh = True
             return j, SLIP, guard.sign
         if kind == RELEASE:
-            modes = list(self._with(j, FREE))
-            for (wall, k), sign in self.machine.alphabet.flips.items():
-                if wall == j and sign is not None and k not in self.absent:
-                    modes[k] = sign
-            self.modes = tuple(modes)
-            self._fresh = True
+            self._let_go(j)
             return j, RELEASE, 0
         if self._touches(j):
             return None
