@@ -16,7 +16,14 @@ def motion(state, phase, p, contact):
 MACHINE = Machine(
     name="pressed",
     states=("q", "w"),
-    parameters={"shaking": 0.1125, "frequency": 1.5, "pressed": 0.1, "rub": 0.02, "room": 0.2, "restitution": 0.75},
+    parameters={
+        "shaking": 0.1125,
+        "frequency": 1.5,
+        "pressed": 0.1,
+        "rub": 0.02,
+        "room": 0.2,
+        "restitution": 0.75,
+    },
     phase_rate="frequency",
     motion=motion,
     contacts=[
