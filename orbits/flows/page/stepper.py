@@ -25,7 +25,7 @@ TWO_PI = 2.0 * np.pi
 OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
 TOUCH = 1e-7  # rate below which a surface is touched rather than crossed: the depth is roundoff
 NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impacts have piled up
-SLOW = 1e-6  # squared approach speed below which impacts may be piling up
+SLOW = 1e-6  # squared speed after an impact below which a hop is short, and impacts may be piling up
 HALVINGS = 6  # of the way to the top of a hop, where something else happens on it
 TOGETHER = 1e-11  # a quantity so near to zero, relative to 1 + its rate, vanishes together with another
 FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
@@ -191,12 +191,12 @@ class Stepper:
             sign = 1 if row[place] > 0.0 else -1
             if sign != self.modes[j] and row[place] != 0.0:
                 self.modes = self._with(j, sign)
-        if before * before < SLOW:
-            push = self._push_back(wall)
-            if push < 0.0 and before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):
+        after = self._gap_rate(wall)
+        push = self._push_back(wall) if after * after < SLOW else 0.0
+        if push < 0.0:
+            if before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):
                 return self._hold(wall)
-            if push < 0.0:
-                self._hop = -self._gap_rate(wall) / push
+            self._hop = -after / push
         return HIT
 
     def _struck(self, wall: int) -> int:
@@ -248,7 +248,7 @@ class Stepper:
         )
         modes = list(self._with(wall, HELD))
         values = self.contact_values()
-        for j, _ in self._touched[wall]:  # the last impact may have turned a velocity that bodies at rest together do not have
+        for j, _ in self._touched[wall]:  # the last impact may have turned a velocity that is left as it was
             modes[j] = 1 if values[j] > 0.0 else -1 if values[j] < 0.0 else self.modes[j]
         for j in self._tied[wall]:  # the same contact keeps the velocity at zero: friction need not
             modes[j] = ABSENT
