@@ -141,6 +141,16 @@ class Attractor:
         return np.empty((0, self.model.node)) if self.orbit is None else self.orbit.nodes
 
     @property
+    def codes(self) -> np.ndarray:
+        """The events of its word as numbers, int8 array (n,); none without one."""
+        return np.empty(0, np.int8) if self.word is None else self.word.codes
+
+    @property
+    def modes(self) -> np.ndarray:
+        """The modes after them, int8 array (n,)."""
+        return np.empty(0, np.int8) if self.word is None else self.word.mode_codes
+
+    @property
     def residual(self) -> float:
         """Largest residual of the orbit's equations; nan without an orbit."""
         return np.nan if self.orbit is None else self.orbit.residual

@@ -52,6 +52,16 @@ class PageTrajectory(Trajectory):
     last: np.ndarray
 
     @property
+    def machine(self) -> Machine:
+        """The machine."""
+        return self.model
+
+    @property
+    def end(self) -> float:
+        """Clock at which the run ended."""
+        return self.finish
+
+    @property
     def points(self) -> np.ndarray:
         """The states just after the events."""
         return self.states[1:]
