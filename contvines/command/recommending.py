@@ -47,6 +47,7 @@ TRIED = 3  # choices of such machines that are looked at by diagrams, until one 
 SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
 ABOUT, FINE = 8, 321  # steps to either side of the largest response where it looks closer, at so many values
 ROUGH = 33  # the same where flights are integrated
+STEEP = 0.05  # of the value that is chosen: a rise within it counts as a jump
 MARGIN = 0.02  # of the value that is chosen: nearer to a jump of the response another value is taken, if it costs no more than the tolerance
 JUMP, HALVED = (
     0.2,
@@ -361,7 +362,7 @@ class _Work:
     ) -> tuple[list[Place], Place, list[Jump]]:
         """Places, the best one, and where the response jumps beside the choice.
 
-        A rise next to the tolerance is looked at ever nearer, in the sample in which it rises most: a jump is what does not get smaller. A choice within
+        A rise next to the tolerance is looked at ever nearer, in the sample in which it rises most: a jump is what does not get smaller, or is near enough all the same. A choice within
         `MARGIN` of it gives way to the value that is as far, if that costs no more than the tolerance.
         """
         jumps, wanted = [], best.value
@@ -381,7 +382,7 @@ class _Work:
         return places, other if other.worst <= (1.0 + cost) * best.worst else best, jumps
 
     def _jump(self, places: list[Place], best: Place, cost: float, side: int) -> Jump | None:
-        """The jump next to the tolerance below (-1) or above (1) the best; None where the response rises without one."""
+        """The jump next to the tolerance below (-1) or above (1) the best, or a rise as large near by; None where there is neither."""
         all_ = [place for place in places if place.samples == best.samples and math.isfinite(place.worst)]
         end = next(
             i for i, place in enumerate(all_) if place.value == _tolerance(places, best, cost)[side > 0]
@@ -407,7 +408,10 @@ class _Work:
             else:
                 near, inner = middle, response
             rise = outer - inner
-        return Jump(far, bad.value, bad.worst) if rise > JUMP * best.worst else None
+        if rise > JUMP * best.worst:
+            return Jump(far, bad.value, bad.worst)
+        steep = abs(bad.value - best.value) <= STEEP * abs(best.value)
+        return Jump(bad.value, bad.value, bad.worst) if steep else None
 
     def at_choice(self, places: list[Place], best: Place) -> tuple[list[Place], Place | None, Survey | None]:
         """Diagrams of all samples at the choice, with simulated starts: all places, the choice, its rows.
