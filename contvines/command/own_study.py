@@ -109,6 +109,7 @@ def _flow(data: dict[str, Any], path: Path, flow: Any) -> Study:
     elif box is not None and not all(low < high for low, high in box):
         wrong.append(f"[start] box = {box!r}: each pair is (low, high), low < high.")
     refuse(wrong)
+    flow.box = box  # of charts, and of the look after a diagram, as well
     return Study.of(path, Sort.FLOW, str(data["model"]["name"]), parameters, file, flow=flow)
 
 

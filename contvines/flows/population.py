@@ -83,7 +83,7 @@ class FlowPopulation:
     values : mapping of str to float
         Of the other parameters.
     box : sequence of (low, high), optional
-        One pair per state; by default round the flow's own start, and round ``around``.
+        One pair per state; by default the flow's own one, or else round its start, and round ``around``.
     around : ndarray, shape (n, d), optional
         States of a motion that is known.
     """
@@ -105,6 +105,7 @@ class FlowPopulation:
         self.field = flow.field.against(self.values)
         self.node = len(flow.x0)
         self.work = 0.0
+        box = flow.box if box is None else box
         if box is None:
             points = np.array(flow.x0)[None] if around is None else np.vstack([flow.x0, around])
             reach = np.maximum(
