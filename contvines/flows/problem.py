@@ -129,7 +129,9 @@ class FlowProblem:
         self.mirror_shifted = False
         self.origin: tuple[str, str, str] | None = None  # file, name and digest, of a flow that a study names
         self.sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles
-        self.box: Sequence[tuple[float, float]] | None = None  # in which motions begin, of a study that has one
+        self.box: Sequence[tuple[float, float]] | None = (
+            None  # in which motions begin, of a study that has one
+        )
         self.field = Field(
             f, jacobian, derivative, self.x0, self.values, _period(period, self.values), self.settings
         )

@@ -119,14 +119,16 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         for departure in found:
             unit = run.unit(point.value)
             transcritical = abs(departure.slope) > SLANTED * unit * departure.amplitude
-            turns = abs(point.tangent[-1]) <= SLANTED * unit * engine.amplitude(point.tangent)
+            rise, size = abs(point.tangent[-1]), engine.amplitude(point.tangent)
+            steep = generic and transcritical and rise <= SLANTED * unit * size
+            bend = fold_coefficient(engine, here) if steep else None
+            turns = rise <= abs(bend or 0.0) * departure.amplitude * size
             if departure.upright(unit, run.settings.near):
                 run.remark(point.label, VERTICAL)
-            elif generic and transcritical and turns:  # a pitchfork: the known branch is the one that bends
-                curvature = fold_coefficient(engine, here)
+            elif bend is not None and turns:  # a pitchfork: the known branch is the one that bends
                 along = crossing_speed(engine, departure.origin, name, k) if engine.m else None
-                if point.criticality is None and curvature is not None:
-                    point.criticality, point.coefficient = criticality(curvature, along, flip=False)
+                if point.criticality is None:
+                    point.criticality, point.coefficient = criticality(bend, along, flip=False)
             elif transcritical:
                 run.remark(point.label, TRANSCRITICAL)
             elif point.criticality is None:

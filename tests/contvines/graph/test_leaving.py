@@ -12,6 +12,15 @@ def graph_of(function, within=(-1.0, 1.0), start=-0.5, **more):
     )
 
 
+def test_a_transcritical_point_on_a_steep_branch_is_said_to_be_one():
+    """The known branch u = (100 p, 0) does not turn at p = 0.1, however little the parameter changes along it."""
+    problem = cv.AlgebraicProblem(
+        lambda u, p: [u[0] - 100.0 * p, u[1] * (u[0] - 10.0 - u[1])], [1.0, 0.0], 0.01
+    )
+    (point,) = cv.diagram(problem, within=(0.0, 0.3)).of_kind("branch-point")
+    assert "transcritical" in point.remarks and point.criticality is None
+
+
 def test_a_transcritical_point_is_said_to_be_one():
     """u' = p u - u^2: the branches u = 0 and u = p cross, there is no side and no coefficient."""
     (point,) = graph_of(lambda u, p: p * u - u**2).of_kind("branch-point")
