@@ -9,10 +9,9 @@ import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
-from orbits.attractors.recurrence import NEARLY, attracted, recurring
-from orbits.contacts.letters import RELEASE
+from orbits.attractors.recurrence import NEARLY, attracted, recurring, returns
 from orbits.flows.protocol import Batch, Outcome, SimulationError, Simulator
-from orbits.flows.trajectory import TWO_PI, Trajectory
+from orbits.flows.trajectory import TWO_PI
 from orbits.orbit import Orbit
 from orbits.population.sorting import Sorting
 
@@ -28,7 +27,6 @@ ENOUGH = 20_000  # forcing periods that chaotic motions, all those alike togethe
 LATE = 3000.0  # forcing periods between two such looks
 TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
 UNENDING = ("chaotic", "quasi-periodic", "slow")
-RELEASED = 1e-6  # difference of the clocks of two releases that are one
 LONG = 1e4  # clock of a self-excited machine without an event after which none is waited for
 
 
@@ -151,7 +149,7 @@ class Fleet:
                 return self._add(i, orbit, orbit.flow.kind(orbit), orbit.periods, orbit.spelling, sorting)
             if run.held:
                 return sorting.plain(i, "stuck", state=simulator.state.copy())
-            if _chatters(run):
+            if run.chatters and next(returns(run, self.longest, simulator.waiting.returned), None):
                 return sorting.plain(i, "chatter", periods=0, state=simulator.state.copy())
             if looks >= TOLD and any(m.kind in UNENDING for m in sorting.motions):
                 break
@@ -273,14 +271,3 @@ def _after_events(orbit: Orbit) -> dict[str, np.ndarray]:
     """The nodes' states by their events."""
     letters, states = np.array(orbit.word.events), orbit.nodes[:, 1:]
     return {str(letter): states[letters == letter] for letter in np.unique(letters)}
-
-
-def _chatters(run: Trajectory) -> bool:
-    """Whether a wall takes hold again and again at the same clock: the motion recurs, with infinitely many impacts in between."""
-    releases = run.clocks[1:][run.kinds == RELEASE]
-    for step in range(1, len(releases) // 2 + 1):
-        spans = releases[step:] - releases[:-step]
-        turns = np.round(spans / TWO_PI) * TWO_PI if run.model.forced else spans[-1]
-        if np.all(np.abs(spans - turns)[-step:] < RELEASED) and np.ptp(spans[-step:]) < RELEASED:
-            return True
-    return False
