@@ -32,6 +32,7 @@ FOLLOWED, FAR_FOLLOWED = (
 ROOTED = (
     1e-7  # the same, times multipliers, at a graze: a wall that rounding hits turns it into its square root
 )
+ULPS = 64  # values nearer than so many last bits are one: where a multiplier passes 1 or -1 between them is not told
 IN_PLACE = 1e-8  # a special point's error
 
 
@@ -57,6 +58,11 @@ def _branch(branch: Any, tally: Tally) -> None:
     marked = {i for i, _ in branch.marks}
     flips = np.flatnonzero(branch.stable[1:] != branch.stable[:-1])
     loose = [int(i) for i in flips if not {i, i + 1} & marked]
+    if loose and branch.real:
+        apart = np.abs(branch.values[[i + 1 for i in loose]] - branch.values[loose])
+        told = apart > ULPS * np.spacing(np.abs(branch.values[loose]))
+        tally.count("changes of stability within rounding of the parameter", int(np.sum(~told)))
+        loose = [i for i, seen in zip(loose, told) if seen]
     if loose and not branch.real:
         tally.count("virtual branches that change their stability without a point")
     elif loose:
