@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
 DRAWN = 3  # starts at the first, the middle and the last value
 SAME = 1e-3  # relative difference of the responses of one motion
+USUAL, LONG = (
+    200,
+    800,
+)  # forcing periods that are left out, and of a motion without a period that may be a transient
+ENDS = 0.01  # relative fall of the response by which a transient is known
 CLIMBED = 24  # values to either side of the largest response
 NARROW = 1e-3  # of the interval: the least step between them
 
@@ -27,7 +32,7 @@ def swept_responses(
     model: Varying, over: str, values: Sequence[float], parameters: Mapping[str, float]
 ) -> list[tuple[float, float]]:
     """Motions that simulations settle on: at each value those of a sweep up and one down, and those that drawn starts add, each followed both ways
-    to where another one takes over; the largest response is followed to its top.
+    to where another one takes over; the largest response is followed to its top, and for longer where it has no period.
 
     Parameters
     ----------
@@ -62,7 +67,9 @@ def swept_responses(
                 seen.rows.append(row)
                 for run in (range(k + 1, len(values)), range(k)[::-1]):
                     seen.run(run, row.detail.state, until_known=True)
+    seen.confirm()
     seen.climb()
+    seen.confirm()
     return [(row.value, seen.response(row)) for row in seen.rows]
 
 
@@ -77,9 +84,10 @@ class _Seen:
         self.measure = flow_of(model).default_measure(model)
         self.rows: list[SweepRow] = []
 
-    def at(self, value: float, start: Any) -> SweepRow:
+    def at(self, value: float, start: Any, transient: float = USUAL) -> SweepRow:
         """What a state leads to."""
-        (row,) = sweep(self.model, self.over, [value], start=start, exponents=False, **self.numbers)
+        ways = {"transient": transient, "exponents": False}
+        (row,) = sweep(self.model, self.over, [value], start=start, **ways, **self.numbers)
         return row
 
     def response(self, row: SweepRow) -> float:
@@ -103,6 +111,17 @@ class _Seen:
                 return
             self.rows.append(row)
             start = row.detail.state
+
+    def confirm(self) -> None:
+        """Follow the largest response for longer as long as it is that of a motion without a period: it may be a transient that is slow to end."""
+        while True:
+            top = max(self.rows, key=lambda row: _number(self.response(row)))
+            if top.periods:
+                return
+            longer = self.at(top.value, top.detail.state, LONG)
+            if self.response(longer) >= (1.0 - ENDS) * self.response(top):
+                return
+            self.rows[:] = [longer if row is top else row for row in self.rows]
 
     def climb(self) -> None:
         """From the largest response on either way while it grows, in steps that are halved where it does not: a motion that steps of the values lose goes on
