@@ -126,7 +126,7 @@ def recommend(
     5. At the choice: what simulated starts lead to, loads, start-up, a sweep by simulation up and down.
 
     Of a machine whose flights are integrated 2. and 3. are simulations up and down and from drawn starts (`orbits.design.swept_responses`). Its choice
-    is looked at by diagrams of all samples: it stands if these leave it the best.
+    is looked at by diagrams of all samples: it stands if these know no larger response, to 1 %.
 
     Parameters
     ----------
@@ -416,7 +416,7 @@ class _Work:
     def at_choice(self, places: list[Place], best: Place) -> tuple[list[Place], Place | None, Survey | None]:
         """Diagrams of all samples at the choice, with simulated starts: all places, the choice, its rows.
 
-        Where places were simulated alone that place is known better then; another one may be the best, which is looked at in its turn.
+        Where places were simulated alone and the diagrams know a larger response, another one may be the best, which is looked at in its turn.
         """
         from contvines.survey.plan import Plan
 
@@ -434,12 +434,15 @@ class _Work:
             if self.integrated:
                 looked = (column.ravel() for column in _looked(rows))
                 exact = _place(choice.value, _Looked(*looked), self.samples)
-                if exact.worst > (1.0 + AGREES) * choice.worst:
+                places = _merged(places, [exact])
+                if exact.worst <= (1.0 + AGREES) * choice.worst:
+                    choice = exact
+                    break
+                if math.isfinite(exact.worst):
                     self.missed.append(
                         f"whether other values than {figures(choice.value)} have larger responses: there simulations up and down missed one "
                         f"({figures(choice.worst)}, by diagrams {figures(exact.worst)})"
                     )
-                places = _merged(places, [exact])
                 choice = _best([place for place in places if place.samples == self.samples])
         if choice is not None and choice.value not in seen:
             choice = _best([place for place in places if place.value in seen])
