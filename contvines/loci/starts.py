@@ -24,7 +24,7 @@ from .problem import LocusProblem, has_natural_units
 ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
 MET = 1e-7  # margins below this are those of a border that is met from its other side
 PLAIN = 16.0  # parameters up to this size, and down to its inverse, are counted as they are
-SINGULAR = 1e-9  # a test below this: the equations are singular
+SINGULAR = 1e-7  # a test below this: the equations are singular, and their solutions known to half the digits
 
 
 def begin(
