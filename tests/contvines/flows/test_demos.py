@@ -26,6 +26,7 @@ LONG = {
 }  # `python -m tools.flow_demos.make_table` solves these, too
 AWAY = {"homoclinic": 3e-6}  # parts of the interval; else of the location of an equilibrium or a cycle
 CLOSE = 1e-8
+ROUNDED = 1e-11  # of long cycles, beside the error of the mesh
 
 
 def disagreements(demo, found):
@@ -39,7 +40,7 @@ def disagreements(demo, found):
         (point.label, point.value, value)
         for point, value in pairs
         if abs(point.value - value)
-        > min(AWAY.get(point.kind, CLOSE) * width, point.location_error + 1e-12 * width)
+        > min(AWAY.get(point.kind, CLOSE) * width, point.location_error + ROUNDED * width)
     ]
 
 
