@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from ..bifurcation.normal_forms.criticality import strong_resonance
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..flows.cycles import CycleProblem
 from ..problems.abilities import Adaptive
 from .invariance import Curve, Frame
 from .section import Imaged, Section, section_of, slopes
@@ -53,14 +54,13 @@ class Birth(NamedTuple):
 
 def anchored(point: SpecialPoint) -> Problem:
     """The problem of a point; of cycles on a mesh the one that begins with the point, across whose cycle sections are taken."""
-    problem: Any = point.problem
-    if not isinstance(problem, Adaptive):
+    problem = point.problem
+    if not isinstance(problem, CycleProblem):
         return problem
-    own: Any = problem
-    return own.with_unknowns(point.u, float(point.value), own.intervals, own.copies)
+    return problem.with_unknowns(point.u, float(point.value), problem.intervals, problem.copies)
 
 
-def born(point: SpecialPoint, problem: Any) -> Birth:
+def born(point: SpecialPoint, problem: Problem) -> Birth:
     """The normal form of the circles beside a point, whose problem is that of `anchored`.
 
     Raises
@@ -86,7 +86,7 @@ def born(point: SpecialPoint, problem: Any) -> Birth:
     vector = right[:, place] / np.linalg.norm(right[:, place])
     left = np.linalg.inv(right)[place].conj()
     left = left / np.vdot(left, vector).conj()
-    if isinstance(section, Imaged):
+    if isinstance(section, Imaged) and isinstance(problem, Adaptive):
         value, _ = problem.normal_form("neimark-sacker", u, p, multiplier) or (0.0, 0.0)
         decided, amplitude = bool(value), 1.0 / section.length(vector)
     else:
@@ -122,7 +122,7 @@ def _crossing(point: SpecialPoint) -> tuple[complex, float]:
     unit = max(abs(p), 1e-3)
     engine = Engine(problem, (p - unit, p + unit), Settings())
 
-    def critical(value: float, near: complex | None) -> Any:
+    def critical(value: float, near: complex | None) -> complex | None:
         solved = engine.at_value(point.u, value)
         if solved is None:
             return None
@@ -142,10 +142,10 @@ def _crossing(point: SpecialPoint) -> tuple[complex, float]:
     ):  # a fold, or the end of the pair, may be near
         rates = []
         for width in (step, 0.5 * step):
-            ends = [critical(p + sign * width, here) for sign in (1.0, -1.0)]
-            if None in ends:
+            above, below = critical(p + width, here), critical(p - width, here)
+            if above is None or below is None:
                 break
-            rates.append(np.log(abs(ends[0] / ends[1])) / (2.0 * width))
+            rates.append(np.log(abs(above / below)) / (2.0 * width))
         if len(rates) == 2 and abs(rates[1] - rates[0]) <= 0.02 * abs(rates[1]):
             return here, float((4.0 * rates[1] - rates[0]) / 3.0)
     raise ValueError(f"{point.label}: its cycle cannot be followed to both sides")

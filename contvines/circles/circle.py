@@ -5,14 +5,18 @@ from __future__ import annotations
 import html
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
 from ..continuation.settings import hinted
 from ..shared.number_text import figures, figures_in
+from ..shared.plot_options import PanelOptions
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,11 +196,11 @@ class Circles:
         ]
         return Table(head, rows, ("replay", "normal form", "simulated"))
 
-    def plot(self, **options: Any):
+    def plot(self, coordinates: tuple[str, str] | None = None, **options: Unpack[PanelOptions]) -> Figure:
         """Section picture with radius and rotation number; see :func:`contvines.plots.circles.plot_circles`."""
         from ..plots.circles import plot_circles
 
-        return plot_circles(self, **options)
+        return plot_circles(self, coordinates, **options)
 
 
 def _figures_of(values: list[float]) -> Callable[[float], str]:

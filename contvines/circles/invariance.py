@@ -10,7 +10,7 @@ Source of the method: Schilder, Osinga and Vogt, SIAM J. Appl. Dyn. Syst. 4 (200
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -201,9 +201,9 @@ def solve(
         )
         matrix[:size, size] = -np.real(turning).reshape(-1)
         matrix[:size, size + 1] = by_value.reshape(-1)
-        along: Any = np.outer(first, frame.left.conj()).reshape(-1)
-        matrix[size, :size] = along.imag
-        matrix[size + 1, :size] = normal[0] / length * along.real
+        along = np.outer(first, frame.left.conj()).reshape(-1)
+        matrix[size, :size] = np.imag(along)
+        matrix[size + 1, :size] = normal[0] / length * np.real(along)
         matrix[size + 1, size:] = normal[1] / length, normal[2] / length
         if not np.isfinite(matrix).all():
             return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..graph.shortening import short_word
 from ..problems.abilities import Gauged, notation_of
+from ..shared.plot_options import PlotOptions
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 MOST = 4_000_000  # points of a picture
 # periods simulated for manifolds, for each start of the usual picture: they take no longer than it
 PER_START = 30
+Numbers = TypeVar("Numbers", float, np.ndarray)
+
 CONFIDENCE = 1.96  # standard errors of a 95 % interval
 
 
@@ -73,7 +76,7 @@ class Basins:
     unit: str = ""
     gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
 
-    def shown(self, name: str, values: np.ndarray | float) -> Any:
+    def shown(self, name: str, values: Numbers) -> Numbers:
         """Values of a coordinate in the unit in which it is shown."""
         return values * self.gauges.get(name, (1.0, ""))[0]
 
@@ -128,7 +131,7 @@ class Basins:
     def to_dict(self) -> dict[str, Any]:
         """Attractors, shares with their intervals, and the uncertainty exponent, ready for JSON, in the units that stand beside the numbers."""
         try:
-            exponent: Any = list(self.uncertainty_exponent())
+            exponent = list(self.uncertainty_exponent())
         except ValueError:
             exponent = None
         units = {name: unit for name, (_, unit) in self.gauges.items()}
@@ -148,7 +151,7 @@ class Basins:
             **({"manifolds": [m.to_dict(sizes) for m in self.manifolds]} if self.manifolds else {}),
         }
 
-    def plot(self, **options: Any) -> Figure:
+    def plot(self, **options: Unpack[PlotOptions]) -> Figure:
         """The plane in colours; see :func:`contvines.plots.basins.plot_basins`."""
         from ..plots.basins import plot_basins
 
@@ -165,7 +168,7 @@ def wilson(share: float, n: int) -> tuple[float, float]:
 
 @hinting
 def basins(
-    machine: Any,
+    machine: object,
     over: str | None = None,
     at: float | None = None,
     plane: Sequence[str] | None = None,

@@ -37,7 +37,7 @@ LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds somet
 @hinting
 @listening()
 def atlas(
-    machine: Any,
+    machine: object,
     over: str | None = None,
     within: tuple[float, float] | None = None,
     values: int | Sequence[float] = 16,

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..graph.attractor import Attractor
 from ..graph.run import Run
-from .population import Population, recall_work
+from .population import Population
 
 if TYPE_CHECKING:
     from ..journal import Journal
@@ -77,9 +77,9 @@ def _settled(
     known = journal.recall(key)
     recalled = None if known is None else _recalled(population, known, p)
     if known is not None and recalled is not None:
-        recall_work(population, float(known.get("work", 0.0)))
+        population.work += float(known.get("work", 0.0))
         return recalled
-    starts, before = starts_of(), float(getattr(population, "work", 0.0))
+    starts, before = starts_of(), population.work
     motions, index, mirrored = population.settle(starts, p)
     found = []
     for k, motion in enumerate(motions):
@@ -97,7 +97,7 @@ def _settled(
             float(motion.error),
         )
         found.append(Counted(attractor, motion.problem, motion.u, motion.state))
-    work = float(getattr(population, "work", 0.0)) - before
+    work = population.work - before
     journal.record(key, {**_recorded(found), "work": work})
     return found
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .population import Population
 
 BUDGET = 500_000  # units of work that an atlas may take where no number is given
 PERIODS = 100  # simulated forcing periods, or steps of a map, that take about as long as a point of a branch
@@ -17,27 +20,24 @@ class Effort:
     Parameters
     ----------
     population : Population
-        Whose ``work``, if it has any, are the periods simulated so far.
+        Whose ``work`` are the periods simulated so far.
     budget : int
     points : callable
         Returns how many points of branches there are so far.
     """
 
-    def __init__(self, population: Any, budget: int, points: Callable[[], int]) -> None:
+    def __init__(self, population: Population, budget: int, points: Callable[[], int]) -> None:
         self.population, self.budget, self.points = population, budget, points
-        self.begun, self.started = self._simulated(), monotonic()
+        self.begun, self.started = population.work, monotonic()
         self.waiting: dict[str, int] = {}  # pieces of each search that are known so far
         self._took: dict[
             str, tuple[int, float]
         ] = {}  # pieces of each search that are done, and their seconds
 
-    def _simulated(self) -> float:
-        return float(getattr(self.population, "work", 0.0))
-
     @property
     def spent(self) -> int:
         """Points of branches, and simulated periods in units of :data:`PERIODS`."""
-        return int(self.points() + (self._simulated() - self.begun) / PERIODS)
+        return int(self.points() + (self.population.work - self.begun) / PERIODS)
 
     @property
     def over(self) -> bool:

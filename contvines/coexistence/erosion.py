@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from ..graph.shortening import short_word
 from ..graph.table import with_unit
 from ..problems.abilities import notation_of
 from ..shared.number_text import figures, figures_in
+from ..shared.plot_options import PlotOptions
 from ..text_table import Table, terminal_width
 from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
 
@@ -86,7 +87,7 @@ class Erosion:
         table = Table((*numbers, "to"), rows, right=numbers)
         return "\n".join([f"{self.label}  {short_word(self.word)}", "", *table.lines(terminal_width())])
 
-    def plot(self, **options: Any) -> Figure:
+    def plot(self, **options: Unpack[PlotOptions]) -> Figure:
         """Smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""
         from ..plots.erosion import plot_erosion
 

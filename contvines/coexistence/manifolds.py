@@ -157,7 +157,7 @@ class _Counted:
         return self.step(x)
 
 
-def _places(problem: Problem, section: Any, u: np.ndarray, p: float) -> list[np.ndarray]:
+def _places(problem: Problem, section: Section, u: np.ndarray, p: float) -> list[np.ndarray]:
     """Where a solution and its images under the problem's symmetries meet the section, each point once."""
     found: list[np.ndarray] = []
     for one in (u, *(image_of(symmetry, u, p) for symmetry in problem.symmetries)):
@@ -207,13 +207,12 @@ def _linear(
         jacobian[:, j] = (step(place + moved) - step(place - moved)) / (2.0 * apart)
     if not np.all(np.isfinite(jacobian)):
         return None
-    values: Any
-    vectors: Any
     values, vectors = np.linalg.eig(jacobian)
-    if np.abs(values.imag).max() > 0.0 or not np.abs(values).min() < 1.0 < np.abs(values).max():
+    if np.abs(np.imag(values)).max() > 0.0 or not np.abs(values).min() < 1.0 < np.abs(values).max():
         return None
     k = int(np.abs(values).argmin())
-    slow, ray = float(values.real[k]), vectors.real[:, k] / np.linalg.norm(vectors.real[:, k])
+    slow, ray = float(np.real(values[k])), np.real(vectors[:, k])
+    ray = ray / np.linalg.norm(ray)
     images = [step(place + side * first * ray) - place - side * slow * first * ray for side in (1.0, -1.0)]
     off = max(float(np.linalg.norm(image)) for image in images) / first
     return first, ray, slow, off if np.isfinite(off) else np.inf

@@ -156,7 +156,7 @@ class MapPopulation:
             index[here & (index < 0)] = len(motions) - 1
         return motions, index, np.zeros(len(x), dtype=bool)
 
-    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Unstable cycles that the chaotic motion through a state passes near; see `contvines.coexistence.population`."""
         step = _Iteration(self.problem, p, state[None])
         self.work += EMBEDDED_IN
@@ -177,7 +177,7 @@ class MapPopulation:
                     cycles.append(points)
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
-    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Cycles, stable or not, to which Newton's method leads from starts; see `contvines.coexistence.population`.
 
         One of their points at least lies in the box of starts.
@@ -194,7 +194,7 @@ class MapPopulation:
                     cycles.append(points)
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
-    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
+    def closed(self, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Cycles known in closed form: none of a map of the user's own."""
         return []
 

@@ -22,13 +22,13 @@ The contract, in words:
 9. ``population.restored(problem.describe(), u, p)`` returns the problem of a motion that `settle`, `embedded` or `returning` had at p, measured as theirs; None
    where it cannot be rebuilt.
 10. ``population.observed(motion.state, p)`` returns the measures by name of the motion through this state, from simulation; none without a state.
-11. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas; without it only continuation is counted.
+11. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -59,8 +59,11 @@ class Motion(Protocol):
     def state(self) -> np.ndarray | None: ...
 
 
+@runtime_checkable
 class Population(Protocol):
     """Starts of a problem and what becomes of them; see the contract at the top of this module."""
+
+    work: float
 
     @property
     def parameter(self) -> str: ...
@@ -84,18 +87,25 @@ class Population(Protocol):
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[Sequence[Motion], np.ndarray, np.ndarray]: ...
 
-    def embedded(self, state: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
+    def embedded(self, state: np.ndarray, p: float) -> Sequence[tuple[Problem, np.ndarray]]: ...
 
-    def returning(self, starts: np.ndarray, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
+    def returning(self, starts: np.ndarray, p: float) -> Sequence[tuple[Problem, np.ndarray]]: ...
 
-    def closed(self, p: float) -> Sequence[tuple[Any, np.ndarray]]: ...
+    def closed(self, p: float) -> Sequence[tuple[Problem, np.ndarray]]: ...
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None: ...
 
     def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]: ...
 
 
-def population_of(thing: Any, over: str | None = None, **parameters: float) -> Population:
+@runtime_checkable
+class _Orbit(Protocol):
+    """A solution that hands out its problem."""
+
+    def problem(self, over: str | None) -> object: ...
+
+
+def population_of(thing: object, over: str | None = None, **parameters: float) -> Population:
     """The population of a machine, an orbit or a problem; a population is returned as it is.
 
     Raises
@@ -103,18 +113,12 @@ def population_of(thing: Any, over: str | None = None, **parameters: float) -> P
     ValueError
         If it has none, or no such parameter.
     """
-    if hasattr(thing, "settle") and hasattr(thing, "starts"):
+    if isinstance(thing, Population):
         return thing
-    if not isinstance(thing, Populated) and hasattr(thing, "problem") and callable(thing.problem):  # an orbit
+    if not isinstance(thing, Populated) and isinstance(thing, _Orbit) and callable(thing.problem):
         thing = thing.problem(over)
     if not isinstance(thing, Populated):
         raise ValueError(
             f"{type(thing).__name__} cannot be simulated from many starts: give a machine, one of its orbits, or a map"
         )
     return thing.population(over, **parameters)
-
-
-def recall_work(population: Any, work: float) -> None:
-    """Count work that an earlier run has done and that is not done again."""
-    if work:
-        population.work = getattr(population, "work", 0.0) + work

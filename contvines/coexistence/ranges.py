@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,10 @@ from ..branches.branch import Branch
 from ..branches.ending import Reason
 from ..continuation.starts import problem_and_start
 from ..graph.automatic import diagram
+from ..problems.maps import MapProblem
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
 REACH = 0.5  # of a parameter's size, to either side
 HALVINGS = 12  # of an end of the interval that the machine refuses
@@ -41,7 +45,7 @@ class StableRange:
     lost: tuple[bool, bool]
 
 
-def stable_range(problem: Any, u: np.ndarray, p: float, name: str) -> StableRange:
+def stable_range(problem: Problem, u: np.ndarray, p: float, name: str) -> StableRange:
     """Smallest and largest value of the parameter `name` up to which a motion stays stable and real, within half its size.
 
     Parameters
@@ -57,11 +61,12 @@ def stable_range(problem: Any, u: np.ndarray, p: float, name: str) -> StableRang
     ValueError
         If the problem has no such parameter.
     """
-    seed = problem.orbit(u, p)
-    if not (hasattr(seed, "problem") and hasattr(seed, "seed")):  # a map's points
+    if isinstance(problem, MapProblem):
         seed = problem.cycle_through(problem.section(p).rounds(u), p)
         if name != problem.parameter:
             seed = seed.against(name)
+    else:
+        seed = problem.orbit(u, p)
     other, _, value = problem_and_start(seed, name)
     low, high = (_allowed(other, name, value, side * REACH * (abs(value) or 1.0)) for side in (-1.0, 1.0))
     graph = diagram(seed, over=name, within=(low, high), depth=0)
@@ -85,7 +90,7 @@ def _search_ended(branch: Branch, value: float) -> bool:
     )
 
 
-def _allowed(problem: Any, name: str, value: float, change: float) -> float:
+def _allowed(problem: Problem, name: str, value: float, change: float) -> float:
     """The value changed, by less where the machine refuses it."""
     for _ in range(HALVINGS):
         try:

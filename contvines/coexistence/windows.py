@@ -16,7 +16,7 @@ from ..graph.run import Run
 from ..journal import Part
 from .census import Counted
 from .effort import Effort
-from .population import Population, recall_work
+from .population import Population
 from .roots import add_root
 
 if TYPE_CHECKING:
@@ -95,18 +95,18 @@ class Windows:
                 self._add(f"cycles/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
         return len(self.run.graph.branches) - before
 
-    def _add(self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Any, np.ndarray]]]) -> None:
+    def _add(self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Problem, np.ndarray]]]) -> None:
         for problem, u, at in self._stable(key, p, cycles):
             if self.run.register.find(problem, u, at, True) is None:
                 add_root(self.run, problem, u, at, max(self.run.depth - 1, 0))
 
     def _stable(
-        self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Any, np.ndarray]]]
-    ) -> list[tuple[Any, np.ndarray, float]]:
+        self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Problem, np.ndarray]]]
+    ) -> list[tuple[Problem, np.ndarray, float]]:
         """A point of every stable stretch to which cycles lead."""
         points = []
         known = self._recalled(key, p)
-        before = float(getattr(self.population, "work", 0.0))
+        before = self.population.work
         found = self._recorded(key, cycles(), before) if known is None else known
         for k, (problem, u) in enumerate(found):
             if self.effort.over:
@@ -118,32 +118,31 @@ class Windows:
                 points += self._traced(problem, u, p)
         return points
 
-    def _recalled(self, key: str, p: float) -> list[tuple[Any, np.ndarray]] | None:
+    def _recalled(self, key: str, p: float) -> list[tuple[Problem, np.ndarray]] | None:
         """Cycles of an earlier run; None if there was none, or their problems take functions that are not at hand."""
         known = self.run.journal.recall(key)
-        problems = (
-            []
-            if known is None
-            else [
-                self.population.restored(description, known[f"u{k}"], p)
-                for k, description in enumerate(known["problems"])
-            ]
-        )
-        if known is None or any(problem is None for problem in problems):
+        if known is None:
             return None
-        recall_work(self.population, float(known.get("work", 0.0)))
-        return [(problem, known[f"u{k}"]) for k, problem in enumerate(problems)]
+        cycles = []
+        for k, description in enumerate(known["problems"]):
+            u = known[f"u{k}"]
+            problem = self.population.restored(description, u, p)
+            if problem is None:
+                return None
+            cycles.append((problem, u))
+        self.population.work += float(known.get("work", 0.0))
+        return cycles
 
     def _recorded(
-        self, key: str, cycles: Sequence[tuple[Any, np.ndarray]], before: float
-    ) -> Sequence[tuple[Any, np.ndarray]]:
-        work = float(getattr(self.population, "work", 0.0)) - before
+        self, key: str, cycles: Sequence[tuple[Problem, np.ndarray]], before: float
+    ) -> Sequence[tuple[Problem, np.ndarray]]:
+        work = self.population.work - before
         record: dict[str, Any] = {"problems": [problem.describe() for problem, _ in cycles], "work": work}
         record.update({f"u{k}": np.asarray(u, dtype=float) for k, (_, u) in enumerate(cycles)})
         self.run.journal.record(key, record)
         return cycles
 
-    def _traced(self, problem: Problem, u: np.ndarray, p: float) -> list[tuple[Any, np.ndarray, float]]:
+    def _traced(self, problem: Problem, u: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray, float]]:
         """Trace a cycle unless it has been; a point of each stable stretch of what is new."""
         if self.apart.register.find(problem, u, p) is not None:
             return []

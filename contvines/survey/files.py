@@ -9,7 +9,7 @@ import hashlib
 import io
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .plan import PlanError
 
@@ -41,7 +41,7 @@ def write(data: Dataset, path: Path) -> None:
     os.replace(draft, path)
 
 
-def read(path: Path) -> Any:
+def read(path: Path) -> Dataset:
     """The data set of a file, in memory.
 
     Raises

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ..coexistence.places import UNBRANCHED
 from ..graph.measures import default_measure
 from ..graph.stretches import LEAST, gaps, highest, stretches, unseen
 from ..shared.number_text import figures_in
+from .family import Simulated
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
@@ -44,8 +45,8 @@ class Findings:
     """
 
     graph: Graph
-    seed: Any
-    simulated: Sequence[tuple[float, Mapping[str, float], str]] = ()
+    seed: object
+    simulated: Sequence[Simulated] = ()
     unbranched: Sequence[Unbranched] = ()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 
@@ -16,6 +16,12 @@ KEYS = ("within", "count", "values", "normal", "uniform")
 
 class PlanError(ValueError):
     """A survey that cannot be planned; the sentence names the field, the value and a way out."""
+
+
+class Law(Protocol):
+    """A distribution of a number."""
+
+    def ppf(self, q: np.ndarray) -> np.ndarray: ...
 
 
 @dataclass(frozen=True)
@@ -77,7 +83,7 @@ class Plan:
         return found
 
 
-def planned(vary: Mapping[str, Any], sampling: str = "latin", samples: int = 32, seed: int = 1) -> Plan:
+def planned(vary: Mapping[str, object], sampling: str = "latin", samples: int = 32, seed: int = 1) -> Plan:
     """A plan from what a user says of each parameter.
 
     Parameters
@@ -107,12 +113,12 @@ def planned(vary: Mapping[str, Any], sampling: str = "latin", samples: int = 32,
     if isinstance(samples, bool) or not isinstance(samples, int) or not 1 <= samples <= MOST:
         raise PlanError(f"[survey] samples = {samples!r}: expected a whole number from 1 to {MOST}")
     axes: dict[str, np.ndarray] = {}
-    uncertain: dict[str, Any] = {}
+    uncertain: dict[str, Law] = {}
     for name, said in vary.items():
         values = _axis(name, said)
         if values is not None:
             axes[name] = values
-        else:
+        elif isinstance(said, Mapping):
             uncertain[name] = _distribution(name, said)
     drawn = _drawn(uncertain, sampling, samples, seed) if uncertain else {}
     plan = Plan(axes, drawn)
@@ -147,7 +153,7 @@ def _axis(name: str, said: object) -> np.ndarray | None:
     return np.array([_number(f"{place}[{i}]", value) for i, value in enumerate(said)])
 
 
-def _distribution(name: str, said: Mapping[str, Any]) -> Any:
+def _distribution(name: str, said: Mapping[str, object]) -> Law:
     from scipy import stats
 
     place = f"[survey] vary.{name}"
@@ -166,14 +172,14 @@ def _distribution(name: str, said: Mapping[str, Any]) -> Any:
     return stats.uniform(low, high - low)
 
 
-def _ends(place: str, key: str, said: Mapping[str, Any]) -> tuple[float, float]:
+def _ends(place: str, key: str, said: Mapping[str, object]) -> tuple[float, float]:
     low, high = _two(f"{place}.{key}", said.get(key))
     if not low < high:
         raise PlanError(f"{place}.{key} = [{low:g}, {high:g}]: expected low < high")
     return low, high
 
 
-def _drawn(uncertain: dict[str, Any], sampling: str, samples: int, seed: int) -> dict[str, np.ndarray]:
+def _drawn(uncertain: dict[str, Law], sampling: str, samples: int, seed: int) -> dict[str, np.ndarray]:
     from scipy.stats import qmc
 
     count = len(uncertain)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Generator, Sequence
+from typing import TYPE_CHECKING
 
 from contvines.shared.processes import ATTEMPTS, may_be_copied, spread
 
@@ -17,21 +17,24 @@ from ..shared.extras import pip_install
 from .plan import PlanError
 from .work import Job, Row, work
 
+if TYPE_CHECKING:
+    from distributed import Client
+
 LOST = (
     "the process that worked on this system was lost {} times: it may need more memory than there is, or a script that calls for "
     "several processes has no `if __name__ == '__main__':` before the call"
 )
 
-Task = tuple[int, dict[str, float], Any]
+Task = tuple[int, dict[str, float], object]
 
 
-def serial(job: Job, tasks: Sequence[Task]) -> Iterator[Row]:
+def serial(job: Job, tasks: Sequence[Task]) -> Generator[Row, None, None]:
     """In this process, one after the other."""
     for task in tasks:
         yield work(job, *task)
 
 
-def pool(job: Job, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
+def pool(job: Job, tasks: Sequence[Task], workers: int) -> Generator[Row, None, None]:
     """In `workers` processes of this machine."""
     pieces = [(job, *task) for task in tasks]
     for _, row in spread(work, pieces, workers, lambda place: lost(tasks[place][0])):
@@ -43,7 +46,7 @@ def lost(index: int) -> Row:
     return Row(index, {}, LOST.format(ATTEMPTS))
 
 
-def cluster(job: Job, tasks: Sequence[Task], client: Any) -> Iterator[Row]:
+def cluster(job: Job, tasks: Sequence[Task], client: str | Client) -> Generator[Row, None, None]:
     """On a dask cluster; `client` is its address or a `distributed.Client`."""
     from distributed import Client, as_completed
     from distributed.scheduler import KilledWorker

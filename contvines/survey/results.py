@@ -8,7 +8,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ..continuation.settings import hinted
 from ..graph.table import with_unit
 from ..interrupts import Resumable
 from ..shared.number_text import figures
+from ..shared.plot_options import PanelOptions
 from ..text_table import Table, fitted, terminal_width
 from .files import read, write
 from .outcomes import KNOWN, OF_ALL
@@ -170,7 +171,7 @@ class Survey(Resumable):
                 cells += [repr(float(column[i])) if np.isfinite(column[i]) else "" for column in flat]
                 writer.writerow([*cells, self.notes.ravel()[i]])
 
-    def plot(self, outcome: str | None = None, **options: Any) -> Figure:
+    def plot(self, outcome: str | None = None, **options: Unpack[PanelOptions]) -> Figure:
         """A curve over one axis, with bands where there are samples, or a map over two; see `contvines.plots.survey`."""
         from ..plots.survey import plot_survey
 

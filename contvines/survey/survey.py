@@ -5,11 +5,11 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contvines.shared.near_names import did_you_mean
 
@@ -20,11 +20,15 @@ from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of
 from ..progress import counted
 from . import pools
+from .family import Carrying, Family
 from .journal import Rows
 from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
 from .plan import Plan, PlanError, planned
 from .results import Survey
 from .work import NOT_YET, Job, Row
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 MEANING = 3  # of rows: those of another number were found in another way, and are not taken over
 
@@ -53,8 +57,8 @@ def outcome_named(said: str, more: Mapping[str, Outcome] | None = None) -> Outco
 
 @hinting
 def survey(
-    family: Callable[[Mapping[str, float], Any], Any],
-    vary: Plan | Mapping[str, Any],
+    family: Family,
+    vary: Plan | Mapping[str, object],
     *,
     over: str,
     within: tuple[float, float],
@@ -62,13 +66,13 @@ def survey(
     gaps: int = 5,
     values: int = 0,
     starts: int = 1,
-    atlas: Mapping[str, Any] | None = None,
+    atlas: Mapping[str, object] | None = None,
     swept: int = 0,
     workers: int | None = None,
-    cluster: Any = None,
+    cluster: str | Client | None = None,
     journal: str | Path | Rows | None = None,
     units: Mapping[str, str] | None = None,
-    about: Mapping[str, Any] | None = None,
+    about: Mapping[str, object] | None = None,
     progress: Callable[[Row], None] | bool | None = None,
     interrupt: OnInterrupt = "raise",
     **options: Any,
@@ -147,8 +151,9 @@ def survey(
         else Rows(Path(journal) if journal else None, {"contvines": "unfinished survey", "of": digest})
     )
     with kept as rows, counted(len(systems), "systems", progress) as tell:
-        begun = getattr(family, "starts", None)
-        near = begun(systems, plan.neighbours()) if begun and not swept else [None] * len(systems)
+        near: Sequence[object] = [None] * len(systems)
+        if isinstance(family, Carrying) and not swept:
+            near = family.starts(systems, plan.neighbours())
         tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in rows.found]
         stopped = False
         try:
@@ -172,7 +177,7 @@ def survey(
     return result
 
 
-def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None) -> str:
+def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, object] | None) -> str:
     """What decides a survey's rows: surveys that must give the same share it."""
     text = json.dumps(
         {"rows": MEANING, **_description(plan, over, within, about)}, sort_keys=True, default=str
@@ -181,7 +186,7 @@ def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping
 
 
 def _description(
-    plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, Any] | None
+    plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, object] | None
 ) -> dict[str, Any]:
     return {
         "survey": dict(about or {}),
@@ -192,7 +197,9 @@ def _description(
     }
 
 
-def _worked(job: Job, tasks: list[pools.Task], workers: int | None, cluster: Any) -> Any:
+def _worked(
+    job: Job, tasks: list[pools.Task], workers: int | None, cluster: str | Client | None
+) -> Generator[Row, None, None]:
     if cluster is not None:
         return pools.cluster(job, tasks, cluster)
     count = workers or pools.cores()

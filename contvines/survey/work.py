@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +10,8 @@ import numpy as np
 
 from ..graph.stretches import gaps, spread
 from .completion import complete
-from .outcomes import Findings, covered, unknown
+from .family import Family, Simulated, Simulating, Sweeping
+from .outcomes import Findings, Outcome, covered, unknown
 
 if TYPE_CHECKING:
     from ..coexistence.population import Population
@@ -45,10 +46,10 @@ class Job:
         At so many values each system is simulated in place of a diagram, if the family can; the outcomes are then ``peak`` and ``lower_peak``.
     """
 
-    family: Callable[[Mapping[str, float], Any], Any]
+    family: Family
     over: str
     within: tuple[float, float]
-    outcomes: tuple[Callable[[Any], Mapping[str, float]], ...]
+    outcomes: tuple[Outcome, ...]
     gaps: int = 5
     values: int = 0
     starts: int = 1
@@ -75,14 +76,13 @@ class Row:
     note: str = ""
 
 
-def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) -> Row:
+def work(job: Job, index: int, values: Mapping[str, float], near: object = None) -> Row:
     """The outcomes of one system; a system that fails is a row with its sentence."""
     columns: dict[str, float] = {}
     try:
         with np.errstate(all="ignore"):
-            sweep = getattr(job.family, "swept", None)
-            if job.swept and sweep is not None:
-                return Row(index, _swept(job, sweep, values))
+            if job.swept and isinstance(job.family, Sweeping):
+                return Row(index, _swept(job, job.family, values))
             seed = job.family(values, near)
             graph = _graph(job, seed)
             population = _population(job, seed)
@@ -98,10 +98,10 @@ def work(job: Job, index: int, values: Mapping[str, float], near: Any = None) ->
     return Row(index, columns, note)
 
 
-def _swept(job: Job, sweep: Callable[..., Any], values: Mapping[str, float]) -> dict[str, float]:
+def _swept(job: Job, family: Sweeping, values: Mapping[str, float]) -> dict[str, float]:
     """The largest response by simulation alone, and the largest if at each value the lowest is met that was seen there."""
     grid = np.linspace(*job.within, job.swept).tolist()
-    seen = [(p, x) for p, x in sweep(values, job.over, grid) if np.isfinite(x)]
+    seen = [(p, x) for p, x in family.swept(values, job.over, grid) if np.isfinite(x)]
     lowest = {p: min(responses) for p in grid if (responses := [x for at, x in seen if at == p])}
     found = {"covered": len(lowest) / len(grid)}
     for name, motions in (("peak", seen), ("lower_peak", list(lowest.items()))):
@@ -110,7 +110,7 @@ def _swept(job: Job, sweep: Callable[..., Any], values: Mapping[str, float]) -> 
     return found
 
 
-def _graph(job: Job, seed: Any) -> Graph:
+def _graph(job: Job, seed: object) -> Graph:
     """The diagram of a system, or its atlas."""
     from ..coexistence.build import atlas
     from ..graph.automatic import diagram
@@ -120,7 +120,7 @@ def _graph(job: Job, seed: Any) -> Graph:
     return atlas(seed, over=job.over, within=job.within, **job.options, **job.atlas)
 
 
-def _population(job: Job, seed: Any) -> Population | None:
+def _population(job: Job, seed: object) -> Population | None:
     """Starts of a system and what they settle on; None for equations that cannot be simulated from many."""
     from ..coexistence.population import population_of
 
@@ -130,15 +130,16 @@ def _population(job: Job, seed: Any) -> Population | None:
         return None
 
 
-def _simulated(job: Job, values: Mapping[str, float], open_: Sequence[tuple[float, float]]) -> list[Any]:
+def _simulated(
+    job: Job, values: Mapping[str, float], open_: Sequence[tuple[float, float]]
+) -> list[Simulated]:
     """Motions on which simulations settle: in the gaps `open_`, and where else it is asked for."""
-    simulate = getattr(job.family, "simulated", None)
-    if simulate is None:
+    if not isinstance(job.family, Simulating):
         return []
     found = []
     if places := spread(open_, job.within, job.gaps):
-        found += simulate(values, job.over, places, 1)
+        found += job.family.simulated(values, job.over, places, 1)
     if job.values:
         places = np.linspace(*job.within, job.values + 2)[1:-1].tolist()
-        found += simulate(values, job.over, places, job.starts)
+        found += job.family.simulated(values, job.over, places, job.starts)
     return found
