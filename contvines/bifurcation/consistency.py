@@ -40,7 +40,7 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     """
     engine = segment.engine
     before, after = segment.counts
-    if engine.detection == "map" and not engine.adaptive and _hidden_beside_fold(segment, found):
+    if engine.detection == "map" and not engine.adaptive and _unseen_between(segment, found):
         return True
     plus, minus, pairs = (b - a for a, b in zip(before, after))
     if engine.detection == "real" and plus and plus % 2 == 0:
@@ -61,25 +61,52 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     return missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)
 
 
-def _hidden_beside_fold(segment: Segment, found: Sequence[Located]) -> bool:
-    """Whether the multipliers outside the circle at a fold, its own left out, are others than at the ends, though nothing else was found.
+def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
+    """Whether the multipliers outside the circle at the points found, their own left out, are others than from there to the next one.
 
-    A pair may leave the circle next to a fold, part on the real axis and come back there by one: the ends differ by that one alone. Or
-    the one that passes +1 at the fold goes on through infinity and comes back through -1: the ends do not differ at all.
+    From one end to the other each point found takes its own ones across the circle, and nothing else does. A pair may leave the circle
+    between a period doubling and a fold and part on the real axis, or the one that passes +1 at a fold goes on through infinity and
+    comes back through -1: numbers at the two ends do not tell.
     """
-    if len(found) != 1 or found[0].kind != "fold":
+    passed = [_others_outside(segment.engine, event) for event in sorted(found, key=lambda e: e.position)]
+    if not passed:
         return False
-    engine, near = segment.engine, segment.engine.settings.critical
-    spectrum, *ends = (engine.spectrum(point.row) for point in (found[0].point, segment.a, segment.b))
-    others = np.abs(np.delete(spectrum, np.argmin(np.abs(spectrum - 1.0))))
-    if np.any(np.abs(others - 1.0) <= near):
-        return False
-    outside = int(np.count_nonzero(others > 1.0))
-    totals = [plus + minus + 2 * pairs for plus, minus, pairs in segment.counts]
+    first, last = ({plus + minus + 2 * pairs} for plus, minus, pairs in segment.counts)
+    near = segment.engine.settings.critical
+    ends = [segment.engine.spectrum(point.row) for point in (segment.a, segment.b)]
     marginal = any(np.any(np.abs(np.abs(end) - 1.0) <= near) for end in ends)
-    if marginal or not at_one(engine, found[0]):
-        return any(total not in (outside, outside + 1) for total in totals)
-    return sorted(totals) != [outside, outside + 1]
+    outside = first
+    for crossing in passed:
+        if crossing is None:
+            return False
+        others, own, certainly = crossing
+        sides = {others, others + own}
+        kept = outside & sides
+        outside = (
+            {2 * others + own - total for total in kept}
+            if certainly and not marginal
+            else (sides if kept else set())
+        )
+    return not outside & last
+
+
+def _others_outside(engine: Engine, event: Located) -> tuple[int, int, bool] | None:
+    """How many multipliers are outside the circle at a special point but for those that pass it there, how many these are, and whether they do.
+
+    None where another one is on the circle as well, and at points of other kinds.
+    """
+    sort = next((k for k, kinds in enumerate(PASSED_AT) if event.kind in kinds), None)
+    if sort is None or event.kind == "branch-point" or event.astray:
+        return None
+    spectrum, own = engine.spectrum(event.point.row), 2 if sort == 2 else 1
+    gaps = np.abs(np.abs(spectrum) - 1.0) if sort == 2 else np.abs(spectrum - (1.0, -1.0)[sort])
+    if sort == 2:
+        gaps[spectrum.imag == 0.0] = np.inf
+    order = np.argsort(gaps)
+    others = np.abs(spectrum[order[own:]])
+    if np.any(np.abs(others - 1.0) <= engine.settings.critical):
+        return None
+    return int(np.count_nonzero(others > 1.0)), own, bool(gaps[order[0]] <= engine.settings.critical)
 
 
 def at_one(engine: Engine, event: Located) -> bool:

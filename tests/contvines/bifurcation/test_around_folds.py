@@ -62,3 +62,41 @@ def test_a_multiplier_that_comes_back_from_infinity_beside_a_fold(max_step, pole
     (fold,), (flip,) = graph.of_kind("fold"), graph.of_kind("period-doubling")
     assert abs(fold.value) < 1e-14
     assert flip.u[0] == pytest.approx(2.0 * pole / (2.0 - k), rel=1e-8)
+
+
+class Exchanged(Parabola):
+    """p = u^2 with two multipliers of given sum and product: one is -1, both a pair of modulus 1, one is +1 where the branch turns, in turn.
+
+    With z = w tanh(u/w) the product is 1 + (z + gap)/width, and one minus the sum plus the product is -rate z.
+    """
+
+    n_multipliers = 2
+
+    def __init__(self, gap, width, rate, w=0.01):
+        self.gap, self.width, self.rate, self.w = gap, width, rate, w
+
+        def inspect(data, u, p, work, row):
+            z = w * np.tanh(u[0] / w)
+            product = 1.0 + (z + gap) / width
+            row[::2] = np.append(np.roots([1.0, -(1.0 + product + rate * z), product]).real, 1.0)
+            row[1:4:2] = np.roots([1.0, -(1.0 + product + rate * z), product]).imag
+
+        super().__init__(0.3, 1.0)
+        self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect)
+
+    def at(self, z):
+        """The unknown at a value of z."""
+        return self.w * np.arctanh(z / self.w)
+
+
+@pytest.mark.parametrize("max_step", [0.1, 0.03, 0.003])
+@pytest.mark.parametrize("gap", [1e-4, 1e-3])
+def test_a_pair_that_leaves_between_a_doubling_and_a_fold(max_step, gap):
+    """One multiplier is outside before all three and one behind, past -1 and past +1: a doubling and a fold account for that."""
+    problem = Exchanged(gap, 2.0 * gap, 0.8 / gap)
+    graph = cv.diagram(problem, within=(-0.2, 0.4), settings={"max_step": max_step}, depth=0)
+    (fold,), (flip,), (pair,) = (graph.of_kind(k) for k in ("fold", "period-doubling", "neimark-sacker"))
+    assert abs(fold.value) < 1e-14
+    assert flip.u[0] == pytest.approx(problem.at(-5.0 * gap / 1.8), rel=1e-6)
+    assert pair.u[0] == pytest.approx(problem.at(-gap), rel=1e-6)
+    assert not graph.unresolved
