@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Mapping
 from typing import Any
@@ -13,16 +14,19 @@ def short_word(word: str, limit: int = 24) -> str:
     """A word of events in at most about `limit` characters.
 
     A word that repeats a shorter one is written with its power, ``(LtRLttR)^8``; what is still too long is cut, with the
-    number of its events (signs such as those of ``s+`` belong to the event before them). Names of modulations stay as they are.
+    number of its events (between blanks where their names are long; else letters, as signs such as those of ``s+`` belong to the event before them). Names of modulations stay as they are.
     """
     if len(word) <= limit or word in MODULATIONS:
         return word
-    length = (word + word).find(word, 1)  # of the shortest root
-    power = f"^{len(word) // length}" if length < len(word) else ""
-    root = word[:length]
+    joint = " " if " " in word else ""  # names of several letters stand apart
+    length = (word + joint + word).find(word, 1)  # of the shortest root, with its joint
+    power = f"^{(len(word) + len(joint)) // length}" if length < len(word) else ""
+    root = word[:length].rstrip()
     if len(root) > limit:
-        events = sum(letter.isalpha() for letter in root)
-        root = f"{root[: limit - 8]}... {events} events"
+        shown = re.sub(r"\[[^\]]*\]", "", root)  # without modes, which are no events
+        events = len(shown.split()) if joint else sum(letter.isalpha() for letter in shown)
+        cut = root[: limit - 8]
+        root = f"{cut[: cut.rfind(joint)] if joint else cut}... {events} events"
     return f"({root}){power}" if power else root
 
 
