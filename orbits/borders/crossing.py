@@ -45,6 +45,7 @@ from orbits.words.rewriting import Edit
 if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
 
+LONG_WORD = 60  # letters of a word that a line has room for
 BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
 AWAY = (
     1e-6,
@@ -106,8 +107,11 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
 
 
 def _with_word(seed: Seed) -> Seed:
-    """The seed with its word in the note."""
-    return seed._replace(note=f"{seed.note}, the word becomes {seed.problem.spelling or 'free of events'}")
+    """The seed with its word in the note; of a word too long for a line, the number of its events."""
+    text = seed.problem.spelling or "free of events"
+    if len(text) > LONG_WORD:
+        text = f"one of {len(seed.problem.word)} events"
+    return seed._replace(note=f"{seed.note}, the word becomes {text}")
 
 
 def _with_room(
