@@ -12,6 +12,7 @@ import numpy as np
 
 from ..file_names import refuse_ending
 from ..provenance import provenance
+from ..shared.extras import needed
 from .auto import places, write_auto
 from .columns import graph_columns, measures_of
 from .latex import write_latex
@@ -74,7 +75,7 @@ def check_target(path: Path, ending: str) -> None:
     Raises
     ------
     ValueError
-        With a sentence that names the file and a valid name.
+        With a sentence that names the file and a valid name, or the package that such files need.
     """
     if path.is_dir():
         raise ValueError(f"{path}: cannot be written: this is a folder; give the name of a file with -o.")
@@ -94,6 +95,8 @@ def check_target(path: Path, ending: str) -> None:
             else f"{path}: this file is a database, it is left untouched; choose another name with -o."
         )
     refuse_ending(path, ending)
+    if ending == "nc":
+        needed("xarray", "tables")
 
 
 def _is_database(path: Path) -> bool:

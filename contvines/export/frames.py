@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..shared.extras import pip_install
+from ..shared.extras import needed
 from .columns import branch_columns, graph_columns, measures_of, parameter_head
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from pandas import DataFrame
     from xarray import Dataset
 
@@ -29,7 +27,7 @@ def graph_frame(graph: Graph) -> DataFrame:
     ValueError
         If pandas is not installed.
     """
-    return _pandas().DataFrame(graph_columns(graph)).set_index(["branch", "index"])
+    return needed("pandas", "tables").DataFrame(graph_columns(graph)).set_index(["branch", "index"])
 
 
 def points_frame(graph: Graph) -> DataFrame:
@@ -54,7 +52,7 @@ def points_frame(graph: Graph) -> DataFrame:
         for point in graph.special.values()
     ]
     names = ["label", "kind", "branch", head, "real", "criticality", "leads_to"]
-    return _pandas().DataFrame(rows, columns=names).set_index("label")
+    return needed("pandas", "tables").DataFrame(rows, columns=names).set_index("label")
 
 
 def graph_dataset(graph: Graph) -> Dataset:
@@ -93,7 +91,7 @@ def chart_frame(chart: Chart) -> DataFrame:
         for i, (value, real) in enumerate(zip(locus.values, locus.real, strict=True))
     ]
     names = ["locus", "index", "kind", "word", p, q, "real"]
-    return _pandas().DataFrame(parts, columns=names).set_index(["locus", "index"])
+    return needed("pandas", "tables").DataFrame(parts, columns=names).set_index(["locus", "index"])
 
 
 def chart_dataset(chart: Chart) -> Dataset:
@@ -112,7 +110,12 @@ def chart_dataset(chart: Chart) -> Dataset:
 def branch_frame(branch: Branch) -> DataFrame:
     """The points of one branch, indexed by their number."""
     units = dict(branch.description.get("units") or {})
-    return _pandas().DataFrame(branch_columns(branch, units)).set_index("index").drop(columns="branch")
+    return (
+        needed("pandas", "tables")
+        .DataFrame(branch_columns(branch, units))
+        .set_index("index")
+        .drop(columns="branch")
+    )
 
 
 def branch_dataset(branch: Branch) -> Dataset:
@@ -123,7 +126,7 @@ def branch_dataset(branch: Branch) -> Dataset:
     ValueError
         If xarray is not installed.
     """
-    xarray = _xarray()
+    xarray = needed("xarray", "tables")
     units = dict(branch.description.get("units") or {})
     variables: dict[str, Any] = {
         "unknowns": (("point", "unknown"), branch.points),
@@ -150,7 +153,7 @@ def branch_dataset(branch: Branch) -> Dataset:
 
 def _dataset(frame: DataFrame, units: Mapping[str, str]) -> Dataset:
     """A frame as a data set over the dimension ``row``; what indexed the frame are coordinates."""
-    _xarray()
+    needed("xarray", "tables")
     keys = list(frame.index.names)
     rows = frame.reset_index()
     rows.index.name = "row"
@@ -159,19 +162,3 @@ def _dataset(frame: DataFrame, units: Mapping[str, str]) -> Dataset:
         if name in found:
             found[name].attrs["units"] = unit
     return found
-
-
-def _xarray() -> ModuleType:
-    try:
-        import xarray
-    except ImportError:
-        raise ValueError(f"this needs xarray: {pip_install('tables')}") from None
-    return xarray
-
-
-def _pandas() -> ModuleType:
-    try:
-        import pandas
-    except ImportError:
-        raise ValueError(f"this needs pandas: {pip_install('tables')}") from None
-    return pandas

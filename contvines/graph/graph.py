@@ -252,14 +252,9 @@ class Graph(Resumable):
         ValueError
             If networkx is not installed.
         """
-        try:
-            import networkx
-        except ImportError:
-            from ..shared.extras import pip_install
+        from ..shared.extras import needed
 
-            raise ValueError(
-                f"this needs networkx, which is not installed: {pip_install('tables')}"
-            ) from None
+        networkx = needed("networkx", "tables")
         network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)
         network.add_nodes_from(self.nodes())
         for a, b, data in self.edges():

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from types import ModuleType
+
 
 def pip_install(extra: str) -> str:
     """The command that adds an extra to the package as it is installed: from PyPI, or from the copy that `pip install .` was given."""
@@ -20,3 +23,17 @@ def pip_install(extra: str) -> str:
         path = Path(url2pathname(urlparse(origin).path))
         source = "." if path == Path.cwd() else str(path) if path.exists() else source
     return f'pip install "{source}[{extra}]"'
+
+
+def needed(name: str, extra: str) -> ModuleType:
+    """A package of an extra.
+
+    Raises
+    ------
+    ValueError
+        If it is not installed.
+    """
+    try:
+        return import_module(name)
+    except ImportError:
+        raise ValueError(f"this needs {name}, which is not installed: {pip_install(extra)}") from None

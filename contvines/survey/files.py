@@ -11,6 +11,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..shared.extras import needed
 from .plan import PlanError
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def read(path: Path) -> Dataset:
     PlanError
         If there is no such file, it is not the file of a survey, or it is damaged.
     """
-    import xarray
+    xarray = needed("xarray", "tables")
 
     try:
         content = path.read_bytes()

@@ -15,6 +15,7 @@ import numpy as np
 from ..continuation.settings import hinted
 from ..graph.table import with_unit
 from ..interrupts import Resumable
+from ..shared.extras import needed
 from ..shared.number_text import figures
 from ..shared.plot_options import PanelOptions
 from ..text_table import Table, fitted, terminal_width
@@ -124,7 +125,7 @@ class Survey(Resumable):
 
     def to_xarray(self):
         """An `xarray.Dataset`: a variable per outcome over the plan's dimensions, with units and the systems' notes."""
-        import xarray
+        xarray = needed("xarray", "tables")
 
         dims = self.plan.dimensions
         described = {
