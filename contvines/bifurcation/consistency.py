@@ -23,6 +23,7 @@ from .located import Located, Role
 from .location_error import singular_within
 from .multiplier_counts import pairs_past
 from .segment import Segment
+from .settings import LOCATING
 
 #: sort of multipliers -> kinds at which one of them passes the circle
 PASSED_AT = (
@@ -121,9 +122,6 @@ def unresolved(segment: Segment, middle: Solved) -> Located:
     return Located(0.5, "", 0, middle, ends, 0.5 * abs(ends[1] - ends[0]), Role.UNRESOLVED)
 
 
-NOISY = 2e3  # times the noise of the equations: places are no better than this
-
-
 def leap(segment: Segment, found: list[Located]) -> Located | None:
     """A mark at the start of the segment if its ends lie on different branches; unresolved if it is too short to tell.
 
@@ -151,7 +149,7 @@ def inexact(segment: Segment, event: Located) -> bool:
         return False
     unit = segment.engine.parameter_unit(event.point.p)
     noise, scaled = segment.engine.noise, segment.engine.problem.scales is not None
-    least = max(segment.engine.settings.located, NOISY * noise)
+    least = max(segment.engine.settings.located, LOCATING.noisy * noise)
     solved = segment.engine.settings.exact if scaled and not noise and event.kind == "branch-point" else least
     vague = event.error > 10.0 * least * unit
     if vague and event.kind == "branch-point":

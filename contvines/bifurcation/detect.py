@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
+from ..problems.abilities import Nearing
 from .consistency import at_one, inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, pointed, suspicious
 from .locate import locate
@@ -229,7 +229,8 @@ class Detector(SegmentSearch):
     @cached_property
     def _closer(self) -> SegmentSearch:
         """A search in the same problem, watched by its eigenvalues."""
-        problem: Any = self.engine.problem
+        problem = self.engine.problem
+        assert isinstance(problem, Nearing)
         engine = Engine(problem.closer(), self.engine.within, self.engine.settings)
         search = SegmentSearch(engine, self.kinds)
         search.own = self.own

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..continuation.settings import hinted
 
@@ -45,6 +45,8 @@ class Classified(NamedTuple):
     remarks: tuple[str, ...] = ()
 
 
+Sides = tuple[str | None, float | None]
+"""What a user's kind may return in the place of `Classified`: criticality and coefficient."""
 NAME = re.compile(r"[a-z][a-z0-9-]*")
 LABEL = re.compile(r"[A-Z][A-Z0-9]*")
 
@@ -94,7 +96,7 @@ class Kind:
     marker: str = "*"
     filled: bool = True
     verify: Callable[[PointOnBranch], bool] | None = None
-    classify: Callable[[PointOnBranch], Any] | None = None
+    classify: Callable[[PointOnBranch], Classified | Sides] | None = None
     locus: Callable[[PointOnBranch], float] | str | None = None
     ends: bool = False
     # of built-in kinds
@@ -123,7 +125,7 @@ class Kind:
         if not self.text:
             object.__setattr__(self, "text", self.name.replace("-", " "))
 
-    def look(self) -> dict[str, Any]:
+    def look(self) -> dict[str, str | bool]:
         """Label, text and mark as JSON scalars: what files keep of a user's kind."""
         return {
             "name": self.name,

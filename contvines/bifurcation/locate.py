@@ -10,11 +10,11 @@ import numpy as np
 
 from ..continuation.aims import Aim
 from ..continuation.engine import Solved
+from ..shared.floating_point import EPSILON, ROUNDED
 from .segment import Segment
+from .settings import LOCATING
 
 NODES = 8
-SETTLED = 1e-14  # accuracy at which no smaller window is asked
-JUMP = 1e-2  # a test function that differs by more than this across the final bracket has a jump there
 
 
 class Root(NamedTuple):
@@ -40,7 +40,7 @@ class Root(NamedTuple):
 def locate(
     segment: Segment,
     test: Callable[[Solved], float] | Aim,
-    tolerance: float = 1e-12,
+    tolerance: float = LOCATING.bracket,
     fallback_zero: bool = False,
     jump: float = np.inf,
 ) -> Root | None:
@@ -70,7 +70,7 @@ def locate(
         if hit is None:
             return None
         if hit.point is not None:
-            return Root(hit.place, hit.point, hit.error, hit.jump <= JUMP)
+            return Root(hit.place, hit.point, hit.error, hit.jump <= LOCATING.jump)
         # a place that was solved for once and is not found again, as where equations are singular: every point is kept below
     solved: dict[float, Solved] = {}
 
@@ -88,13 +88,15 @@ def locate(
         return None
     if fa * fb > 0.0:
         # an end that is the zero itself may have either sign, by roundoff
-        if not fallback_zero and min(abs(fa), abs(fb)) > 1e-9 * max(abs(fa), abs(fb)):
+        if not fallback_zero and min(abs(fa), abs(fb)) > LOCATING.rounding * max(abs(fa), abs(fb)):
             return None
         s = 0.0 if abs(fa) < abs(fb) else 1.0
         return Root(s, solved[s], 0.0)
     s, low, high, flow, fhigh = bracketed_root(value, 0.0, 1.0, fa, fb, tolerance, jump)
-    width = abs(solved[high].p - solved[low].p) + 2.0 * np.finfo(float).eps * abs(solved[s].p)
-    return Root(s, solved[s], max(width, solved[s].correction * 1e-3), abs(fhigh - flow) <= JUMP)
+    width = abs(solved[high].p - solved[low].p) + 2.0 * EPSILON * abs(solved[s].p)
+    return Root(
+        s, solved[s], max(width, solved[s].correction * LOCATING.halved), abs(fhigh - flow) <= LOCATING.jump
+    )
 
 
 def locate_singular(
@@ -120,7 +122,7 @@ def locate_singular(
         if found is not None:
             root, residual = found
             score = max(root.error, residual / segment.engine.size(root.point.u))
-            if score < SETTLED:
+            if score < ROUNDED:
                 return root
             roots.append((score, root))
             rough = root.position
@@ -168,12 +170,12 @@ def _interpolated(
     )[0]
     z = chebyshev_fit(np.array([engine.join(p.u, p.p) for _, p in points]))
     tangent = chebyshev_fit(np.array([p.tangent for _, p in points]))
-    rows = chebyshev_fit(np.array([np.where(np.isfinite(p.row), p.row, 1e300) for _, p in points]))
+    rows = np.array([p.row for _, p in points])
+    known = np.isfinite(rows).all(axis=0)
     here = chebyshev_value(z, x)
     u, p = np.ascontiguousarray(here[:-1]), float(here[-1])
     residual = engine.residual(u, p)
-    row = chebyshev_value(rows, x)
-    row = np.where(row > 1e290, np.inf, row)
+    row = np.where(known, chebyshev_value(chebyshev_fit(np.where(known, rows, 0.0)), x), np.inf)
     polished = engine.polish(u, p, segment.border, float(segment.border @ here), segment.direction)
     if polished is not None:
         row = polished.row

@@ -12,9 +12,9 @@ from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Blurred, Doubtful
 from .located import Located
 from .segment import Segment
+from .settings import LOCATING
 
 ENTRY = 2.0**-50  # relative error of an entry: of several roundings, half a unit in the last place each
-BENT = 1e6  # condition of the second derivatives from which a step says nothing
 
 
 def blurred(segment: Segment, event: Located, test: Callable[[Solved], float]) -> Located:
@@ -77,7 +77,7 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
         engine.residual(u, p)
         rest = np.array([_image(engine, left, way) for way in ways])
         bent = np.array([[_slope(engine, u, p, way, left, other) for other in ways] for way in ways])
-        if not (np.isfinite(bent).all() and np.linalg.cond(bent) < BENT):
+        if not (np.isfinite(bent).all() and np.linalg.cond(bent) < LOCATING.bent):
             return 0.0
         step = np.linalg.solve(bent.T, -rest)
     found = abs(float(step @ [way[-1] for way in ways]))

@@ -11,19 +11,37 @@ the first order of Newton's method. Gauss collocation of degree m leaves 4^-m of
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Protocol, runtime_checkable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Adaptive
+from ..problems.protocol import BorderPoint
 
 #: what the critical multiplier is at special points whose place it tells
 CRITICAL = {"period-doubling": -1.0, "neimark-sacker": 1.0, "branch-point": 1.0, "symmetry-breaking": 1.0}
 SINGULAR = ("branch-point", "symmetry-breaking")
 
 
-def mesh_error(engine: Engine, special: Any) -> float | None:
+@runtime_checkable
+class Started(Adaptive, Protocol):
+    """A problem on a mesh whose finer one begins with given unknowns."""
+
+    u0: np.ndarray
+
+
+class Special(BorderPoint, Protocol):
+    """A special point of a branch."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def multipliers(self) -> NDArray[np.complex128]: ...
+
+
+def mesh_error(engine: Engine, special: Special) -> float | None:
     """Error of the parameter at a special point, from a finer mesh; None where that cannot be obtained.
 
     Parameters
@@ -32,10 +50,9 @@ def mesh_error(engine: Engine, special: Any) -> float | None:
         Of a problem on a mesh.
     special : SpecialPoint
     """
-    if not isinstance(engine.problem, Adaptive):
+    problem, settings = engine.problem, engine.settings
+    if not isinstance(problem, Started):
         return None
-    problem: Any = engine.problem
-    settings = engine.settings
     u, p, tangent = special.u, float(special.value), engine.unit(special.tangent)
     singular = special.kind in SINGULAR
     here = None if singular else _on(engine, u, p, tangent)
@@ -68,7 +85,7 @@ def _on(engine: Engine, u: np.ndarray, p: float, direction: np.ndarray) -> Solve
     return engine.solve(u, p, border, float(border @ engine.join(u, p)), direction)
 
 
-def _vanishing(engine: Engine, special: Any, row: np.ndarray) -> float:
+def _vanishing(engine: Engine, special: Special, row: np.ndarray) -> float:
     """The number that vanishes at a special point, from a row near it; zero where the point is no more than its parameter."""
     if special.margin_index is not None:
         return float(row[2 * engine.m + special.margin_index])

@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..continuation.engine import Engine
-
-PAST = 1e-10  # multipliers of a conservative system lie on the circle up to roundoff: that is no crossing
+from .settings import LOCATING
 
 
 def sizes_by_sort(engine: Engine, rows: np.ndarray) -> np.ndarray:
@@ -35,7 +34,7 @@ def sizes_by_sort(engine: Engine, rows: np.ndarray) -> np.ndarray:
 
 def counts(engine: Engine, rows: np.ndarray) -> np.ndarray:
     """How many multipliers are past the circle: real ones past 1, past -1, and complex pairs; shape (..., 3)."""
-    return np.moveaxis((sizes_by_sort(engine, rows) > PAST).sum(axis=-1), 0, -1)
+    return np.moveaxis((sizes_by_sort(engine, rows) > LOCATING.past).sum(axis=-1), 0, -1)
 
 
 def balance(engine: Engine, rows: np.ndarray) -> np.ndarray:
@@ -55,4 +54,4 @@ def pairs_past(engine: Engine, rows: np.ndarray) -> np.ndarray:
     """Of eigenvalues that all count as real ones ("real"), how many are past the axis in pairs that rounding has not made; shape (...)."""
     re, im = rows[..., : 2 * engine.m : 2], np.abs(rows[..., 1 : 2 * engine.m : 2])
     unit = np.minimum(np.hypot(re, im).max(axis=-1, keepdims=True, initial=0.0), 1.0)
-    return ((re > PAST) & (im > engine.settings.critical * unit)).sum(axis=-1)
+    return ((re > LOCATING.past) & (im > engine.settings.critical * unit)).sum(axis=-1)

@@ -16,32 +16,21 @@ from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import solved_point
+from ..shared.floating_point import TINY
 from .locate import Root
 from .segment import Segment
+from .settings import LIMITS
 
-SURE = 1e-10  # tangents whose cosine to the extrapolated one is this close to 1 are solved for, not rounding
-DISTANCES = (4e-4, 5e-5, 6e-6, 8e-7, 1e-7)  # from the border, in the metric: spacings of points
-NEAREST = (1e-9, 1e-11, 1e-13)  # spacings at which it shows that what grew is bounded after all
 BEYOND = 4.0  # times what has grown at the nearest of them: what is computed at the border is not the end of that growth
-BOUNDED = 1e-2  # relative difference from what is computed at the border, where the limit is that
-INVERSE = 1e-2  # relative difference of the products of a margin and what grows as its inverse ...
-SPREAD = 4.0  # ... at places where it differs by such a factor at least
+SPREAD = 4.0  # a margin differs by such a factor at least where its products with what grows as its inverse are compared
 VANISHES = 0.1  # of the margin that does at the border: what it seems to be there, from points so near that rounding may stop its fall
 CUBIC = np.array([4.0, -6.0, 4.0, -1.0])  # the value at 0 of the cubic through those at 1, 2, 3, 4
 PLACES = (1.0, 2.0, 3.0, 4.0)
-CONVERGED = (
-    1e-4,
-    1e-2,
-    1e-2,
-)  # relative difference of extrapolations from two spacings, by the number of poles
-SURELY = 1e-9
-STRAIGHT = 3e-5  # from its beginning, up to which a short segment's branch is looked for along its tangent
-STRAYING = 0.5  # part of that distance by which it may be missed
-AGREEING = 1e-7  # relative difference of coefficients: those computed at the border are not rounding
+STRAYING = 0.5  # part of that distance by which a point before a short segment may be missed
 GROWN = 2.0  # times a multiplier at four times the distance: it grows on towards the border
 POLES = 2  # multipliers that grow without bound, at most
+CONVERGED = (LIMITS.smooth, *[LIMITS.growing] * POLES)
 EXTRAPOLATION = CUBIC * np.power.outer(PLACES, np.arange(POLES + 1)).T  # of values times powers of the place
-UNBOUNDED = 1e15  # stands for a multiplier that does
 
 
 def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
@@ -50,7 +39,7 @@ def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
     reach = min(engine.settings.aside, position / 3.0)
     beside = [position - k * reach for k in (1.0, 2.0) if reach > 0.0]
     tells = engine.m > 0 and engine.problem.spectrum == "map" and segment.length > 0.0
-    spacings = [distance / segment.length for distance in DISTANCES] if tells else []
+    spacings = [distance / segment.length for distance in LIMITS.distances] if tells else []
     widest = next((step for step in spacings if position - PLACES[-1] * step >= -1.0), None)
     before = [] if widest is None else [position - k * widest for k in PLACES]
     short = position - engine.settings.close / segment.length if segment.length > 0.0 else 0.0
@@ -75,7 +64,7 @@ def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
 def _tangent(engine: Engine, own: np.ndarray, near: np.ndarray, far: np.ndarray) -> np.ndarray:
     """The tangent, extrapolated from two before it where the one solved for is something else."""
     ahead = engine.unit(2.0 * near - far)
-    return own if 1.0 - engine.inner(ahead, own) < SURE else ahead
+    return own if 1.0 - engine.inner(ahead, own) < LIMITS.tangent else ahead
 
 
 def _plainly(engine: Engine, own: np.ndarray, rows: np.ndarray) -> bool:
@@ -83,10 +72,12 @@ def _plainly(engine: Engine, own: np.ndarray, rows: np.ndarray) -> bool:
     if not len(rows):
         return False
     numbers = own[: 2 * engine.m], CUBIC.dot(rows[:, : 2 * engine.m])
-    if _apart(*(one.tolist() for one in numbers)) < AGREEING / engine.m:  # where none meet, each is smooth
+    if (
+        _apart(*(one.tolist() for one in numbers)) < LIMITS.agreeing / engine.m
+    ):  # where none meet, each is smooth
         return True
     polynomials = _characteristic(engine.spectrum(np.concatenate([own[None, :], rows])))
-    return _apart(CUBIC.dot(polynomials[1:]).tolist(), polynomials[0].tolist()) < AGREEING
+    return _apart(CUBIC.dot(polynomials[1:]).tolist(), polynomials[0].tolist()) < LIMITS.agreeing
 
 
 def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
@@ -101,7 +92,7 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
     best: list[list[float]] | None = None
     error = math.inf
     for i, limit in enumerate(limits):
-        if _apart(limit[0], computed) < AGREEING:
+        if _apart(limit[0], computed) < LIMITS.agreeing:
             return None
         if i > 0:  # compared with the spacing before
             changed = [_apart(one, other) for one, other in zip(limit, limits[i - 1])]
@@ -109,13 +100,13 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
             fewer = best is not None and poles < len(best) - 1
             if changed[poles] < CONVERGED[poles] and (changed[poles] < error or fewer):
                 best, error = limit[: poles + 1], changed[poles]
-        if best is not None and len(best) == 1 and error < SURELY:
+        if best is not None and len(best) == 1 and error < LIMITS.enough:
             break
     if best is None:
         return _by_margin(segment, position, own)
     if len(best) == 1:
-        return None if _apart(best[0], computed) < AGREEING + 10.0 * error else best
-    grown = max(map(abs, best[-1])) / NEAREST[-1] ** (len(best) - 1)
+        return None if _apart(best[0], computed) < LIMITS.agreeing + 10.0 * error else best
+    grown = max(map(abs, best[-1])) / LIMITS.nearest[-1] ** (len(best) - 1)
     if max(map(abs, computed)) > BEYOND * grown:
         return best
     return None if _bounded(segment, position, computed) else best
@@ -124,7 +115,9 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
 def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[float]] | None:
     """The polynomial, and its limit times the margin that vanishes, if that is the same wherever rounding has put the margin."""
     engine = segment.engine
-    (_, beside), (_, before) = (_rows(segment, position, spacings) for spacings in (NEAREST, DISTANCES))
+    (_, beside), (_, before) = (
+        _rows(segment, position, spacings) for spacings in (LIMITS.nearest, LIMITS.distances)
+    )
     if not (len(beside) and len(before) and engine.problem.n_margins):
         return None
     rows = np.concatenate([own[None, :], beside.reshape(-1, len(own))])
@@ -134,7 +127,7 @@ def _by_margin(segment: Segment, position: float, own: np.ndarray) -> list[list[
     grown = products[:, 1]
     if not np.isfinite(products).all() or np.abs(polynomials[0]).argmax() != 1:
         return None
-    even = float(np.ptp(grown)) < INVERSE * float(np.abs(grown).max())
+    even = float(np.ptp(grown)) < LIMITS.growing * float(np.abs(grown).max())
     if not (even and float(np.abs(margins).max()) > SPREAD * float(np.abs(margins).min())):
         return None
     side = np.sign(engine.margins(before[0, 0])[index])
@@ -146,14 +139,14 @@ def _by_growth(segment: Segment, position: float, own: np.ndarray) -> np.ndarray
 
     For borders at which more vanishes at once than powers of the distance are extrapolated, and nothing can be computed there.
     """
-    _, rows = _rows(segment, position, DISTANCES)
+    _, rows = _rows(segment, position, LIMITS.distances)
     m = segment.engine.m
     if not len(rows) or not np.isfinite(rows[-1][:, : 2 * m]).all():
         return own
     near, far = (sorted(one, key=abs, reverse=True) for one in segment.engine.spectrum(rows[-1][[0, -1]]))
     roots = np.array(
         [
-            UNBOUNDED * one / abs(one) if abs(one) > GROWN * max(1.0, abs(other)) else one
+            LIMITS.unbounded * one / abs(one) if abs(one) > GROWN * max(1.0, abs(other)) else one
             for one, other in zip(near, far)
         ]
     )
@@ -164,7 +157,7 @@ def _by_growth(segment: Segment, position: float, own: np.ndarray) -> np.ndarray
 
 def _extrapolated(segment: Segment, position: float) -> np.ndarray:
     """The polynomials times each power of the distance, extrapolated to the border from each spacing that tells, (k, powers, m + 1)."""
-    spacings, rows = _rows(segment, position, DISTANCES)
+    spacings, rows = _rows(segment, position, LIMITS.distances)
     polynomials = _characteristic(segment.engine.spectrum(rows))
     sure = np.isfinite(polynomials).all(axis=(1, 2))
     powers = spacings[sure, None] ** np.arange(POLES + 1)
@@ -178,16 +171,16 @@ def _bounded(segment: Segment, position: float, computed: list[float]) -> bool:
     come to zero nothing grows any more, and nothing can be determined.
     """
     largest = max(map(abs, computed))
-    _, rows = _rows(segment, position, NEAREST)
+    _, rows = _rows(segment, position, LIMITS.nearest)
     polynomials = _characteristic(segment.engine.spectrum(rows))
     for margins, values in zip(segment.engine.smallest_margin(rows), polynomials):
         if not abs(CUBIC @ margins) < VANISHES * abs(margins[0]):
             return False
         if not np.isfinite(values).all():
             continue
-        if not np.abs(values).max() <= (1.0 + BOUNDED) * largest:
+        if not np.abs(values).max() <= (1.0 + LIMITS.growing) * largest:
             return False  # what is computed at the border is something else
-        if _apart(CUBIC.dot(values).tolist(), computed) < BOUNDED:
+        if _apart(CUBIC.dot(values).tolist(), computed) < LIMITS.growing:
             return True
     return False
 
@@ -217,7 +210,7 @@ def _rows(segment: Segment, position: float, spacings: tuple[float, ...]) -> tup
 def _before(segment: Segment, s: float) -> Solved | None:
     """The point at s, before the segment: a branch that begins beside its border has no points further away."""
     engine, a, distance = segment.engine, segment.a, -s * segment.length
-    if distance > STRAIGHT:
+    if distance > LIMITS.straight:
         return None
     guess = segment.za - distance * a.tangent
     border = engine.weights * a.tangent
@@ -238,12 +231,12 @@ def _characteristic(spectrum: np.ndarray) -> np.ndarray:
 
 
 def _roots(limits: list[list[float]]) -> NDArray[np.complex128]:
-    """The multipliers, largest modulus first; those that grow without bound have a size of `UNBOUNDED`."""
+    """The multipliers, largest modulus first; those that grow without bound have a size of `LIMITS.unbounded`."""
     poles = len(limits) - 1
     finite = sorted(_zeros(limits[poles][poles:]), key=lambda one: (-abs(one), -one.real, -one.imag))
     # beside the border these are roots of x^k + c_1 x^(k-1) + ..., over the distance
     growing = _zeros([limits[k][k] for k in range(poles + 1)])
-    growing = [UNBOUNDED * one / max(abs(one), np.finfo(float).tiny) for one in growing]
+    growing = [LIMITS.unbounded * one / max(abs(one), TINY) for one in growing]
     missing = len(limits[0]) - 1 - len(growing) - len(finite)
     return np.array([*growing, *finite, *[0.0] * missing], dtype=np.complex128)
 

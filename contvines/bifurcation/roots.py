@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from ..continuation import bracketing
+from ..shared.floating_point import ROUNDED
 
 
 def bracketed_root(
@@ -16,7 +16,7 @@ def bracketed_root(
     b: float,
     fa: float,
     fb: float,
-    tolerance: float = 1e-14,
+    tolerance: float = ROUNDED,
     jump: float = np.inf,
 ) -> tuple[float, float, float, float, float]:
     """Root of f between a and b; see :mod:`contvines.continuation.bracketing`.
@@ -64,6 +64,6 @@ def chebyshev_fit(values: np.ndarray) -> np.ndarray:
     return coefficients.reshape(values.shape)
 
 
-def chebyshev_value(coefficients: np.ndarray, x: np.ndarray | complex) -> Any:
+def chebyshev_value(coefficients: np.ndarray, x: np.ndarray | float) -> np.ndarray:
     """The Chebyshev series at x."""
-    return np.polynomial.chebyshev.chebval(x, coefficients)
+    return np.asarray(np.polynomial.chebyshev.chebval(x, coefficients))

@@ -17,7 +17,8 @@ from ..continuation.engine import Engine
 from ..continuation.layout import MARGIN
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
-from .multiplier_counts import PAST, sizes_by_sort
+from .multiplier_counts import sizes_by_sort
+from .settings import LOCATING
 from .symmetry_test import SymmetryTest
 
 
@@ -80,9 +81,9 @@ def spectra(engine: Engine, rows: np.ndarray) -> Spectra:
     """What the multipliers of some rows tell."""
     with np.errstate(all="ignore"):
         sizes = sizes_by_sort(engine, rows)
-        past = (sizes > PAST).sum(axis=2)
+        past = (sizes > LOCATING.past).sum(axis=2)
         near = np.fmin.reduce(np.abs(sizes), axis=2, initial=np.inf)
-        told = (near > PAST) & (near < np.inf)
+        told = (near > LOCATING.past) & (near < np.inf)
         near = np.where(told, np.where(past % 2, -near, near), np.nan)
         return Spectra(near, past, np.isfinite(sizes[2]).any(axis=1))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from .segment import Segment
 from .symmetry_test import SymmetryTest
 
 if TYPE_CHECKING:
-    from .user_functions import Own
+    from .user_functions import Own, UserFunction
 
 TINY = float(np.finfo(float).tiny)
 PLACES = np.arange(1, 8) / 8.0  # of a segment at which its inside is looked at
@@ -53,7 +53,7 @@ class SegmentSearch:
         self,
         engine: Engine,
         kinds: Sequence[Kind] = KINDS,
-        functions: Mapping[str, Any] | None = None,
+        functions: Mapping[str, UserFunction] | None = None,
         stops: Iterable[str] = (),
     ) -> None:
         self.engine = engine

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..shared.floating_point import CENTRAL, TINY
+from .settings import LOCATING
+
 if TYPE_CHECKING:
     from ..problems.protocol import Symmetry
 
@@ -48,7 +51,7 @@ class SymmetryTest:
             order[np.argsort(np.abs(image), kind="stable")] = places
             signs = np.sign(image)
             wrong = np.abs(signs * check[order] + constant - symmetry.apply(check)).max()
-            if np.abs(signs * probe[order] - image).max() < 1e-9 and wrong < 1e-9:
+            if np.abs(signs * probe[order] - image).max() < LOCATING.rounding and wrong < LOCATING.rounding:
                 self.affine = (order, signs, constant)
         except (ArithmeticError, ValueError, IndexError):
             self.affine = None
@@ -74,5 +77,5 @@ class SymmetryTest:
         if self.affine is not None:
             order, signs, _ = self.affine
             return signs * v[order]
-        scale = 1e-5 / max(float(np.abs(v).max()), np.finfo(float).tiny)
+        scale = CENTRAL / max(float(np.abs(v).max()), TINY)
         return (self.symmetry.apply(u + scale * v) - self.symmetry.apply(u - scale * v)) / (2.0 * scale)

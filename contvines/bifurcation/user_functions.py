@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
 from .kind import Kind
 from .point_on_branch import PointOnBranch
+
+UserFunction = Callable[[np.ndarray, float], float] | tuple[str, float]
+"""A number of a solution (u, p), or a measure by name and the value at which it is asked for."""
 
 
 class Own(NamedTuple):
@@ -23,7 +26,11 @@ class Own(NamedTuple):
 
 
 def own_tests(
-    engine: Engine, kinds: Iterable[Kind], functions: Mapping[str, Any], stops: Iterable[str], user: Kind
+    engine: Engine,
+    kinds: Iterable[Kind],
+    functions: Mapping[str, UserFunction],
+    stops: Iterable[str],
+    user: Kind,
 ) -> list[Own]:
     """Tests of the kinds that have one, and of functions by name (kind `user`); branches end at zeros of those named in `stops`."""
     found = [_of_kind(engine, kind) for kind in kinds if kind.test is not None]
@@ -51,7 +58,7 @@ def _of_kind(engine: Engine, kind: Kind) -> Own:
     return Own(kind, "", lambda chunk: np.array([at(chunk.solved(i)) for i in range(len(chunk))]), at)
 
 
-def _of_function(engine: Engine, kind: Kind, name: str, function: Any) -> Own:
+def _of_function(engine: Engine, kind: Kind, name: str, function: UserFunction) -> Own:
     """`function` is a callable (u, p) -> float, or a pair (name of a measure, value): zero where the measure has the value."""
     of = _many(engine, function)
     return Own(
@@ -62,14 +69,12 @@ def _of_function(engine: Engine, kind: Kind, name: str, function: Any) -> Own:
     )
 
 
-def _many(engine: Engine, function: Any) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+def _many(engine: Engine, function: UserFunction) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     problem = engine.problem
     if callable(function):
-        call: Callable[..., Any] = function
-        return lambda points, values: np.array([float(call(u, float(p))) for u, p in zip(points, values)])
+        return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
     try:
-        pair: Any = function
-        measure, value = pair[0], float(pair[1])
+        measure, value = function[0], float(function[1])
     except (TypeError, ValueError, IndexError):
         raise ValueError(
             f"user function {function!r} must be a callable (u, p) -> float or a pair (measure, value)"

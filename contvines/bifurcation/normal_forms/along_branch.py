@@ -21,8 +21,9 @@ import numpy as np
 from ...continuation.aims import aim_at_multiplier
 from ...continuation.engine import Engine, Solved
 from ...continuation.layout import solved_points
+from ..settings import NORMAL_FORMS
 
-STEP = 1e-3
+STEP = NORMAL_FORMS.step
 LENGTH = (
     16.0 * STEP
 )  # of the chord on which points beside a special point are placed: they may lie far off it, and are none of its ends

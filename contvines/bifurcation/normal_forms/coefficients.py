@@ -20,21 +20,27 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...problems.abilities import Evaluable
 from ...problems.protocol import Problem
+from ...shared.floating_point import TINY
+from ..settings import NORMAL_FORMS
 from .taylor import Line, along_line
-
-NEAR = 1e-3  # distance along the critical direction at which the third derivative counts
 
 
 def _size(vector: np.ndarray) -> float:
     """Largest entry."""
     return float(np.abs(vector).max())
+
+
+def in_phase(vector: np.ndarray) -> np.ndarray:
+    """A complex vector in the phase in which real and imaginary parts are orthogonal."""
+    square = np.sum(vector * vector)
+    return vector * np.exp(-0.5j * np.angle(square)) if abs(square) > TINY else vector
 
 
 class Coefficient(NamedTuple):
@@ -92,7 +98,7 @@ class Forms:
         self.u = np.array(u, dtype=float) / self.units
         self.reach = max(float(np.sqrt(np.mean(self.u**2))), 1.0)
         self.work = problem.workspace()
-        here = self._jacobian((problem.kernels, problem.data, self.work), self.u)
+        here = self._jacobian(problem, self.work, self.u)
         if here is None:
             raise ValueError("the equations cannot be evaluated here")
         self.J = here
@@ -110,7 +116,6 @@ class Forms:
             self.open = embedding.problem
             self.open_work = self.open.workspace()
             self.whole = np.array(embedding.u, dtype=float) / self._twice
-        self.open_calls = (self.open.kernels, self.open.data, self.open_work)
         self.lines: dict[bytes, Line] = {}
         self._nulls: dict[complex, tuple[np.ndarray, np.ndarray]] = {}
 
@@ -130,9 +135,9 @@ class Forms:
         """Of the unknowns of one period, or of two."""
         return self.units if count == self.n else self._twice
 
-    def _jacobian(self, calls: tuple[Any, Any, Any], u: np.ndarray) -> np.ndarray | None:
-        """The Jacobian of a problem, given by its kernels, data and workspace."""
-        kernels, data, work = calls
+    def _jacobian(self, problem: Problem, work: object, u: np.ndarray) -> np.ndarray | None:
+        """The Jacobian of a problem, in its workspace."""
+        kernels, data = problem.kernels, problem.data
         here = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
         if not math.isfinite(kernels.linearise(data, here, self.p, work)):
             return None
@@ -173,7 +178,7 @@ class Forms:
             def rows(points: np.ndarray) -> np.ndarray | None:
                 found = []
                 for u in points:
-                    here = self._jacobian(self.open_calls, u)
+                    here = self._jacobian(self.open, self.open_work, u)
                     if here is None:
                         return None
                     found.append(here[: self.n])
@@ -223,10 +228,9 @@ class Forms:
                     return np.asarray(self.open.residuals(moved, self.p), dtype=float)[: self.n] / rows
                 except (ValueError, ArithmeticError):
                     return np.full(self.n, np.nan)
-        kernels, data, work = self.open_calls
-        if not math.isfinite(kernels.linearise(data, moved, self.p, work)):
+        if not math.isfinite(self.open.kernels.linearise(self.open.data, moved, self.p, self.open_work)):
             return np.full(self.n, np.nan)
-        return np.array(work[0].reshape(-1)[: self.n]) / rows
+        return np.array(self.open_work[0].reshape(-1)[: self.n]) / rows
 
     @cached_property
     def _carrier(self) -> np.ndarray:
@@ -240,7 +244,7 @@ class Forms:
         line, weight, x = self.line(v, 1.0), float(w @ self.K @ v) or np.nan, self.extended(v, 1.0)
         value = -0.5 * float(w @ line.second @ x) / weight
         # as if the second derivative pointed along the left null vector: at a cusp it may vanish, then the third one counts
-        size = float(np.linalg.norm(line.second @ x) + NEAR * np.linalg.norm(line.third @ x))
+        size = float(np.linalg.norm(line.second @ x) + NORMAL_FORMS.step * np.linalg.norm(line.third @ x))
         return self._timed(
             value, abs(0.5 * self.n * line.second_error * _size(v) / weight), 0.5 * size / abs(weight)
         )
@@ -272,7 +276,7 @@ class Forms:
     @staticmethod
     def _solve(matrix: np.ndarray, side: np.ndarray) -> np.ndarray:
         """A solution, of least length where the matrix is singular."""
-        return np.linalg.lstsq(matrix, side, rcond=1e-10)[0]
+        return np.linalg.lstsq(matrix, side, rcond=NORMAL_FORMS.cutoff)[0]
 
     # ------------------------------------------------------------------ a pair
     def lyapunov(self, multiplier: complex) -> tuple[Coefficient, complex]:
@@ -307,11 +311,9 @@ class Forms:
 
     def _pair(self, multiplier: complex) -> Pair:
         q, w = self.null(multiplier)
-        # the phase in which real and imaginary parts are orthogonal
-        square = np.sum(q * q)
-        q = q * np.exp(-0.5j * np.angle(square)) if abs(square) > np.finfo(float).tiny else q
-        one: Any = self.extended(q, multiplier)
-        a, b = self.line_of(one.real), self.line_of(one.imag)
+        q = in_phase(q)
+        one = self.extended(q, multiplier)
+        a, b = self.line_of(np.real(one)), self.line_of(np.imag(one))
         twice = 2.0 * multiplier if self.flow else multiplier**2
         h20 = np.linalg.solve(self.closed_by(twice), -((a.second + 1j * b.second) @ one))
         return Pair(one, w, a, b, h20, complex(w @ self.K @ q))

@@ -25,18 +25,18 @@ Source: Kuznetsov, Elements of Applied Bifurcation Theory, 3rd ed., chapters 8 a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .coefficients import Forms
-from .manifold import Monomial, reduced
+from .coefficients import Forms, in_phase
+from .manifold import Monomial, Series, reduced
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 
-NEAR = 1e-4  # distance at which a multiplier is one of those that a strong resonance has
+OTHER = 0.1  # distance of a multiplier from a strong resonance that is another one, as of a half map
 #: of flows, how the coefficients grow with the unit of rates; those that are not named do not
 RATES: dict[str, dict[str, int]] = {
     "cusp": {"c": 1},
@@ -103,10 +103,10 @@ def _both(forms: Forms, value: complex) -> list[complex]:
 
 def _simple(
     forms: Forms,
-    values: list[Any],
+    values: Sequence[complex],
     stay: list[tuple[int, Monomial]],
     degree: int,
-    wanted: Callable[[Any], dict[str, float]],
+    wanted: Callable[[Series], dict[str, float]],
 ) -> dict[str, float]:
     """The reduction for simple multipliers, conjugate ones in a row; what stays for one of a pair stays for the other."""
     m = len(values)
@@ -115,8 +115,7 @@ def _simple(
     while i < m:
         vector, _ = forms.null(values[i])
         if np.imag(values[i]) != 0.0:
-            square = np.sum(vector * vector)  # the phase in which real and imaginary parts are orthogonal
-            vector = vector * np.exp(-0.5j * np.angle(square)) if abs(square) > 1e-12 else vector
+            vector = in_phase(vector)
             vectors += [vector, vector.conj()]
             real[i : i + 2, i : i + 2] = CONJUGATE
             partner[i], partner[i + 1] = i + 1, i
@@ -158,19 +157,19 @@ def _resonance(forms: Forms, pairs: list[complex]) -> dict[str, float]:
         return _double(forms, 0.0, 2, ("a", "b"))
     value = pairs[0] if pairs else None
     for place in (THIRD, QUARTER):
-        if value is not None and abs(value - place) < NEAR:
+        if value is not None and abs(value - place) < OTHER:
             return _third(forms) if place == THIRD else _fourth(forms)
     smallest = {
         factor: np.linalg.svd(forms.closed_by(factor), compute_uv=False)[-1] for factor in (1.0, -1.0)
     }
     factor = min(smallest, key=lambda key: smallest[key])
-    if value is not None and abs(value - factor) > 0.1:
+    if value is not None and abs(value - factor) > OTHER:
         return {}  # of a half map, for which the resonance is a weak one
     return _double(forms, factor, 2, ("a", "b")) if factor > 0.0 else _double(forms, factor, 3, ("c", "d"))
 
 
 def _third(forms: Forms) -> dict[str, float]:
-    def wanted(N: Any) -> dict[str, float]:
+    def wanted(N: Series) -> dict[str, float]:
         b, c = N[(0, 2)][0], N[(2, 1)][0]
         return {"b": abs(b), "a": ((c / THIRD).real / abs(b) ** 2 - 1.0) / 3.0}
 
@@ -178,7 +177,7 @@ def _third(forms: Forms) -> dict[str, float]:
 
 
 def _fourth(forms: Forms) -> dict[str, float]:
-    def wanted(N: Any) -> dict[str, float]:
+    def wanted(N: Series) -> dict[str, float]:
         A = -1j * N[(2, 1)][0] / abs(N[(0, 3)][0])
         return {"A_re": A.real, "A_im": A.imag}
 
@@ -188,7 +187,7 @@ def _fourth(forms: Forms) -> dict[str, float]:
 def _degenerate_pair(forms: Forms, value: complex) -> dict[str, float]:
     own = _on_boundary(forms, value)
 
-    def wanted(N: Any) -> dict[str, float]:
+    def wanted(N: Series) -> dict[str, float]:
         first, second = N[(2, 1)][0], N[(3, 2)][0]
         if forms.flow:
             return {"l1": first.real / own.imag, "l2": second.real / own.imag}
@@ -202,7 +201,7 @@ def _fold_flip(forms: Forms) -> dict[str, float]:
     stay = [(0, (2, 0)), (0, (0, 2)), (1, (1, 1)), (0, (3, 0)), (0, (1, 2)), (1, (2, 1)), (1, (0, 3))]
     factors = (2.0, 2.0, 1.0, 6.0, 2.0, 2.0, 6.0)
 
-    def wanted(N: Any) -> dict[str, float]:
+    def wanted(N: Series) -> dict[str, float]:
         return {
             name: factor * N[exponents][i].real
             for name, factor, (i, exponents) in zip("abecdfg", factors, stay)
@@ -216,7 +215,7 @@ def _fold_and_pair(forms: Forms, value: complex) -> dict[str, float]:
     stay += [(1, (1, 1, 0)), (1, (2, 1, 0)), (1, (0, 2, 1))]
     turn = 1.0 if forms.flow else _on_boundary(forms, value)
 
-    def wanted(N: Any) -> dict[str, float]:
+    def wanted(N: Series) -> dict[str, float]:
         b, c, g1, g2 = (N[exponents][0].real for _, exponents in stay[:4])
         D, h1, h2 = (N[exponents][1] / turn for _, exponents in stay[4:])
         found = {"b": b, "c": c, "s": float(np.sign(b * c)), "theta": D.real / b}
@@ -242,9 +241,9 @@ def _amplitudes(forms: Forms, values: list[complex]) -> dict[str, float]:
         (first, (*none, 2, 1)),
     ]
 
-    def wanted(N: Any) -> dict[str, float]:
+    def wanted(N: Series) -> dict[str, float]:
         turns = (1.0, 1.0) if forms.flow else (values[0], values[first])
-        p = [(N[exponents][i] / turns[0 if i == 0 else 1]).real for i, exponents in stay]
+        p = [float((N[exponents][i] / turns[0 if i == 0 else 1]).real) for i, exponents in stay]
         return {
             "p11": p[0],
             "p12": p[1],

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...problems.protocol import Problem
+from ..settings import NORMAL_FORMS
 from .coefficients import Forms
 
 
@@ -28,14 +29,13 @@ class Pitch(NamedTuple):
     note: str
 
 
-RESONANT = 2e-3  # angle between a pair and a strong resonance at which the coefficient no longer decides
 STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
 
 
 def strong_resonance(multiplier: complex) -> str:
     """The strong resonance at which a multiplier of the full period is, "1:3" for example; "" for none."""
     angle = abs(float(np.angle(multiplier)))
-    return next((n for n, place in STRONG.items() if abs(angle - place) < RESONANT), "")
+    return next((n for n, place in STRONG.items() if abs(angle - place) < NORMAL_FORMS.resonant), "")
 
 
 def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
@@ -110,4 +110,8 @@ def cubic_form(problem: Problem, u: np.ndarray, p: float, flip: bool) -> float |
         found = Forms(problem, u, p).cubic(factor)
     except (ValueError, IndexError, np.linalg.LinAlgError):
         return None
-    return float(found.value) if np.isfinite(found.value) and found.error < 1e-3 * abs(found.value) else None
+    return (
+        float(found.value)
+        if np.isfinite(found.value) and found.error < NORMAL_FORMS.unsure * abs(found.value)
+        else None
+    )

@@ -16,21 +16,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from itertools import combinations_with_replacement, product
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import qr
 
+from ...shared.floating_point import TINY
+from ..settings import NORMAL_FORMS
+
+if TYPE_CHECKING:
+    from .coefficients import Forms
+
 NODES = 26  # samples along a line
 SPREAD = 1.3  # directions per monomial
 CANDIDATES = 8  # random directions from which each is chosen
-WIDEST, NARROWEST, NARROWER = (
-    0.6,
-    4e-3,
-    0.7,
-)  # radii of the samples, the first one relative to the reach of the equations
-ENOUGH = 1e-10  # relative change of the coefficients from one radius to the next that asks for no other
-CUTOFF = 1e-9  # singular values below this are zeros
+WIDEST, NARROWER = 0.6, 0.7  # radii of the samples, the first one relative to the reach of the equations
 
 Monomial = tuple[int, ...]
 Series = dict[Monomial, np.ndarray]
@@ -96,7 +96,7 @@ class Reduction:
 
     def __init__(
         self,
-        forms: Any,
+        forms: Forms,
         vectors: np.ndarray,
         linear: np.ndarray,
         real: np.ndarray,
@@ -136,7 +136,7 @@ class Reduction:
         lines = directions(self.m, degree)
         nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
         points = lines @ self.real.T
-        sizes = np.abs(points).max(axis=1) * max(float(np.abs(self.vectors).max()), np.finfo(float).tiny)
+        sizes = np.abs(points).max(axis=1) * max(float(np.abs(self.vectors).max()), TINY)
         radii = self.radius / sizes
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
             samples = self._rest(
@@ -176,7 +176,7 @@ class Reduction:
             lefts = [forms.null(table[group[0], group[0]])[1] for _ in allowed]
             rows = np.array([np.append(w @ forms.K, np.zeros(len(allowed))) for w in lefts])
             matrix, side = np.vstack([matrix, rows]), np.append(side, np.zeros(len(allowed)))
-        found = np.linalg.lstsq(matrix, side, rcond=CUTOFF)[0]
+        found = np.linalg.lstsq(matrix, side, rcond=NORMAL_FORMS.cutoff)[0]
         for row, b in enumerate(group):
             self.H[wanted[b]] = found[row * n : (row + 1) * n]
         for k, (i, b) in enumerate(allowed):
@@ -219,7 +219,7 @@ def fit_weights(degree: int) -> np.ndarray:
 
 
 def reduced(
-    forms: Any,
+    forms: Forms,
     vectors: np.ndarray,
     linear: np.ndarray,
     real: np.ndarray,
@@ -248,7 +248,7 @@ def reduced(
         lengths[:] = lengths[0]  # a Jordan chain
     best: dict[Monomial, np.ndarray] = {}
     error, before = np.inf, None
-    steps = int(np.ceil(np.log(NARROWEST / (WIDEST * forms.reach)) / np.log(NARROWER)))
+    steps = int(np.ceil(np.log(NORMAL_FORMS.narrowest / (WIDEST * forms.reach)) / np.log(NARROWER)))
     for radius in WIDEST * forms.reach * NARROWER ** np.arange(steps + 1):
         try:
             own = Reduction(forms, vectors / lengths, linear, real, stay, radius).to(degree).N
@@ -256,15 +256,15 @@ def reduced(
             continue
         now = dict(wanted(own))
         if before is not None:
-            sizes = 1e-12 + max(abs(v) for v in now.values())
+            sizes = max(TINY, *map(abs, now.values()))
             change = max(abs(now[name] - before[name]) for name in now) / sizes
             if change < error:
                 error, best = change, own
-                if error < ENOUGH:
+                if error < NORMAL_FORMS.enough:
                     break
             elif change > 100.0 * error:
                 break
         before = now
-    if not error < 1e-2:
+    if not error < NORMAL_FORMS.digits:
         raise ValueError("the coefficients are not known to two digits")
     return dict(wanted({a: part * np.prod(lengths ** np.array(a)) / lengths for a, part in best.items()}))

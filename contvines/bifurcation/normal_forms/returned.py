@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,8 +30,9 @@ class ReturnForms(Forms):
     Critical vectors have unit length as states.
     """
 
-    def __init__(self, problem: Any, u: np.ndarray, p: float, rough: bool = False) -> None:
+    def __init__(self, problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> None:
         self.problem, self.p, self.rough = problem, float(p), rough
+        assert isinstance(problem, Returning)
         self.returns = problem.return_map(u, p)
         self.n = self.returns.basis.shape[1]
         self.flow, self.rate, self.reach = False, 1.0, 1.0

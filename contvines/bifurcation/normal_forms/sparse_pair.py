@@ -12,14 +12,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from .coefficients import Coefficient
-from .taylor import ENOUGH, NODES, RADIUS, SMALLER, derivative_weights, nodes
+from ...shared.floating_point import EPSILON
+from ..settings import NORMAL_FORMS
+from .coefficients import Coefficient, in_phase
+from .taylor import NODES, RADIUS, SMALLER, derivative_weights, nodes
 
 if TYPE_CHECKING:
     from ...problems.protocol import Problem
@@ -28,6 +30,7 @@ RADII = 14  # at most
 WORSE = 8.0  # growth of the change from one radius to the next at which rounding has taken over
 SWEEPS = 12  # of inverse iteration, at most
 
+Solve = Callable[[np.ndarray], np.ndarray]
 Products = Callable[[np.ndarray, np.ndarray], "np.ndarray | None"]
 
 
@@ -53,7 +56,7 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
     rate = 1.0 if scales is None else float(scales.rate)
     work, data = problem.workspace(), problem.data
 
-    def jacobian(v: np.ndarray) -> Any:
+    def jacobian(v: np.ndarray) -> sp.csr_array | None:
         known = math.isfinite(problem.kernels.linearise(data, v * units, p, work))
         return work.jacobian if known else None
 
@@ -71,9 +74,8 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
         )
 
     matrix = (sp.diags_array(1.0 / (rate * units)) @ base @ sp.diags_array(units)).tocsc()
-    value, q, w = _null(matrix, critical / rate)
-    q = q / problem.amplitude(q * units)
-    q = q * np.exp(-0.5j * np.angle(np.sum(q * q)))  # real and imaginary part are orthogonal now
+    value, q, w = _null(matrix, critical / rate, len(u))
+    q = in_phase(q / problem.amplitude(q * units))
     omega = value.imag
     solve = _factors(matrix), _factors(matrix - 2j * omega * sp.eye_array(len(u)))
     reach = max(float(np.sqrt(np.mean(here**2))), 1.0)
@@ -85,7 +87,7 @@ def _coefficient(
     u: np.ndarray,
     pair: tuple[np.ndarray, np.ndarray],
     omega: float,
-    solve: tuple[Any, Any],
+    solve: tuple[Solve, Solve],
     reach: float,
 ) -> Coefficient:
     """l1 from the radius of the samples at which it is known best, and its change to the next one."""
@@ -100,7 +102,7 @@ def _coefficient(
                 best = Coefficient(before / omega, change)
             elif change > WORSE * best.error:
                 break
-            if change <= ENOUGH * abs(best.value):
+            if change <= NORMAL_FORMS.enough * abs(best.value):
                 break
         before, radius = now, SMALLER * radius
     if not np.isfinite(best.error):
@@ -109,7 +111,7 @@ def _coefficient(
 
 
 def _at_radius(
-    changes: Products, u: np.ndarray, q: np.ndarray, w: np.ndarray, solve: tuple[Any, Any], radius: float
+    changes: Products, u: np.ndarray, q: np.ndarray, w: np.ndarray, solve: tuple[Solve, Solve], radius: float
 ) -> float | None:
     """Re c from samples up to a radius; None where the equations cannot be evaluated there."""
     parts = np.column_stack([np.real(q), np.imag(q)])
@@ -146,7 +148,7 @@ def _derivatives(
     return one / radius, two / radius**2
 
 
-def _factors(matrix: Any) -> Callable[[np.ndarray], np.ndarray]:
+def _factors(matrix: sp.csc_array) -> Solve:
     """What solves with a sparse matrix, real or complex sides."""
     try:
         factors = splu(matrix.tocsc().astype(complex))
@@ -155,11 +157,10 @@ def _factors(matrix: Any) -> Callable[[np.ndarray], np.ndarray]:
     return lambda side: factors.solve(np.asarray(side, dtype=complex))
 
 
-def _null(matrix: Any, value: complex) -> tuple[complex, np.ndarray, np.ndarray]:
+def _null(matrix: sp.csc_array, value: complex, n: int) -> tuple[complex, np.ndarray, np.ndarray]:
     """An eigenvalue that is nearly known, its right and its left eigenvector, by inverse iteration."""
-    n, size = matrix.shape[0], float(abs(matrix).max())
-    one = sp.eye_array(n)
-    for offset in (0.0, 1e-14 * size * (1.0 + 0.3j)):
+    size, one = float(abs(matrix).max()), sp.eye_array(n)
+    for offset in (0.0, 64.0 * EPSILON * size * (1.0 + 0.3j)):
         try:
             factors = splu((matrix - (value + offset) * one).tocsc().astype(complex))
             break

@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..settings import NORMAL_FORMS
+
 NODES = 12
 FEW = 5  # nodes where a few digits do
 RADIUS = 0.4  # relative to the scale of the unknowns
 SMALLER = 0.6
-ENOUGH = 1e-10  # relative difference of two radii that asks for no other
 ROUGH = 0.02  # of the largest radius
 
 
@@ -74,7 +75,9 @@ def along_line(
                 best = Line(*wide, *errors)
             elif errors[1] > 8.0 * best.third_error:
                 break
-            if all(error <= ENOUGH * float(np.abs(part).max()) for error, part in zip(errors, wide)):
+            if all(
+                error <= NORMAL_FORMS.enough * float(np.abs(part).max()) for error, part in zip(errors, wide)
+            ):
                 break
         radius *= SMALLER
     return best

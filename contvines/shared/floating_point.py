@@ -1,0 +1,12 @@
+"""Facts of double precision, by name."""
+
+import sys
+
+EPSILON = sys.float_info.epsilon
+"""Distance from one to the next number: relative error of a rounding, twice over."""
+ROUNDED = 64.0 * EPSILON
+"""Relative size of what is rounding after some tens of operations."""
+TINY = sys.float_info.min
+"""The smallest number with all its digits: stands for a zero that is divided by."""
+CENTRAL = EPSILON ** (1.0 / 3.0)
+"""Relative step of a central difference at which rounding and the third derivative weigh the same (Nocedal and Wright, section 8.1)."""
