@@ -12,6 +12,7 @@ from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..problems.abilities import Nearing
+from ..shared.floating_point import EPSILON
 from .consistency import at_one, inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, pointed, suspicious
 from .locate import locate
@@ -298,4 +299,4 @@ def before_stop(events: list[Located]) -> list[Located]:
 
 def _inside(position: float) -> float:
     """The position in [0, 1): an interpolated point may lie just outside of its segment."""
-    return min(max(position, 0.0), 1.0 - np.finfo(float).eps)
+    return min(max(position, 0.0), 1.0 - EPSILON)

@@ -17,10 +17,11 @@ import numpy as np
 from ..continuation.aims import NO_COLUMNS, SIGN, Aim
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Doubtful
+from ..shared.floating_point import EPSILON, TINY
 from .locate import Root, locate, locate_singular
 from .segment import Segment
 
-ROUNDING = 64 * 2.0**-53  # of entries
+ROUNDING = 32.0 * EPSILON  # of entries
 FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
 NOISY = 1e-4  # ... and times the noise of the equations, which keeps matrices from being singular
 WIDTH = 0.02  # part of a segment, either side of a place that is known already
@@ -45,7 +46,7 @@ class DeterminantTest:
         x = engine.apply_inverse(self.border, self.side)
         if self.row is None:
             x2 = engine.apply_inverse(self.border, np.append(x[:-1], 0.0))
-            self.row = x2 / max(float(np.abs(x2).max()), np.finfo(float).tiny)
+            self.row = x2 / max(float(np.abs(x2).max()), TINY)
         value = float(self.row @ x)
         return 1.0 / value if value != 0.0 else np.nan
 

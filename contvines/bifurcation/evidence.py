@@ -12,11 +12,11 @@ import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.layout import MARGIN
+from ..shared.floating_point import TINY
 from .multiplier_counts import balance
 from .scan import Scan, Spectra
 
 UNLIKE = 0.2  # part of the largest of three distances of a pair by which its bend may differ between them
-TINY = np.finfo(float).tiny  # stands for zero where a logarithm or a bend is taken
 NEARBY = np.log(
     2.0
 )  # distance from the circle of a pair that may have been past it since two real multipliers met

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from ..continuation.aims import MARGINS, Aim
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
+from ..shared.floating_point import EPSILON
 from .kinds import BORDERS
 from .locate import Root, locate
 from .segment import Segment
 
-MARGIN_ROUNDING = 2.0 * np.finfo(float).eps  # of margins, in units of the machine's own size
+MARGIN_ROUNDING = 2.0 * EPSILON  # of margins, in units of the machine's own size
 TOLD = 10.0  # times that: a difference of margins which is no rounding
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 

@@ -10,11 +10,12 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Blurred, Doubtful
+from ..shared.floating_point import EPSILON
 from .located import Located
 from .segment import Segment
 from .settings import LOCATING
 
-ENTRY = 2.0**-50  # relative error of an entry: of several roundings, half a unit in the last place each
+ENTRY = 4.0 * EPSILON  # relative error of an entry: of several roundings, half a unit in the last place each
 
 
 def blurred(segment: Segment, event: Located, test: Callable[[Solved], float]) -> Located:

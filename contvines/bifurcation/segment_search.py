@@ -10,6 +10,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
+from ..shared.floating_point import EPSILON, TINY
 from .consistency import at_one, unaccounted, unresolved
 from .determinant import singular
 from .evidence import Evidence, evidence, parabola_dips
@@ -28,7 +29,6 @@ from .symmetry_test import SymmetryTest
 if TYPE_CHECKING:
     from .user_functions import Own, UserFunction
 
-TINY = float(np.finfo(float).tiny)
 PLACES = np.arange(1, 8) / 8.0  # of a segment at which its inside is looked at
 NARROWER, ROOF = (
     3,
@@ -343,5 +343,5 @@ def _drowned(engine: Engine, point: Solved) -> bool:
     if abs(engine.smallest_margin(point.row)) >= engine.settings.inside:
         return False
     sizes = np.sort(np.abs(engine.spectrum(point.row)))
-    near = np.abs(sizes[:-1] - 1.0).min(initial=np.inf) <= np.finfo(float).eps * sizes.max(initial=0.0)
+    near = np.abs(sizes[:-1] - 1.0).min(initial=np.inf) <= EPSILON * sizes.max(initial=0.0)
     return bool(near or not np.isfinite(sizes).all())

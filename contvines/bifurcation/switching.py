@@ -12,6 +12,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..problems.protocol import Problem
+from ..shared.floating_point import EPSILON, ROUNDED
 
 KERNEL = 4  # null vectors that are followed at most
 MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
@@ -20,10 +21,8 @@ GRAZING = 1e4  # ... if nothing is found at that
 # the branch that is known bends away, and is met again at a distance that grows like the root of the amplitude
 LEAST = 1.6
 ATTEMPTS = 22  # halvings of the amplitude
-ROUNDING = float(np.finfo(float).eps)
-UPRIGHT = 64.0 * ROUNDING  # a change of the parameter, in its unit, that is none
 MISSED = 0.1  # times the amplitude: how far off the hyperplane a first point may be
-ASIDE = (4.0 * ROUNDING, -16.0 * ROUNDING, 64.0 * ROUNDING, -128.0 * ROUNDING)  # of the unknowns
+ASIDE = (4.0 * EPSILON, -16.0 * EPSILON, 64.0 * EPSILON, -128.0 * EPSILON)  # of the unknowns
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,7 @@ class Departure:
     def upright(self, unit: float, visible: float) -> bool:
         """Whether the parameter, in this unit, does not change along the branch, over more than the `visible` length."""
         moved = max(abs(self.ahead.p - self.origin.p), abs(self.slope) * self.amplitude)
-        return moved <= UPRIGHT * unit and self.amplitude > visible
+        return moved <= ROUNDED * unit and self.amplitude > visible
 
 
 def null_vectors(

@@ -8,5 +8,7 @@ ROUNDED = 64.0 * EPSILON
 """Relative size of what is rounding after some tens of operations."""
 TINY = sys.float_info.min
 """The smallest number with all its digits: stands for a zero that is divided by."""
+PIVOT = 1e-300
+"""Stands for a pivot that is zero; native/ has the same."""
 CENTRAL = EPSILON ** (1.0 / 3.0)
 """Relative step of a central difference at which rounding and the third derivative weigh the same (Nocedal and Wright, section 8.1)."""

@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from ...shared.floating_point import EPSILON
+from ...shared.floating_point import ROUNDED
 from ..settings import NORMAL_FORMS
 from .coefficients import Coefficient, in_phase
 from .taylor import NODES, RADIUS, SMALLER, derivative_weights, nodes
@@ -160,7 +160,7 @@ def _factors(matrix: sp.csc_array) -> Solve:
 def _null(matrix: sp.csc_array, value: complex, n: int) -> tuple[complex, np.ndarray, np.ndarray]:
     """An eigenvalue that is nearly known, its right and its left eigenvector, by inverse iteration."""
     size, one = float(abs(matrix).max()), sp.eye_array(n)
-    for offset in (0.0, 64.0 * EPSILON * size * (1.0 + 0.3j)):
+    for offset in (0.0, ROUNDED * size * (1.0 + 0.3j)):
         try:
             factors = splu((matrix - (value + offset) * one).tocsc().astype(complex))
             break
