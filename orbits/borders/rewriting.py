@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.contacts.changes import Spot
-from orbits.flows.protocol import FIRST
 from orbits.orbit import Orbit
+from orbits.settings import GROWING
 from orbits.words.margins import place_of
 from orbits.words.rewriting import Edit, applied, changes_at, spliced
 from orbits.words.word import Word
@@ -81,4 +81,4 @@ def _instant(spot: Spot, start: int, passed: np.ndarray) -> float:
     assert event is not None  # nothing is met where events give way to others
     place = event - start
     ahead = 0.5 * (passed[place + 1] - passed[place]) if spot.between else 0.0
-    return float(passed[place] + ahead + spot.later * FIRST)
+    return float(passed[place] + ahead + spot.later * GROWING.first)

@@ -16,9 +16,6 @@ if TYPE_CHECKING:
 Mode = Any
 """What the contacts do between two events; read and written by the alphabet (`orbits.words.alphabet`)."""
 
-SHORT = 1e-4  # clock of a stick, or between a turn and the stick after it, that is about to vanish
-CLOSE = 1e-2  # of two events of one contact between which nothing else can be: slip and stick, two crossings
-
 
 class What(Enum):
     """What happens to the word; the value is the sentence."""

@@ -8,8 +8,9 @@ from heapq import heappop, heappush
 from typing import NamedTuple
 
 from contvines.shared.near_names import hinted
-from orbits.contacts.changes import CLOSE, SHORT, Change, Grows, Site, Spot, What
+from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN, Letter
+from orbits.settings import GROWING
 
 SLIDE_BACK, STUCK, SLIDE_ON, ABSENT = -1, 0, 1, 2  # modes; ABSENT: the limit is zero
 
@@ -135,7 +136,7 @@ class FrictionLaw:
             if (
                 site.is_event(following, j, STICK)
                 and following + 1 < len(word)
-                and site.lengths[following] < SHORT
+                and site.lengths[following] < GROWING.short
             ):
                 return self._stick(site, following, j)  # it comes to rest where a stick is about to vanish
             events = (text_of(j, STICK), text_of(j, SLIP))
@@ -150,7 +151,7 @@ class FrictionLaw:
             return self._turn(site, place, j)
         if letter.kind == STICK and place + 1 < len(site.word):
             return self._stick(site, place, j)
-        vanishing = site.is_event(place - 1, j, STICK) and site.lengths[place - 1] < SHORT
+        vanishing = site.is_event(place - 1, j, STICK) and site.lengths[place - 1] < GROWING.short
         return self._stick(site, place - 1, j) if letter.kind == SLIP and vanishing else []
 
     def collapsed(self, site: Site, j: int) -> list[Change]:
@@ -185,16 +186,16 @@ class FrictionLaw:
         word, text_of = site.word, site.word.alphabet.text_of
         stick, turn = word.events[place], text_of(j, TURN)
         before, gap = site.entry(place - 1, j), site.lengths[place - 1]
-        if site.is_event(place - 1, j, TURN) and gap < SHORT:
+        if site.is_event(place - 1, j, TURN) and gap < GROWING.short:
             held, spots = (word.mode(place),), (Spot(place),)
             return [Change(place - 1, place + 1, (stick,), held, spots, Grows.MARGIN, What.TURN_DISAPPEARS)]
-        if site.is_event(place - 1, j, SLIP) and gap < CLOSE:
+        if site.is_event(place - 1, j, SLIP) and gap < GROWING.close:
             other = Change(place - 1, place + 1, (), (), (), Grows.MARGIN, What.SLIP_VANISHES)
         else:
             modes = (site.mode(place - 1, j, -before), word.mode(place))
             spots = (Spot(place), Spot(place, later=1.0))
             other = Change(place, place + 1, (turn, stick), modes, spots, Grows.GAP, What.TURN_APPEARS)
-        if not site.is_event(place + 1, j, SLIP) or site.lengths[place] >= SHORT:
+        if not site.is_event(place + 1, j, SLIP) or site.lengths[place] >= GROWING.short:
             return [other]  # the stick still lasts: what vanishes is the reserve of friction where it begins
         if site.entry(place + 1, j) == before:
             gone = Change(place, place + 2, (), (), (), Grows.MARGIN, What.STICK_DISAPPEARS)

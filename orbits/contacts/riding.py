@@ -6,8 +6,9 @@ and another one after it. Where it sticks and slips on, the crossing comes eithe
 
 from __future__ import annotations
 
-from orbits.contacts.changes import CLOSE, Change, Grows, Site, Spot, What
+from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import SLIP, STICK, SWITCH, TURN
+from orbits.settings import GROWING
 
 
 def touched(site: Site, j: int, k: int) -> list[Change]:
@@ -42,8 +43,8 @@ def withdrawn(site: Site, j: int) -> list[Change]:
 def _withdrawn(site: Site, j: int, at: int) -> list[Change]:
     word = site.word
     stop = at + 1 if word.letter(at).kind == TURN else at + 2
-    before = site.is_event(at - 1, j, SWITCH) and site.lengths[at - 1] < CLOSE
-    after = site.is_event(stop, j, SWITCH) and site.lengths[stop - 1] < CLOSE
+    before = site.is_event(at - 1, j, SWITCH) and site.lengths[at - 1] < GROWING.close
+    after = site.is_event(stop, j, SWITCH) and site.lengths[stop - 1] < GROWING.close
     inner = range(at, stop)
     events = tuple(word.events[i] for i in inner)
     spots = tuple(Spot(i) for i in inner)

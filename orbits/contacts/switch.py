@@ -7,9 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from contvines.shared.near_names import hinted
-from orbits.contacts.changes import CLOSE, Change, Grows, Site, Spot, What
+from orbits.contacts.changes import Change, Grows, Site, Spot, What
 from orbits.contacts.letters import SWITCH, Letter
 from orbits.contacts.riding import touched, withdrawn
+from orbits.settings import GROWING
 
 
 class NotAlternating(ValueError):
@@ -104,7 +105,7 @@ class SwitchLaw:
     def met(self, site: Site, j: int) -> list[Change]:
         """A flight touches the surface: two crossings are born."""
         word = site.word
-        if len(word) and site.lengths[site.place] < CLOSE:
+        if len(word) and site.lengths[site.place] < GROWING.close:
             found = self.collapsed(site, j)
             if found:
                 return found
@@ -112,7 +113,7 @@ class SwitchLaw:
             return touched(site, j, word.letter(site.at).contact)
         if site.at >= 0 and (word.letter(site.at).contact, j) in word.alphabet.flips:
             return [self._beside(site, j)]
-        if len(word) and site.lengths[site.place] < CLOSE:
+        if len(word) and site.lengths[site.place] < GROWING.close:
             return []
         mode, start = word.mode(site.place), site.place + 1 if len(word) else 0
         here, text_of = site.entry(site.place, j), word.alphabet.text_of
@@ -139,7 +140,10 @@ class SwitchLaw:
         for first in (site.place, site.place - 1):
             if first < 0 or first + 1 >= len(word):
                 continue
-            if word.letter(first).contact == word.letter(first + 1).contact and site.lengths[first] < CLOSE:
+            if (
+                word.letter(first).contact == word.letter(first + 1).contact
+                and site.lengths[first] < GROWING.close
+            ):
                 found.append(Change(first, first + 2, (), (), (), Grows.MARGIN, What.CROSSINGS_VANISH))
         return found
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from orbits.numbers import SMALLEST
+
 if TYPE_CHECKING:
     from orbits.arguments import CycleData, Workspace
-
-TINY = 1e-300
 
 
 def bordered(
@@ -40,7 +40,7 @@ def bordered(
         particular, null, sign = solutions(work.F, work.A, work.D, work.Q, data.twist)
         along, across = float(border @ null), float(border @ particular)
         if along == 0.0:
-            along, sign = TINY, 0.0
+            along, sign = SMALLEST, 0.0
         step[:] = particular + (target - across) / along * null
         tangent[:] = null / along
         return float(sign if along > 0.0 else -sign)
@@ -86,7 +86,7 @@ def factorised(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
     """Q, R of a tall matrix, complete, no diagonal entry of R zero; and the determinant's sign of Q and the diagonal together."""
     rotation, triangle = np.linalg.qr(matrix, mode="complete")
     diagonal = np.einsum("ii->i", triangle[: matrix.shape[1]])  # a view
-    diagonal[np.abs(diagonal) < TINY] = TINY
+    diagonal[np.abs(diagonal) < SMALLEST] = SMALLEST
     return rotation, triangle, float(np.linalg.slogdet(rotation)[0] * np.prod(np.sign(diagonal)))
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-SMALL = 1e-7
-"""Length of a step that is taken whatever it does to the residual."""
+from orbits.settings import SOLVING
+
 FLAT = 2
 """Steps from a solution to itself after which its residual is roundoff."""
 
@@ -64,13 +64,13 @@ class PlainKernels(ABC):
                 trials += 1
                 trial, q = u + share * step[:-1], p + share * float(step[-1])
                 found = self.linearise(data, trial, q, work)
-                if found < residual or length < SMALL or share < 0.02:
+                if found < residual or length < SOLVING.free_step or share < 0.02:
                     break
                 share *= 0.5
             idle += trials if found > 0.5 * residual else 0
             flat += 0.5 * residual < found < self.accepted
             u[:], p, residual = trial, q, found
-            if length * share < tolerance or (residual < 1e-14 and length < 1e-9):
+            if length * share < tolerance or (residual < SOLVING.rounding and length < SOLVING.near):
                 return residual, iteration + 1, p
         return residual if residual < self.accepted else math.inf, limit, p
 

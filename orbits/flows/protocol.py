@@ -319,7 +319,6 @@ def later(
 
 PLAIN = (1.0, 1.0)
 """Length and rate of unknowns that are counted in the machine's own units."""
-FIRST = 2e-3  # size of what grows from nothing beyond a border: clock, or speed in the machine's own units
 
 
 class Vanishing(NamedTuple):

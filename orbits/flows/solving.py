@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.flows.protocol import Equations
+from orbits.settings import SOLVING
 
 
 def newton(
@@ -12,7 +13,7 @@ def newton(
     guess: np.ndarray,
     p: float,
     border: np.ndarray | None = None,
-    tolerance: float = 1e-13,
+    tolerance: float = SOLVING.last_step,
     limit: int = 40,
 ) -> tuple[np.ndarray, float, float, np.ndarray]:
     """Solve F(u, p) = 0 at fixed p, or in the hyperplane of `border` through the guess.
@@ -39,7 +40,7 @@ def newton(
 
 
 def solved_at(
-    system: Equations, guess: np.ndarray, p: float, tolerance: float = 1e-12, limit: int = 40
+    system: Equations, guess: np.ndarray, p: float, tolerance: float = SOLVING.last_step, limit: int = 40
 ) -> tuple[np.ndarray, float]:
     """Solution at a parameter value, and its residual (infinite if there is none)."""
     u, _, residual, _ = newton(system, guess, p, None, tolerance, limit)

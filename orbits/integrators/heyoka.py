@@ -17,6 +17,7 @@ import numpy as np
 from orbits.integrators import expressions
 from orbits.integrators.expressions import Layout, in_order, rebuilt, variables_of
 from orbits.integrators.protocol import Crossing
+from orbits.numbers import COMPLEX_STEP
 from orbits.symbols import Symbol
 
 if TYPE_CHECKING:
@@ -165,8 +166,8 @@ class Watch:
 
             return callback
 
-        events = [
-            heyoka.nt_event(f + NUDGE, note(i), direction=heyoka.event_direction.positive)
+        events = [  # moved by nothing: heyoka 7.13 loses the later roots in a step that begins exactly on one
+            heyoka.nt_event(f + COMPLEX_STEP, note(i), direction=heyoka.event_direction.positive)
             for i, f in enumerate(lowered(layout, functions))
             if variables_of(functions[i])
         ]
@@ -230,8 +231,8 @@ class Run:
         variables = _variables(layout)
         system = list(zip(variables, lowered(layout, rates)))
         self._places = [i for i, f in enumerate(functions) if variables_of(f)]
-        events = [
-            heyoka.t_event(f + NUDGE, direction=heyoka.event_direction.negative)
+        events = [  # moved by nothing, as above
+            heyoka.t_event(f + COMPLEX_STEP, direction=heyoka.event_direction.negative)
             for f in lowered(layout, [functions[i] for i in self._places])
         ]
         self._integrator = heyoka.taylor_adaptive(
@@ -275,8 +276,6 @@ MOST_STEPS = 100_000  # of one flight: a flow that needs more runs away,
 RUNAWAY = (
     1.0  # or, where it is followed to its next event, one that gets no further than so much clock in as many
 )
-NUDGE = 1e-200
-"""Added to every event function: heyoka 7.13 loses the later roots in a step that begins exactly on one."""
 LARGE = 12  # states from which compact code compiles much faster and runs nearly as fast,
 MANY = 40  # and equations of states with their variations: six states compile in 0.5 s in place of 3, and fly half as fast
 

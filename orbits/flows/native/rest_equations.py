@@ -8,6 +8,7 @@ from orbits.flows.plain_kernels import PlainKernels
 from orbits.flows.protocol import PLAIN, Approach
 from orbits.machines.base import Model
 from orbits.machines.path import along, assign
+from orbits.settings import SOLVING
 
 RestWork = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Residual, Jacobian and derivative by the parameter."""
@@ -97,7 +98,7 @@ class RestKernels(PlainKernels):
         K, f = data.model.rest.equations(data.values(p))
         J[:] = K
         F[:] = K @ u - f
-        h = 1e-6 * (abs(p) or 1.0)  # whatever the unit of p
+        h = SOLVING.shift * (abs(p) or 1.0)  # whatever the unit of p
         ahead, f_ahead = data.model.rest.equations(data.values(p + h))
         behind, f_behind = data.model.rest.equations(data.values(p - h))
         Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)

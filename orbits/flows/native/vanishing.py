@@ -13,12 +13,12 @@ from orbits.contacts.changes import Change, Site, Spot
 from orbits.contacts.dry_friction import STUCK
 from orbits.contacts.letters import HIT, SLIP
 from orbits.flows.native.sampling import flight, slowest
-from orbits.flows.protocol import FIRST, Motion, Vanishing
+from orbits.flows.protocol import Motion, Vanishing
 from orbits.machines.events import events_of
+from orbits.settings import EVENTS, GROWING
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT, Watch
 from orbits.words.margins import place_of
 
-NO_SPEED = 1e-7  # an impact slower than this vanishes
 FLIGHT = 0  # column of the margin that watches a flight
 
 
@@ -52,7 +52,7 @@ def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing | None:
 def _soft(orbit: Motion, place: int) -> int | None:
     """The event at either end of a flight that is an impact of vanishing speed."""
     places = (place, (place + 1) % len(orbit.word))
-    speed = NO_SPEED * math.prod(orbit.model.natural_units(orbit.params))
+    speed = EVENTS.touch * math.prod(orbit.model.natural_units(orbit.params))
     rates = events_of(orbit).rate_post
     return next((k for k in places if abs(rates[k]) < speed), None)
 
@@ -86,13 +86,13 @@ def placed(orbit: Motion, found: Vanishing, place: int, change: Change) -> np.nd
         hit = letters[text].kind == HIT
         side = (1 if letters[text].contact == LEFT else -1) if hit else 0
         row, speed, was_hit = _at(orbit, place, spot, found)
-        row[0] += spot.later * FIRST
+        row[0] += spot.later * GROWING.first
         if hit and not was_hit:
-            row[1] = speed + side * FIRST * length * rate  # B+ = v' - w'+
+            row[1] = speed + side * GROWING.first * length * rate  # B+ = v' - w'+
         elif was_hit and not hit and spot.node is not None:
             row[1] = orbit.model.walls(orbit.params)[0 if word.letter(spot.node).contact == LEFT else 1]
         elif hit_before and not hit:
-            row[1] -= hit_before * 0.1 * FIRST**2 * length  # a little off the wall
+            row[1] -= hit_before * 0.1 * GROWING.first**2 * length  # a little off the wall
         hit_before = side
         rows.append(row)
     return np.array(rows) if rows else nodes[:0]

@@ -17,18 +17,18 @@ from orbits.flows.protocol import PLAIN, Approach
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
 from orbits.machines.path import along
+from orbits.settings import SOLVING
 from orbits.words import Word
 
 TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
-SOLVED = 1e-10  # residual of a solution
 
 
 class PageKernels(PlainKernels):
     """The functions that a continuation calls; plain Python round integrated flights."""
 
     column = 3
-    accepted = SOLVED
+    accepted = SOLVING.residual
     patience = 0.5
     assign = staticmethod(loci.assign)
     flip = staticmethod(loci.flip)

@@ -19,6 +19,8 @@ from scipy.linalg import get_lapack_funcs
 
 from contvines.core.multipliers.periodic_schur import periodic_multipliers
 from orbits.integrators.engine import engine
+from orbits.numbers import ROUNDOFF
+from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
     from orbits.machines.page.machine import Machine
@@ -26,9 +28,7 @@ if TYPE_CHECKING:
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
-TINY = 1e-300
-LONGEST = 1e3  # clock of one flight: Newton's method has lost its way beyond it,
-AHEAD = 2.0  # or, of a forced machine, beyond so many times the period
+AHEAD = 2.0  # periods of a forced machine: in a flight that is longer Newton's method has lost its way
 TOGETHER = 4
 """Flights in one mode from which they are integrated side by side: a flight of two states then takes 11 to 15 us in place of 35 to 40, of four
 states 11 to 17 in place of 24 to 35. With fewer, half empty vectors gain less than another integrator costs to compile."""
@@ -124,7 +124,7 @@ def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
     numbers[:, data.index] = p
     begin, end = data.clocks(nodes)
     spans = end - begin
-    if np.abs(spans).max() > (AHEAD * data.shift if data.forced else LONGEST):
+    if np.abs(spans).max() > (AHEAD * data.shift if data.forced else SOLVING.longest_flight):
         return math.inf
     if not _fly(data, nodes, begin, end, work):
         return math.inf
@@ -228,7 +228,7 @@ def bordered(
     sign = -1.0 if flips % 2 else 1.0
     if singular:
         sign = 0.0
-        nearby = matrix + 1e-16 * np.abs(matrix).max() * np.eye(size + 1)
+        nearby = matrix + ROUNDOFF * np.abs(matrix).max() * np.eye(size + 1)
         _, _, solution, singular = _gesv(nearby, sides)
         if singular:
             return 0.0
@@ -284,7 +284,9 @@ def _sparse(
     try:
         factors = splu(matrix)
     except RuntimeError:  # exactly singular
-        matrix = matrix + csc_matrix((np.full(size + 1, 1e-18), (np.arange(size + 1),) * 2))
+        matrix = matrix + csc_matrix(
+            (np.full(size + 1, ROUNDOFF * np.abs(entries).max()), (np.arange(size + 1),) * 2)
+        )
         try:
             factors = splu(matrix)
         except RuntimeError:

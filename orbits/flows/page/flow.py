@@ -15,10 +15,10 @@ from orbits.flows.page.cycle_equations import PageEquations, loose_states
 from orbits.flows.protocol import Census, Motion, Vanishing
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
+from orbits.settings import EVENTS
 from orbits.words import Word
 
 LARGE = 5  # states
-STILL = 1e-9  # range of a state that does not move
 
 
 class PageFlow:
@@ -138,7 +138,7 @@ class PageFlow:
         if len(motion.word):
             return "periodic"
         table = sampling.sample(motion, 50)
-        moves = any(np.ptp(table[name]) > STILL for name in motion.model.states)
+        moves = any(np.ptp(table[name]) > EVENTS.still for name in motion.model.states)
         return "periodic" if moves else "stuck"
 
     def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing:

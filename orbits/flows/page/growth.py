@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from orbits.flows.page.stepper import TWO_PI, Stepper
+from orbits.numbers import SMALLEST
 
 APART = 1e-7  # distance of the neighbours, relative to 1 + states
 SAMPLES, BLOCKS = 1200, 20
@@ -69,7 +70,7 @@ def _mean(logs: list[float]) -> tuple[float, float]:
 
 def _beside(stepper: Stepper, other: Stepper, direction: np.ndarray) -> None:
     scale = APART * (1.0 + float(np.abs(stepper.state).max()))
-    state = stepper.state + scale * direction / max(float(np.abs(direction).max()), 1e-300)
+    state = stepper.state + scale * direction / max(float(np.abs(direction).max()), SMALLEST)
     other.start(state, stepper.clock, stepper.modes)
     other.base = stepper.base
 

@@ -13,15 +13,11 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN
 from orbits.flows.page.flights import Work
+from orbits.settings import EVENTS
 from orbits.words import Word
 
 if TYPE_CHECKING:
     from orbits.flows.page.flights import Pieces
-
-DRIFTING = 1e-8  # shift over a period below which a motion that may be shifted closes
-OWN = (
-    1e-9  # share of a flight next to its ends in which the guard of the event there has no minimum of its own
-)
 
 
 def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> None:
@@ -33,7 +29,7 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
     table[:] = np.inf
     table[:, contacts + 1] = (end - begin) / data.clock_rate(work.numbers)
     drift = max((abs(work.drift[j]) for j in data.pinned), default=0.0)
-    if drift > DRIFTING:  # it comes back shifted: no orbit
+    if drift > EVENTS.still:  # it comes back shifted: no orbit
         table[:, contacts + 1] = -drift
     for values, guards, watch, places in data.guard_groups:
         m, count = len(places), len(guards)
@@ -63,7 +59,7 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
             if not span > 0.0:
                 continue
             for clock, g, state in watch(nodes[i, 1:], begin[i], end[i], work.numbers[i]):
-                own = OWN * span
+                own = EVENTS.at_end * span
                 j = guards[g].contact
                 if (j in told and clock - begin[i] < own) or (j in tells and end[i] - clock < own):
                     continue

@@ -11,6 +11,7 @@ from orbits.contacts.letters import HIT
 from orbits.flows.page.loads import Impacts, friction_work
 from orbits.machines.measures import way_out
 from orbits.machines.page.energies import CONTACT
+from orbits.settings import EVENTS, SOLVING
 from orbits.words import Word
 
 if TYPE_CHECKING:
@@ -151,7 +152,7 @@ def _extremes(
     for k in range(len(nodes)):
         begin, end = _spans(machine, periods, nodes[k])
         for i, watch in enumerate(watches):
-            if not 0.0 < end[i] - begin[i] < 1e3:
+            if not 0.0 < end[i] - begin[i] < SOLVING.longest_flight:
                 continue
             numbers = compiled.numbers(params[k], word.modes[i % len(word.modes)])
             found = [state for _, _, state in watch(nodes[k, i, 1:], begin[i], end[i], numbers)]
@@ -168,7 +169,7 @@ def _strobed(machine: Machine, word: Word, periods: int, nodes: np.ndarray, para
     out = np.empty((len(nodes), machine.size))
     for k in range(len(nodes)):
         begin, end = _spans(machine, periods, nodes[k])
-        target = 2.0 * np.pi * np.ceil(begin[0] / (2.0 * np.pi) - 1e-12)
+        target = 2.0 * np.pi * np.ceil(begin[0] / (2.0 * np.pi) - EVENTS.zero)
         i = int(np.clip(np.searchsorted(begin, target, side="right") - 1, 0, len(begin) - 1))
         mode = word.modes[i % len(word.modes)]
         state = nodes[k, i, 1:].copy()

@@ -6,6 +6,7 @@ import numpy as np
 
 from orbits.flows.protocol import Motion
 from orbits.machines.page.machine import Machine
+from orbits.numbers import SMALLEST
 from orbits.words import Word
 
 
@@ -26,7 +27,7 @@ def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
         event before).
     """
     durations = orbit.durations
-    total = max(float(durations.sum()), 1e-300)
+    total = max(float(durations.sum()), SMALLEST)
     compiled, e = orbit.model.compiled, orbit.model.equations
     clocks, states, segments, passed = [], [], [], 0.0
     first = float(orbit.nodes[0, 0]) if orbit.model.forced else 0.0

@@ -13,6 +13,7 @@ from orbits.contacts.wall import FREE, HELD, Wall
 from orbits.flows.protocol import SimulationError
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.singular import singular_at
+from orbits.settings import EVENTS
 
 if TYPE_CHECKING:
     from orbits.integrators.expressions import Values
@@ -22,13 +23,7 @@ if TYPE_CHECKING:
     Tools = tuple[Run, Values, list[Guard], np.ndarray, Watch]
 
 TWO_PI = 2.0 * np.pi
-OFF = 1e-5  # clock after a slip or a release in which the quantity that starts with no rate grows out of roundoff
-TOUCH = 1e-7  # rate below which a surface is touched rather than crossed: the depth is roundoff
-NO_HOP = 1e-11  # height of hops, relative to 1 + the states, below which impacts have piled up
-SLOW = 1e-6  # squared speed after an impact below which a hop is short, and impacts may be piling up
 HALVINGS = 6  # of the way to the top of a hop, where something else happens on it
-TOGETHER = 1e-11  # a quantity so near to zero, relative to 1 + its rate, vanishes together with another
-FIRST_EVENT = 1e-12  # gaps this much below zero are roundoff
 
 
 class Stepper:
@@ -109,7 +104,7 @@ class Stepper:
         self.modes = tuple(self.machine.rest_mode(self.params, self.state, self.clock))
         values = self.contact_values()
         for j, contact in enumerate(self.machine.contacts):
-            if isinstance(contact, Wall) and values[j] < -FIRST_EVENT * (1.0 + np.abs(self.state).max()):
+            if isinstance(contact, Wall) and values[j] < -EVENTS.zero * (1.0 + np.abs(self.state).max()):
                 raise SimulationError(
                     f"the gap of wall {contact.letter!r} is {values[j]:.6g} at the start: bodies overlap; "
                     "give a start with all gaps at 0 or above"
@@ -138,7 +133,7 @@ class Stepper:
 
     def _impacts_at_start(self, values: np.ndarray) -> None:
         for j, contact in enumerate(self.machine.contacts):
-            if isinstance(contact, Wall) and abs(values[j]) <= FIRST_EVENT and self._gap_rate(j) < 0.0:
+            if isinstance(contact, Wall) and abs(values[j]) <= EVENTS.zero and self._gap_rate(j) < 0.0:
                 self._struck(j)
 
     # ------------------------------------------------------------------ laws
@@ -192,9 +187,9 @@ class Stepper:
             if sign != self.modes[j] and row[place] != 0.0:
                 self.modes = self._with(j, sign)
         after = self._gap_rate(wall)
-        push = self._push_back(wall) if after * after < SLOW else 0.0
+        push = self._push_back(wall) if after * after < EVENTS.slow else 0.0
         if push < 0.0:
-            if before * before < NO_HOP * abs(push) * (1.0 + np.abs(self.state).max()):
+            if before * before < EVENTS.together * abs(push) * (1.0 + np.abs(self.state).max()):
                 return self._hold(wall)
             self._hop = -after / push
         return HIT
@@ -202,7 +197,7 @@ class Stepper:
     def _struck(self, wall: int) -> int:
         """An impact, and what it does to the other walls that are touched: one that holds lets go; one that is pressed hits at the same instant."""
         kind = self._impact(wall)
-        near = FIRST_EVENT * (1.0 + np.abs(self.state).max())
+        near = EVENTS.zero * (1.0 + np.abs(self.state).max())
         gaps = self.contact_values()
         self._due = []
         for other in self._touched:
@@ -231,7 +226,7 @@ class Stepper:
         numbers = self._tools(self.modes)[3]
         slopes = self.compiled.gap_slopes(wall).one(self.state, self.clock, numbers)
         gap = float(self._values.one(self.state, self.clock, numbers)[wall])
-        self.state += (FIRST_EVENT * (1.0 + np.abs(self.state).max()) - gap) * slopes / float(slopes @ slopes)
+        self.state += (EVENTS.zero * (1.0 + np.abs(self.state).max()) - gap) * slopes / float(slopes @ slopes)
 
     def _push_back(self, wall: int) -> float:
         """Acceleration of a free wall's gap."""
@@ -284,7 +279,7 @@ class Stepper:
             before, began = self.state.copy(), self.clock
             if self._fresh:
                 self._fresh = False
-                self._leave(watch, numbers, min(self.clock + OFF, end))
+                self._leave(watch, numbers, min(self.clock + EVENTS.leave, end))
             elif self._hop:
                 self._rise(watch, numbers, end)
             self._hop = 0.0
@@ -328,8 +323,12 @@ class Stepper:
         return [
             guard
             for value, rate, guard in zip(*self._guards(self.modes))
-            if (guard.kind in (SLIP, TURN) and rate < -TOUCH and abs(value) < TOGETHER * (1.0 - rate))
-            or (guard.kind in (SLIP, RELEASE) and value < -TOUCH)
+            if (
+                guard.kind in (SLIP, TURN)
+                and rate < -EVENTS.touch
+                and abs(value) < EVENTS.together * (1.0 - rate)
+            )
+            or (guard.kind in (SLIP, RELEASE) and value < -EVENTS.touch)
         ]
 
     def _lost(self, state: np.ndarray, clock: float) -> str:
@@ -351,7 +350,7 @@ class Stepper:
         for value, rate, guard in zip(*self._guards(self.modes)):
             if value <= 0.0 and rate < 0.0 and guard.kind == HIT:  # a gap that opens is negative by roundoff
                 self.state, self.clock = before, begin
-                if self.contact_values()[guard.contact] <= FIRST_EVENT * (1.0 + np.abs(self.state).max()):
+                if self.contact_values()[guard.contact] <= EVENTS.zero * (1.0 + np.abs(self.state).max()):
                     self._off(guard.contact)
                 return
 
@@ -371,12 +370,12 @@ class Stepper:
     def _settle_touches(self) -> None:
         """A start on the surface of a switch that is only touched is on the side to which the flow leads."""
         values, rates, guards = self._guards(self.modes)
-        near = TOUCH * (1.0 + np.abs(self.state).max())
+        near = EVENTS.touch * (1.0 + np.abs(self.state).max())
         for value, rate, guard in zip(values, rates, guards):
             if guard.kind == SWITCH and abs(value) < near and abs(rate) < near:
                 _, _, _, numbers, watch = self._tools(self.modes)
                 moved = self.state.copy()
-                watch.move(moved, self.clock, self.clock + OFF, numbers)
+                watch.move(moved, self.clock, self.clock + EVENTS.leave, numbers)
                 kept, self.state = self.state, moved
                 there = self._guards(self.modes)[0]
                 self.state = kept
@@ -397,16 +396,16 @@ class Stepper:
         """Whether the surface of a switch is only touched; the state has then moved past it."""
         values, rates, guards = self._guards(self.modes)
         place = next(k for k, g in enumerate(guards) if g.contact == switch)
-        if abs(rates[place]) > TOUCH * (1.0 + np.abs(self.state).max()):
+        if abs(rates[place]) > EVENTS.touch * (1.0 + np.abs(self.state).max()):
             return False
         _, _, _, numbers, watch = self._tools(self.modes)
         before = self.state.copy()
-        watch.move(self.state, self.clock, self.clock + OFF, numbers)
-        self.clock += OFF
+        watch.move(self.state, self.clock, self.clock + EVENTS.leave, numbers)
+        self.clock += EVENTS.leave
         values, _, _ = self._guards(self.modes)
         if values[place] > 0.0:
             return True
-        self.state, self.clock = before, self.clock - OFF
+        self.state, self.clock = before, self.clock - EVENTS.leave
         return False
 
     def _happened(self, guard: Guard) -> tuple[int, int, int] | None:

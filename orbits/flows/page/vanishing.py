@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.contacts.changes import Change, Site, Spot
-from orbits.flows.protocol import FIRST, Motion, Vanishing
+from orbits.flows.protocol import Motion, Vanishing
+from orbits.numbers import SMALLEST
+from orbits.settings import EVENTS, GROWING
 from orbits.words.margins import place_of
-
-AT_END = 1e-9  # share of a flight from its ends within which a guard vanishes there
 
 
 def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing:
@@ -19,16 +19,16 @@ def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing:
     if watched < 0:
         return Vanishing(site, watched)
     ahead, state, sign = _closest(orbit, place, watched)
-    share = ahead / max(spans[place], 1e-300)
-    site = site._replace(sign=sign, at=_end(orbit, place, share), ahead=share < AT_END)
+    share = ahead / max(spans[place], SMALLEST)
+    site = site._replace(sign=sign, at=_end(orbit, place, share), ahead=share < EVENTS.at_end)
     return Vanishing(site, watched, (ahead, state))
 
 
 def _end(orbit: Motion, place: int, share: float) -> int:
     """The event at that end of a flight at which a guard vanishes; -1 inside it."""
-    if not len(orbit.word) or AT_END <= share <= 1.0 - AT_END:
+    if not len(orbit.word) or EVENTS.at_end <= share <= 1.0 - EVENTS.at_end:
         return -1
-    return (place if share < AT_END else place + 1) % len(orbit.word)
+    return (place if share < EVENTS.at_end else place + 1) % len(orbit.word)
 
 
 def _closest(orbit: Motion, place: int, contact: int) -> tuple[float, np.ndarray, int]:
@@ -49,8 +49,8 @@ def _closest(orbit: Motion, place: int, contact: int) -> tuple[float, np.ndarray
     own_end = len(orbit.word) and orbit.word.letter(place + 1).contact == contact
     best, found = np.inf, (0.0, state, 0)
     for clock, g, there in candidates:
-        share = (clock - begin) / max(length, 1e-300)
-        if (own_start and share < AT_END) or (own_end and share > 1.0 - AT_END):
+        share = (clock - begin) / max(length, SMALLEST)
+        if (own_start and share < EVENTS.at_end) or (own_end and share > 1.0 - EVENTS.at_end):
             continue
         value = abs(values(there[None], np.array([clock]), numbers[None])[0, g])
         if value < best:
@@ -78,5 +78,5 @@ def _at(orbit: Motion, place: int, spot: Spot, found: Vanishing) -> np.ndarray:
             row[0] = nodes[spot.clock, 0]
         if spot.between:
             row[0] = (0.5 if forced else 1.0) * (row[0] + nodes[spot.node + 1, 0])
-    row[0] += spot.later * FIRST
+    row[0] += spot.later * GROWING.first
     return row

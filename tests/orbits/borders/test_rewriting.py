@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from orbits import Absorber
-from orbits.borders.rewriting import FIRST, edits_at
+from orbits.borders.rewriting import edits_at
 from orbits.borders.rewriting import rewritten as applied
 from orbits.contacts.changes import Grows
 from orbits.orbit import Orbit
+from orbits.settings import GROWING
 from orbits.words import Word
 
 MACHINE = Absorber(restitution=0.7, friction=0.4, gravity=0.3, mass_ratio=0.02)
@@ -43,7 +44,7 @@ def test_a_turn_that_reaches_a_wall_becomes_an_impact(place, wall, side):
     word, nodes, edit = rewritten(border, place, WALL)
     assert word.events == tuple(wall if i == place else "t" for i in range(2)) and word.modes == (1, -1)
     speed = v_rate(nodes[place, 0]) - nodes[place, 1]  # w'+
-    assert speed == pytest.approx(-side * FIRST) and edit.change.grows is Grows.SPEED
+    assert speed == pytest.approx(-side * GROWING.first) and edit.change.grows is Grows.SPEED
     away = orbit("tt", [[0.3, 1.0], [3.4, -1.0]])  # turns near the walls that were left
     assert edits_at(away, 4 * place + WALL) == []
 
@@ -52,7 +53,7 @@ def test_a_stick_that_reaches_a_wall_becomes_an_impact_and_a_stick():
     border = orbit("ss", [[0.3, -0.9], [1.0, -0.9], [3.4, 1.0], [4.1, 1.0]])
     word, nodes, _ = rewritten(border, 2, WALL)
     assert word.events == ("s", "u", "L", "s", "u") and word.modes[2:4] == (-1, 0)
-    assert v_rate(nodes[2, 0]) - nodes[2, 1] == pytest.approx(-FIRST)
+    assert v_rate(nodes[2, 0]) - nodes[2, 1] == pytest.approx(-GROWING.first)
     assert nodes[3, 0] > nodes[2, 0] and nodes[3, 1] < 1.0
     again, _, _ = rewritten(border, 3, WALL)  # asked at the slip
     assert again == word
@@ -86,7 +87,7 @@ def test_a_stick_that_friction_cannot_hold_begins_with_a_turn():
     border = orbit("Rs-", [[0.3, 0.5], [1.0, 0.1], [2.0, 0.1]])
     word, nodes, edit = rewritten(border, 1, EVENT)
     assert word.events == ("R", "t", "s", "u") and word.modes == (1, -1, 0, -1)
-    assert nodes[2, 0] - nodes[1, 0] == pytest.approx(FIRST) and edit.change.grows is Grows.GAP
+    assert nodes[2, 0] - nodes[1, 0] == pytest.approx(GROWING.first) and edit.change.grows is Grows.GAP
 
 
 def test_a_turn_that_friction_holds_becomes_a_stick():
