@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ..continuation.aims import Aim
     from ..continuation.engine import Solved
     from .located import Located
-    from .point_on_branch import PointOnBranch
+    from .point_on_branch import Point, PointOnBranch
     from .segment import Segment
 
 
@@ -91,13 +91,13 @@ class Kind:
 
     name: str
     label: str
-    test: Callable[[PointOnBranch], float] | None = None
+    test: Callable[[Point], float] | None = None
     text: str = ""
     marker: str = "*"
     filled: bool = True
-    verify: Callable[[PointOnBranch], bool] | None = None
+    verify: Callable[[Point], bool] | None = None
     classify: Callable[[PointOnBranch], Classified | Sides] | None = None
-    locus: Callable[[PointOnBranch], float] | str | None = None
+    locus: Callable[[Point], float] | str | None = None
     ends: bool = False
     # of built-in kinds
     border: bool = False  # a margin vanishes there, and a branch ends

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -11,6 +11,26 @@ if TYPE_CHECKING:
     from ..continuation.engine import Engine, Solved
     from ..problems.protocol import Problem
     from .segment import Segment
+
+
+class Point(Protocol):
+    """What the functions of a kind may ask of a point, on a branch or on a locus; see `PointOnBranch`."""
+
+    @property
+    def u(self) -> np.ndarray: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def problem(self) -> Problem: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @cached_property
+    def multipliers(self) -> np.ndarray: ...
+    @property
+    def margins(self) -> np.ndarray: ...
+    @cached_property
+    def jacobian(self) -> np.ndarray: ...
+    def measure(self, name: str) -> float: ...
 
 
 class PointOnBranch:

@@ -7,13 +7,17 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from types import NoneType, UnionType
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
 from ..branches.branch import Branch
 from ..branches.special_point import Later, SpecialPoint
+from ..problems.protocol import Problem
 from .graph import Graph
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 DEEPEST = 60  # levels of nested values
 
@@ -89,7 +93,7 @@ def check_branch(label: str, branch: Branch) -> None:
         raise ValueError(f"{label}: a mark lies on none of its points")
 
 
-def check_fields(label: str, thing: Any) -> None:
+def check_fields(label: str, thing: DataclassInstance) -> None:
     """Refuse an instance of a dataclass with a field that is not of its type.
 
     Raises
@@ -107,22 +111,24 @@ def check_fields(label: str, thing: Any) -> None:
 def _hints(kind: type) -> dict[str, Any]:
     from pathlib import Path  # named in annotations only
 
-    return get_type_hints(kind, localns={"Path": Path, "Branch": Branch, "SpecialPoint": SpecialPoint})
+    return get_type_hints(
+        kind, localns={"Path": Path, "Problem": Problem, "Branch": Branch, "SpecialPoint": SpecialPoint}
+    )
 
 
-def fits(value: Any, hint: Any) -> bool:
+def fits(value: object, hint: object) -> bool:
     """Whether a value has the type of an annotation; numbers that are no numbers or infinite count as numbers."""
     kind, parts = get_origin(hint) or hint, get_args(hint)
     if kind in (Union, UnionType):
         return any(fits(value, part) for part in parts)
-    if kind is Any:
+    if kind is Any or kind is Problem:  # what a file cannot hold is none of its
         return _plain(value)
     if kind is Later:
         return value is None or fits(value, float)
     if kind is NoneType or hint is None:
         return value is None
     if kind is float:
-        return type(value) in (int, float) and _finite_size(value)
+        return (type(value) is int or type(value) is float) and _finite_size(value)
     if kind is int:
         return type(value) is int and _finite_size(value)
     if kind is tuple:
@@ -139,7 +145,7 @@ def fits(value: Any, hint: Any) -> bool:
         )
     if kind is np.ndarray:
         return isinstance(value, np.ndarray)
-    return isinstance(value, kind)
+    return isinstance(kind, type) and isinstance(value, kind)
 
 
 def _finite_size(value: float) -> bool:
@@ -165,7 +171,7 @@ def _own_label(key: str, label: str) -> None:
         raise ValueError(f"{key}: its label is {label!r}")
 
 
-def _shaped(label: str, thing: Any, **dimensions: int) -> None:
+def _shaped(label: str, thing: DataclassInstance, **dimensions: int) -> None:
     for name, dimension in dimensions.items():
         array = getattr(thing, name)
         numbers = array.dtype.kind in ("fc" if name == "multipliers" else "fi")

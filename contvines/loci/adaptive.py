@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from copy import copy
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from ..problems.protocol import Symmetry
 from ..problems.registry import rebuild
 from .borders import borders_at
 from .layout import KNOWN, PERIOD
+from .on_mesh import OnMesh, on_mesh
 from .problem import LocusProblem, Work, described
 
 
@@ -22,13 +22,15 @@ class AdaptiveLocus(LocusProblem):
     The borders of the bordered systems belong to a mesh, and are found anew on each.
     """
 
-    base: Any
-    first: Any
-    second: Any
+    @cached_property
+    def works(self) -> list[Work]:
+        """Workspaces whose borders follow the mesh."""
+        return []
 
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self.works: list[Work] = []
+    @property
+    def mesh(self) -> OnMesh:
+        """The problem of the branches."""
+        return on_mesh(self.base)
 
     @property
     def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]
@@ -51,12 +53,12 @@ class AdaptiveLocus(LocusProblem):
     @property
     def chunk(self) -> int:
         """Points after which the mesh is adapted."""
-        return self.base.chunk
+        return self.mesh.chunk
 
     def accuracy(self, u: np.ndarray, p: float) -> float:
         """Of values on the mesh, relative."""
         inner, value = self.split(u)
-        return self.at(p).accuracy(inner, float(value))
+        return on_mesh(self.at(p)).accuracy(inner, float(value))
 
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
         """Loci end at no infinite period."""
@@ -75,21 +77,22 @@ class AdaptiveLocus(LocusProblem):
 
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
         """Keep the phase, and take the borders, of a point for those that follow; None: the phase of none."""
-        self.first.anchor(None)
-        self.second.anchor(None)
+        first, second = on_mesh(self.first), on_mesh(self.second)
+        first.anchor(None)
+        second.anchor(None)
         if u is None:
             return
         inner, value = self.split(u)
         self.base.kernels.assign(self.first.data, self.second.data, float(p))
-        self.first.anchor(inner, float(value))
-        self.second.reference = self.first.reference
+        first.anchor(inner, float(value))
+        second.reference = first.reference
         for work in self.works:
             work.borders[:] = borders_at(self.at(p), self.condition, inner, float(value), work.borders)
             work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # slopes belong to the borders
 
     def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a better mesh; None where the mesh is good."""
-        own = self.base.adapted(u[: self.size])
+        own = self.mesh.adapted(u[: self.size])
         if own is None:
             return None
 
@@ -100,13 +103,12 @@ class AdaptiveLocus(LocusProblem):
 
     def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool:
         """Whether more intervals are needed."""
-        return self.base.too_coarse(u[: self.size], stuck)
+        return self.mesh.too_coarse(u[: self.size], stuck)
 
     def refined(self) -> AdaptiveLocus:
         """The same locus with twice as many intervals."""
-        finer = self.base.refined()
-        found = copy(self)
-        found.__init__(
+        finer = self.mesh.refined()
+        return AdaptiveLocus(
             finer,
             self.kind,
             self.over,
@@ -117,7 +119,6 @@ class AdaptiveLocus(LocusProblem):
             self.masked,
             self.unit,
         )
-        return found
 
     def describe(self) -> dict[str, Any]:
         """A description from which `from_description` builds the problem again."""
@@ -126,10 +127,10 @@ class AdaptiveLocus(LocusProblem):
 
     def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
         """Unknowns, or a direction of unknowns, with every interval halved."""
-        return np.concatenate([self.base.halved(u[: self.size], direction), u[self.size :]])
+        return np.concatenate([self.mesh.halved(u[: self.size], direction), u[self.size :]])
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AdaptiveLocus | None:
     """The AdaptiveLocus that `describe` described; None where functions of the user's own are not at hand."""
     problem = rebuild(description["problem"], trust)
-    return None if problem is None else AdaptiveLocus(problem, *described(description))
+    return None if problem is None else AdaptiveLocus(problem, **described(description))

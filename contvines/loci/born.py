@@ -13,6 +13,7 @@ from ..continuation.settings import Settings
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from .linear import Linearisation
+from .on_mesh import OnMesh
 from .plane_point import PlanePoint
 from .starts import begin
 
@@ -66,7 +67,7 @@ def born(
     point: PlanePoint, bounds: tuple[float, float], over: str, within: tuple[float, float]
 ) -> list[Candidate]:
     """Starts of the loci of what is born at a point."""
-    table = BORN | BORN_OF_CYCLES if isinstance(point.problem, Adaptive) else BORN
+    table = BORN | BORN_OF_CYCLES if isinstance(point.attached, Adaptive) else BORN
     if point.kind not in table:
         return []
     what, kind = table[point.kind]
@@ -79,12 +80,12 @@ def born(
 
 
 def _doubled(point: PlanePoint) -> Iterator[Child]:
-    problem, (p, _) = point.problem, point.value
+    problem, (p, _) = point.attached, point.value
     line = Linearisation(problem)
     line.at(point.u, p)
     right = line.null_vectors(flipped=True).right
     for child in problem.offspring(problem.flip_kind, point.u, p, np.append(right, 0.0), -1.0 + 0.0j)[:1]:
-        states = problem.states if isinstance(problem, Adaptive) else len(point.u)  # type: ignore[attr-defined]
+        states = problem.states if isinstance(problem, OnMesh) else len(point.u)
         direction = np.asarray(child.tangent, dtype=float)[:-1].copy()
         direction[states : 2 * states] *= -1.0
         direction[2 * states :] = 0.0
@@ -93,7 +94,7 @@ def _doubled(point: PlanePoint) -> Iterator[Child]:
 
 def _small(point: PlanePoint) -> Iterator[Child]:
     u = np.asarray(point.u, dtype=float)
-    for child in point.problem.offspring("hopf", u, point.value[0], np.zeros(len(u) + 1), 1j):
+    for child in point.attached.offspring("hopf", u, point.value[0], np.zeros(len(u) + 1), 1j):
         yield Child(
             child.problem, np.asarray(child.u, dtype=float), np.asarray(child.tangent, dtype=float)[:-1]
         )

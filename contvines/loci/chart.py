@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from contvines.shared.near_names import did_you_mean
 
@@ -16,9 +16,20 @@ from ..graph.well_formed import check_branch, check_fields, fits
 from ..interrupts import Resumable
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
+from ..shared.plot_options import PlotOptions
 from .locus import Locus, Turn
 from .plane_point import PlanePoint
 from .regions import Region
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class ChartOptions(PlotOptions, total=False):
+    """Of :func:`contvines.plots.chart.plot_chart`."""
+
+    labels: bool
+    names: bool
 
 
 @hinted
@@ -118,7 +129,7 @@ class Chart(Resumable):
         }
         return {**result, "units": self.units} if self.units else result
 
-    def plot(self, **options: Any):
+    def plot(self, **options: Unpack[ChartOptions]) -> Figure:
         """A matplotlib figure; see :func:`contvines.plots.chart.plot_chart`."""
         from ..plots.chart import plot_chart
 
@@ -219,10 +230,11 @@ def chart_from_entries(
 _MOTION = {"word": str | None, "kind": str | None, "periods": int | None}
 
 
-def _motions(found: Any) -> bool:
+def _motions(found: object) -> bool:
     """Whether these are motions as `problem.simulated_attractors` lists them."""
-    return fits(found, list[dict[str, Any]]) and all(
-        fits(motion.get(name), kind) for motion in found for name, kind in _MOTION.items()
+    return isinstance(found, list) and all(
+        fits(motion, dict[str, Any]) and all(fits(motion.get(name), kind) for name, kind in _MOTION.items())
+        for motion in found
     )
 
 

@@ -101,7 +101,7 @@ def _ends_stability(graph: Graph, point: SpecialPoint) -> bool:
     branch = graph.branches.get(point.branch)
     if branch is None or not branch.real:
         return False
-    near = 1e-9 * (graph.within[1] - graph.within[0])
+    near = Settings.located * (graph.within[1] - graph.within[0])
     return any(abs(point.value - end) <= near for pair in branch.stable_intervals() for end in pair)
 
 

@@ -20,6 +20,7 @@ from ..journal import NullJournal
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
 from ..progress import time_left
+from ..shared.floating_point import TINY
 from .born import Candidate
 from .chart import Chart
 from .codimension_two import find
@@ -31,7 +32,9 @@ from .known_motions import KnownMotions, together
 from .layout import BRANCH, FOLD, MARGIN
 from .locus import Locus
 from .plane_point import PlanePoint
+from .problem import LocusProblem
 from .regions import divide
+from .settings import PLACES
 from .starts import begin, regular_side
 from .tracing import checked_ends, trace_locus
 
@@ -39,9 +42,7 @@ if TYPE_CHECKING:
     from ..journal import Journal
 
 T = TypeVar("T")
-SAME = 1e-7  # points of the plane closer than this part of its sides are one
-END = 1e-5  # of them: a locus ends there
-BESIDE = 0.1  # of them: a segment so far away may belong to an arc through a place
+BESIDE = 0.1  # of the sides of the plane: a segment so far away may belong to an arc through a place
 LARGEST = 120  # loci; a chart that was cut there says so
 
 
@@ -243,16 +244,17 @@ class Charting:
         """The locus on which a candidate lies already, or None."""
         wanted = condition(candidate.problem, candidate.kind)
         for locus in self.chart.loci.values():
-            if locus.problem is None:
+            problem = locus.problem
+            if problem is None:
                 continue
             # where branches cross they do not fold
-            if locus.kind != candidate.kind and (wanted, locus.problem.condition) != (FOLD, BRANCH):
+            if locus.kind != candidate.kind and (wanted, problem.condition) != (FOLD, BRANCH):
                 continue
-            if self.passes(locus, candidate, border=wanted == MARGIN):
+            if self.passes(locus, problem, candidate, border=wanted == MARGIN):
                 return locus
         return None
 
-    def passes(self, locus: Locus, candidate: Candidate, border: bool) -> bool:
+    def passes(self, locus: Locus, problem: LocusProblem, candidate: Candidate, border: bool) -> bool:
         """Whether a locus goes through the place of a candidate, with the same motion (at borders: with any word)."""
         values, size = locus.values, locus.size
         unit = np.array([self.bounds[1] - self.bounds[0], self.within[1] - self.within[0]])
@@ -261,28 +263,28 @@ class Charting:
         if not near.min() < 0.2:
             return False
         repeats = size > len(candidate.u) and size % len(candidate.u) == 0
-        if repeats and min(near[0], near[-1]) < END:
+        if repeats and min(near[0], near[-1]) < PLACES.end:
             return False  # a doubled motion ends where it is the motion itself, which goes on
         form = candidate.problem.canonical(candidate.u, candidate.p)
-        engine = self.forms.setdefault(locus.label, Engine(locus.problem, self.within, self.settings))
+        engine = self.forms.setdefault(locus.label, Engine(problem, self.within, self.settings))
         steps, way = np.diff(values, axis=0) / unit, (place - values[:-1]) / unit
-        shares = (way * steps).sum(axis=1) / np.maximum((steps**2).sum(axis=1), 1e-300)
+        shares = (way * steps).sum(axis=1) / np.maximum((steps**2).sum(axis=1), TINY)
         beside = (np.abs(shares - 0.5) <= 0.6) & (np.abs(way - shares[:, None] * steps).max(axis=1) < BESIDE)
-        for i in np.flatnonzero(beside | (near[:-1] < 1e-6) | (near[1:] < 1e-6)):
+        for i in np.flatnonzero(beside | (near[:-1] < PLACES.end) | (near[1:] < PLACES.end)):
             share = float(np.clip(shares[i], 0.0, 1.0))
             guess = (1.0 - share) * locus.branch.points[i] + share * locus.branch.points[i + 1]
             q = float((1.0 - share) * values[i, 1] + share * values[i + 1, 1])
             # the point of the locus on the line through the place across the segment, whichever way the segment goes
             across = np.zeros(len(guess) + 1)
-            across[size], across[-1] = steps[i] / unit * (locus.problem.unit, 1.0)
+            across[size], across[-1] = steps[i] / unit * (problem.unit, 1.0)
             found = engine.solve(guess, q, across, float(steps[i] / unit @ place)) if across.any() else None
             U, q = (guess, q) if found is None else (found.u, found.p)
-            u, p = locus.problem.split(U)
-            if np.abs(([p, q] - place) / unit).max() > (1e-4 if found is None else SAME):
+            u, p = problem.split(U)
+            if np.abs(([p, q] - place) / unit).max() > (PLACES.end if found is None else PLACES.same):
                 continue
             if border:
                 return True
-            if same_form(locus.problem.base.canonical(u, float(p)), form, engine.scale):
+            if same_form(problem.base.canonical(u, float(p)), form, engine.scale):
                 return True
         return False
 
@@ -310,7 +312,7 @@ class Charting:
         """Whether two points are one: the same kind at the same place."""
         unit = (self.bounds[1] - self.bounds[0], self.within[1] - self.within[0])
         return one.kind == other.kind and all(
-            abs(a - b) <= SAME * w for a, b, w in zip(one.value, other.value, unit)
+            abs(a - b) <= PLACES.same * w for a, b, w in zip(one.value, other.value, unit)
         )
 
     # ------------------------------------------------------------------ regions

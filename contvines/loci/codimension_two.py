@@ -9,39 +9,34 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ..bifurcation.kind import Kind
 from ..bifurcation.locate import locate
 from ..bifurcation.segment import Segment
+from ..bifurcation.settings import LOCATING
 from ..bifurcation.symmetry_test import image_of
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..problems.abilities import Adaptive
+from ..problems.protocol import Problem
+from ..shared.floating_point import ROUNDED
 from .conditions import COEFFICIENTS, References, Test, coefficient_of, test_of
 from .kinds import TOUCH, Look, looks
 from .layout import FLIP, FOLD, MARGIN, PAIR, PERIOD
 from .locus import Locus
+from .on_mesh import on_mesh
 from .own_test import of_plane, tested
 from .plane import Place, Plane
 from .plane_point import PlanePoint
 from .problem import LocusProblem
-from .starts import SINGULAR, ZERO, begin, first_point
+from .settings import PLACES, VANISHING
+from .starts import begin, first_point
 from .touching import touching_form
 
-ROUNDING = 64.0 * float(np.finfo(float).eps)  # of values on a locus, relative
-TOLERANCE = 1e-12  # width of the final bracket relative to a segment
-END = 1e-8  # part of the interval, angle, margin: closer to an end, a resonance or a border a point is there
-CRITICAL = 1e-6  # distance of a critical multiplier from the boundary, at a solution
-APART = 1e-5  # a pair is complex if its imaginary part exceeds this
-DOUBLE = 1e-4  # a double multiplier is known to half of the digits only
 FEW = 4  # places at which a border is asked whether its equations are singular
-VANISHED = 1e-6  # of its terms, or of what it is at the ends of its segment: a test that is zero
-NOTHING = 1e-9  # a test that is less at both ends of a segment is zero all along, but for rounding
-ONE_PLACE = 1e-7  # relative distance of two points of one locus that are one
-LOOSE = 1e-3  # relative size of what has all but become an equilibrium, or a cycle of half the period, on a mesh ...
-NEARLY = 1e-5  # ... and of other motions from their images
 BESIDE = 0.02  # distance (in the metric) on either side at which its point of codimension two is sought
 
 Found = tuple[int, PlanePoint]
@@ -78,13 +73,15 @@ def find(locus: Locus) -> list[Found]:
         for u, q, tangent in zip(branch.points, branch.values, branch.tangents)
     ]
     problem = locus.problem
+    if problem is None:
+        return []
     if problem.condition == PERIOD or (problem.condition == MARGIN and _singular(problem, points)):
         return []  # nothing can be told from equations that are singular all along
     ends = (0, points[0]), (len(points) - 1, points[-1])
     both = [(index, beginning(problem, end, locus.within)) for index, end in ends]
     born = [(index, point) for index, point in both if point is not None]
     found: list[Found] = []
-    for index, point in _zeros(problem, points, locus.within, list(_sought(locus))):
+    for index, point in _zeros(problem, points, locus.within, list(_sought(problem, locus.kinds))):
         # where cycles begin other multipliers may be critical, too
         begins = any(_at_one_place(point, other) for _, other in born)
         if not begins and not any(same_point(point, other) for _, other in found):
@@ -97,7 +94,7 @@ def _singular(problem: LocusProblem, points: Sequence[Solved]) -> bool:
     plane = Plane(problem)
     few = [_place(problem, point) for point in points[:: max(1, len(points) // FEW)]]
     tests = [abs(plane.first.null_vectors().test) for place in few if math.isfinite(plane.at(place))]
-    return bool(tests) and float(np.median(tests)) < SINGULAR
+    return bool(tests) and float(np.median(tests)) < VANISHING.singular
 
 
 def _place(problem: LocusProblem, point: Solved) -> Place:
@@ -106,13 +103,12 @@ def _place(problem: LocusProblem, point: Solved) -> Place:
 
 
 # ------------------------------------------------------------------ what is looked for
-def _sought(locus: Locus) -> Iterator[Sought]:
+def _sought(problem: LocusProblem, kinds: Sequence[Kind]) -> Iterator[Sought]:
     """All that is looked for along a locus."""
-    problem = locus.problem
     for look in looks(problem.base, problem.condition):
         yield _of_look(look, problem)
     yield from _borders(problem)
-    for own in locus.kinds:
+    for own in kinds:
         test = partial(tested, own)
         yield Sought(own.name, lambda at, test=test: test, partial(_of_own, own))
 
@@ -121,7 +117,11 @@ def _of_look(look: Look, problem: LocusProblem) -> Sought:
     rough = partial(_few_digits, look) if look.test in COEFFICIENTS else None
     verify = partial(_inside, look.kind, frozenset(problem.masked))
     return Sought(
-        look.kind, partial(test_of, look, problem), verify, rough, END if look.test == "angle" else 0.0
+        look.kind,
+        partial(test_of, look, problem),
+        verify,
+        rough,
+        VANISHING.margin if look.test == "angle" else 0.0,
     )
 
 
@@ -131,7 +131,9 @@ def _borders(problem: LocusProblem) -> Iterator[Sought]:
     if problem.condition == FLIP and problem.base.flip_kind == "symmetry-breaking":
         kind = "border-symmetry-breaking"
     for j in set(range(int(problem.base.n_margins))) - set(problem.masked):
-        yield Sought(kind, lambda at, j=j: partial(_margin, j=j), partial(_holds, kind), None, ZERO)
+        yield Sought(
+            kind, lambda at, j=j: partial(_margin, j=j), partial(_holds, kind), None, VANISHING.margin
+        )
 
 
 def _margin(plane: Plane, j: int) -> float:
@@ -141,10 +143,10 @@ def _margin(plane: Plane, j: int) -> float:
 def _few_digits(look: Look, plane: Plane, at: References) -> float:
     """A coefficient; where its terms cancel it is zero, not the rounding that is left of them."""
     found = coefficient_of(look, at, plane, rough=True)
-    return 0.0 if abs(found.value) <= VANISHED * found.size else found.value
+    return 0.0 if abs(found.value) <= VANISHING.zero * found.size else found.value
 
 
-def _of_own(kind: Any, plane: Plane) -> bool:
+def _of_own(kind: Kind, plane: Plane) -> bool:
     return kind.verify is None or bool(kind.verify(of_plane(plane)))
 
 
@@ -154,7 +156,7 @@ def _inside(kind: str, masked: frozenset[int], plane: Plane) -> bool:
 
 
 def _vanishing(plane: Plane) -> set[int]:
-    return set(np.flatnonzero(np.abs(plane.row[2 * plane.m :]) < END).tolist())
+    return set(np.flatnonzero(np.abs(plane.row[2 * plane.m :]) < VANISHING.margin).tolist())
 
 
 #: kind -> critical pairs of multipliers
@@ -175,7 +177,7 @@ def _holds(kind: str, plane: Plane) -> bool:
     if not plane.m:
         return True
     edge = np.abs(spectrum.real) if plane.flow else np.abs(np.abs(spectrum) - 1.0)
-    pairs = int(np.sum((edge < CRITICAL) & (spectrum.imag > APART)))
+    pairs = int(np.sum((edge < VANISHING.critical) & (spectrum.imag > VANISHING.critical)))
     if kind in PAIRS:
         return pairs >= PAIRS[kind]
     doubles = {
@@ -183,7 +185,9 @@ def _holds(kind: str, plane: Plane) -> bool:
         "resonance-1-1": (1.0, -1.0) if plane.problem.flip_kind == "symmetry-breaking" else (1.0,),
         "resonance-1-2": () if plane.problem.flip_kind == "symmetry-breaking" else (-1.0,),
     }.get(kind, ())
-    return not doubles or any(int(np.sum(np.abs(spectrum - place) < DOUBLE)) >= 2 for place in doubles)
+    return not doubles or any(
+        int(np.sum(np.abs(spectrum - place) < VANISHING.double)) >= 2 for place in doubles
+    )
 
 
 BORDER_KINDS = {
@@ -226,9 +230,9 @@ def _zeros(
             root: tuple[Place, float] | None = None
             index = i
             if i == 0 and abs(a) < sought.zero:
-                root = ends[0], ROUNDING
+                root = ends[0], ROUNDED
             elif i == last and abs(b) < sought.zero:
-                index, root = i + 1, (ends[1], ROUNDING)
+                index, root = i + 1, (ends[1], ROUNDED)
             elif (a >= 0.0) != (b >= 0.0) and math.isfinite(a + b):
                 segment = segment or _segment(problem, points[i : i + 2], within, at)
                 root = _root(plane, segment, test, abs(a) + abs(b))
@@ -264,12 +268,12 @@ def _root(plane: Plane, segment: Segment, test: Test, size: float) -> tuple[Plac
     def value(point: Solved) -> float:
         return _value(plane, _place(plane.locus, point), test)
 
-    root = None if size < NOTHING else locate(segment, value, TOLERANCE, fallback_zero=True, jump=size)
-    if root is None or not root.continuous or not abs(value(root.point)) <= VANISHED * size:
+    root = None if size < VANISHING.nothing else locate(segment, value, fallback_zero=True, jump=size)
+    if root is None or not root.continuous or not abs(value(root.point)) <= VANISHING.zero * size:
         return None
     one, other = (_place(plane.locus, end) for end in (segment.a, segment.b))
-    width = TOLERANCE * (abs(one.p - other.p) + abs(one.q - other.q))
-    return plane.place, max(root.error + width, root.point.correction) / (1.0 + abs(root.point.p)) + ROUNDING
+    width = LOCATING.bracket * (abs(one.p - other.p) + abs(one.q - other.q))
+    return plane.place, max(root.error + width, root.point.correction) / (1.0 + abs(root.point.p)) + ROUNDED
 
 
 def _point(
@@ -277,7 +281,9 @@ def _point(
 ) -> PlanePoint | None:
     """The point at a zero; None where it is not of its kind, or an end of the interval."""
     residual, (low, high) = plane.at(place), within
-    if min(abs(place.q - low), abs(place.q - high)) <= END * (high - low) or not sought.verify(plane):
+    if min(abs(place.q - low), abs(place.q - high)) <= VANISHING.margin * (high - low) or not sought.verify(
+        plane
+    ):
         return None
     locus, problem = plane.locus, plane.locus.at(place.q)
     if isinstance(problem, Adaptive):
@@ -290,7 +296,7 @@ def _point(
         u=place.u,
         coefficients=touching_form(plane, place, locus.index) if sought.kind == TOUCH.kind else {},
         multipliers=plane.problem.to_multipliers(plane.spectrum),
-        real=not bool((plane.row[2 * plane.m :] < -END).any()),
+        real=not bool((plane.row[2 * plane.m :] < -VANISHING.margin).any()),
         error=error,
         residual=residual,
         margins=tuple(sorted(_vanishing(plane))),
@@ -304,7 +310,7 @@ def same_point(one: PlanePoint, other: PlanePoint) -> bool:
 
 
 def _at_one_place(one: PlanePoint, other: PlanePoint) -> bool:
-    return all(abs(a - b) <= ONE_PLACE * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
+    return all(abs(a - b) <= PLACES.same * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
 
 
 # ------------------------------------------------------------------ where a motion becomes a shorter or more symmetric one
@@ -348,15 +354,15 @@ class Becomes(NamedTuple):
     """The motion that a motion all but is: the kind of special point at which it leaves that, its problem and unknowns, where there are some."""
 
     kind: str
-    problem: Any = None
+    problem: Problem | None = None
     u: np.ndarray | None = None
 
 
 def becomes(locus: LocusProblem, u: np.ndarray, p: float, q: float) -> Becomes | None:
     """What the motion at a place of a locus all but is, if it is more symmetric than others of its equations."""
-    whole: Any = locus.at(q)
-    if isinstance(locus.base, Adaptive):
-        root = whole.root(u, p, loose=LOOSE)
+    whole = locus.at(q)
+    if isinstance(whole, Adaptive):
+        root = on_mesh(whole).root(u, p, VANISHING.loose)
         return (
             None
             if root is None
@@ -364,7 +370,7 @@ def becomes(locus: LocusProblem, u: np.ndarray, p: float, q: float) -> Becomes |
         )
     sizes = locus.sizes_at(u, p, q)[:-2]
     for symmetry in whole.symmetries:
-        if np.abs((image_of(symmetry, u, p) - u) / sizes).max() < NEARLY:
+        if np.abs((image_of(symmetry, u, p) - u) / sizes).max() < VANISHING.image:
             return Becomes(symmetry.kind, *(() if symmetry.root is None else symmetry.root(u)))
     return None
 

@@ -10,8 +10,7 @@ from ..bifurcation.normal_forms.critical import normal_form
 from ..bifurcation.normal_forms.returned import ReturnForms, forms_at
 from .linear import Linearisation
 from .plane_point import PlanePoint
-
-CRITICAL = 1e-5  # distance of a critical multiplier from the boundary
+from .settings import VANISHING
 
 
 def coefficients(point: PlanePoint) -> dict[str, float]:
@@ -20,7 +19,7 @@ def coefficients(point: PlanePoint) -> dict[str, float]:
     The normal forms are those of :mod:`contvines.bifurcation.normal_forms.critical`; beside their coefficients "angle" is that of a pair (of the
     problem's own period), "omega" its frequency, where the kind itself leaves them open.
     """
-    problem, kind = point.problem, point.kind
+    problem, kind = point.attached, point.kind
     if problem.kernels.matrix is None or point.margins:
         return {}
     try:
@@ -39,14 +38,14 @@ def critical_pairs(forms: Forms) -> list[complex]:
     if forms.flow:
         spectrum = forms.eigenvalues
         size = float(np.abs(spectrum).max()) or 1.0
-        upper = spectrum[spectrum.imag > 1e-6 * size]
+        upper = spectrum[spectrum.imag > VANISHING.critical * size]
         distance = np.abs(upper.real) / size
     else:
         spectrum = forms.spectrum() if isinstance(forms, ReturnForms) else _spectrum(forms)
-        upper = spectrum[spectrum.imag > 1e-6]
+        upper = spectrum[spectrum.imag > VANISHING.critical]
         distance = np.abs(np.abs(upper) - 1.0)
     order = np.argsort(distance, kind="stable")
-    return [complex(upper[i]) for i in order if distance[i] < CRITICAL]
+    return [complex(upper[i]) for i in order if distance[i] < VANISHING.critical]
 
 
 def _spectrum(forms: Forms) -> NDArray[np.complex128]:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from ..bifurcation.normal_forms.coefficients import Coefficient, Forms
+from ..bifurcation.settings import NORMAL_FORMS
 from ..problems.abilities import Adaptive
 from .kinds import Look
 from .linear import Null
+from .on_mesh import on_mesh
 from .plane import Plane
 from .problem import LocusProblem
 from .touching import slope_along_branch
 
-UNSURE = 1e-3  # a coefficient whose error exceeds this part of its natural size is not known
 COEFFICIENTS = ("quadratic", "cubic", "lyapunov")  # tests that are coefficients of normal forms
 UNKNOWN = Coefficient(np.nan, np.inf)
 
@@ -97,7 +97,7 @@ def _bend(plane: Plane, null: Null, rough: bool = False) -> Coefficient:
     if isinstance(plane.problem, Adaptive):
         return _of_cycle(plane, "fold", along=v)
     found = _forms(plane, rough).quadratic(v)
-    if found.error <= UNSURE * found.size or (rough and found.error < abs(found.value)):
+    if found.error <= NORMAL_FORMS.unsure * found.size or (rough and found.error < abs(found.value)):
         return found  # of a rough one the sign is enough
     return _bend(plane, null) if rough else UNKNOWN
 
@@ -109,7 +109,7 @@ def _forms(plane: Plane, rough: bool = False) -> Forms:
 
 def critical_eigenvalue(forms: Forms) -> complex | None:
     """The eigenvalue of a flow nearest to the imaginary axis, of those with positive imaginary part."""
-    upper = forms.eigenvalues[forms.eigenvalues.imag > 1e-9 * np.abs(forms.eigenvalues).max()]
+    upper = forms.eigenvalues[forms.eigenvalues.imag > 0.0]
     return complex(upper[np.argmin(np.abs(upper.real))]) if len(upper) else None
 
 
@@ -134,6 +134,5 @@ def _of_cycle(
 ) -> Coefficient:
     """The form of a cycle from the equations on its mesh, which cost less than its return map."""
     place = plane.place
-    own: Any = plane.locus.at(place.q)
-    found = own.normal_form(kind, place.u, place.p, multiplier, along)
+    found = on_mesh(plane.locus.at(place.q)).normal_form(kind, place.u, place.p, multiplier, along)
     return UNKNOWN if found is None else Coefficient(found[0], 0.0, found[1])

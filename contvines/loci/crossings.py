@@ -11,14 +11,12 @@ import numpy as np
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from .locus import Locus
+from .settings import PLACES
 
 if TYPE_CHECKING:
     from .chart import Chart
 
 Met = tuple[str, str, int, int, np.ndarray]  # two loci, a segment of each, and where these meet
-
-MEETING = 1e-5  # of the plane's sides: a crossing so near to a point on both loci is that point
-SOLVED = 1e-12  # of the interval of the second parameter
 
 
 def crossings(chart: Chart, each: Callable[[list[Met]], Iterable[Met]] = iter) -> list[dict[str, Any]]:
@@ -50,7 +48,7 @@ def crossings(chart: Chart, each: Callable[[list[Met]], Iterable[Met]] = iter) -
     for one, other, i, j, place in each(met):
         p, q, error = _solved(chart.loci[one], chart.loci[other], i, j, place)
         meetings = [p.value for p in chart.points.values() if one in p.on and other in p.on]
-        if any(np.abs((np.array([p, q]) - m) / widths).max() < max(MEETING, error) for m in meetings):
+        if any(np.abs((np.array([p, q]) - m) / widths).max() < max(PLACES.end, error) for m in meetings):
             continue
         found.append(
             {"on": [one, other], "value": dict(zip(chart.parameters, (p, q))), "error": float(error)}
@@ -80,9 +78,10 @@ def _solved(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) -> t
     size = max(
         abs(np.diff(first.branch.values[i : i + 2])[0]), abs(np.diff(second.branch.values[j : j + 2])[0])
     )
-    if first.problem is None or second.problem is None:
+    problems = first.problem, second.problem
+    if problems[0] is None or problems[1] is None:
         return p, q, float(size / width)
-    engines = [Engine(locus.problem, (low, high), Settings()) for locus in (first, second)]
+    engines = [Engine(problem, (low, high), Settings()) for problem in (problems[0], problems[1])]
 
     def gap(value: float) -> tuple[float, float] | None:
         ends = []
@@ -96,7 +95,7 @@ def _solved(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) -> t
             ends.append(float(solved.u[locus.size]))
         return ends[0] - ends[1], ends[0]
 
-    before, now = q, q + 1e-3 * size + 1e-9 * width
+    before, now = q, q + Settings.aside * size + Settings.located * width
     last = gap(before)
     for _ in range(20):
         here = gap(now)
@@ -106,6 +105,6 @@ def _solved(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) -> t
         if not abs(now + step - q) <= 2.0 * size:
             break
         before, last, now = now, here, now + step
-        if abs(step) < SOLVED * width:
+        if abs(step) < Settings.rounding * width:
             return here[1], float(now), float(abs(step) / width)
     return p, q, float(size / width)

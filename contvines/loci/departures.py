@@ -33,9 +33,11 @@ ASIDE = 0.01  # of the interval of the first parameter: how far from a crossing 
 
 def leaving(point: PlanePoint, locus: Locus, bounds: tuple[float, float], over: str) -> list[Candidate]:
     """Starts of the loci that pass a point, or begin there."""
-    problem, (p, q) = point.problem, point.value
+    problem, (p, q) = point.attached, point.value
     found = []
-    crossing = locus.problem.condition == BRANCH  # two branches cross there, and none of them folds
+    crossing = (
+        locus.problem is not None and locus.problem.condition == BRANCH
+    )  # two branches cross there, and none of them folds
     for kind in PASSING.get(point.kind, ()):
         if kind == "neimark-sacker" and problem.spectrum != "map":
             continue

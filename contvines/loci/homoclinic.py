@@ -38,7 +38,7 @@ def homoclinic_of(
 
     The cycles of a Hopf point that lies on the locus through the point are followed until their period is long.
     """
-    problem, (p, q) = point.problem, point.value
+    problem, (p, q) = point.attached, point.value
     if not isinstance(problem, Equilibria):
         return []
     hopf = begin(problem, "hopf", point.u, p, over, 0, bounds)

@@ -29,6 +29,7 @@ import math
 
 import numpy as np
 
+from ..shared.floating_point import PIVOT
 from .layout import (
     APART,
     BASE,
@@ -138,7 +139,7 @@ def close(small, size):
             for c in range(5):
                 small[j, c], small[best, c] = small[best, c], small[j, c]
         if small[j, j] == 0.0:
-            small[j, j] = 1e-300
+            small[j, j] = PIVOT
         if small[j, j] < 0.0:
             sign = -sign
         for i in range(j + 1, size):

@@ -6,17 +6,19 @@ place, in straight steps of both parameters, and counts as found where it is sta
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
-from ..continuation.layout import Solved
+from ..continuation.layout import MARGIN, Solved
 from ..continuation.settings import Settings
 from ..problems.abilities import Attracting
 from .layout import BRANCH, FOLD
 from .locus import Locus
+from .settings import VANISHING
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
 
 STEPS = (1, 6, 24)  # on the way to the place
 NEAREST = 3  # starts of one word that are tried
-AGREES = 1e-6  # deviation of a simulation over one period
-INSIDE = -1e-12  # margins below this are negative
 
 
 class Start(NamedTuple):
@@ -53,7 +53,11 @@ class KnownMotions:
     """
 
     def __init__(
-        self, branches: Any, loci: Any, over: str, within: tuple[tuple[float, float], tuple[float, float]]
+        self,
+        branches: Iterable[Branch],
+        loci: Iterable[Locus],
+        over: str,
+        within: tuple[tuple[float, float], tuple[float, float]],
     ) -> None:
         self.over, self.within = over, within
         self.starts = [start for branch in branches for start in self._of_branch(branch)]
@@ -105,10 +109,10 @@ class KnownMotions:
                 continue
             engine, solved = reached
             problem, u, p = engine.problem, solved.u, solved.p
-            if not bool(engine.stable(solved.row)) or not float(engine.smallest_margin(solved.row)) > INSIDE:
+            if not bool(engine.stable(solved.row)) or not float(engine.smallest_margin(solved.row)) > MARGIN:
                 return None
             deviation = problem.replay(u, p)
-            if deviation is not None and not deviation < AGREES:
+            if deviation is not None and not deviation < Settings.same:
                 return None
             while (smaller := problem.root(u, p)) is not None:
                 problem, u = smaller
@@ -160,5 +164,5 @@ def _one(a: dict[str, Any], b: dict[str, Any], unit: float) -> bool:
         return False
     if "u" not in a or "u" not in b:
         return True
-    size = 1e-3 * max(float((np.abs(a["u"]) + np.abs(b["u"])).max()), unit)
+    size = VANISHING.loose * max(float((np.abs(a["u"]) + np.abs(b["u"])).max()), unit)
     return bool(np.abs(np.subtract(a["u"], b["u"])).max() <= size)

@@ -37,8 +37,6 @@ FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW, UNIT = range(8)
     KEPT,
 ) = range(27)
 
-STEP = 1e-7  # of the differences, relative to the scales of unknowns and parameters
-STILL = 1e-7  # relative distance within which slopes are not worked out again
 ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of SOLUTIONS, the last one with another after it
 B, C, FLIP_B, FLIP_C = range(4)  # rows of BORDERS
 KNOWN, SIGN, ANGLE, SERVED = range(

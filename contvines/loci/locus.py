@@ -12,6 +12,8 @@ from ..branches.branch import Branch
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings, hinted
 from .plane_point import PlanePoint
+from .problem import LocusProblem
+from .settings import PLACES
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,8 @@ class Locus:
         return f"Locus({self.label}: {self.kind}, {len(self)} points, {q} in [{lo:.6g}, {hi:.6g}])"
 
     @property
-    def problem(self) -> Any:
-        """The LocusProblem, or None after loading without the problem."""
+    def problem(self) -> LocusProblem | None:
+        """None after loading without the problem."""
         return self.branch.problem
 
     @property
@@ -124,7 +126,7 @@ class Locus:
         """Whether the last point is the first one again."""
         return self.branch.closed
 
-    def orbit(self, i: int) -> Any:
+    def orbit(self, i: int) -> object:
         """The special solution at point i as the object that the problem hands to users."""
         return self.branch.orbit(i)
 
@@ -142,7 +144,7 @@ class Locus:
                 found.append(float(self.problem.split(point.u)[1]))
         kept: list[float] = []
         for p in sorted(found):
-            if not kept or p - kept[-1] > 1e-10 * (1.0 + abs(p)):
+            if not kept or p - kept[-1] > PLACES.same * (1.0 + abs(p)):
                 kept.append(p)
         return np.array(kept)
 
@@ -165,5 +167,5 @@ class Locus:
 
 def _around(q: np.ndarray, value: float) -> tuple[float, float]:
     low, high = min(float(q.min()), value), max(float(q.max()), value)
-    wide = max(high - low, 1e-12 * (1.0 + abs(high)))
-    return low - 1e-9 * wide, high + 1e-9 * wide
+    wide = high - low or 1.0 + abs(high)
+    return low - wide, high + wide

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from .on_mesh import OnMesh, on_mesh
 
 LONGER = 1.3  # factor from one period to the next, on the way to a longer one
 
@@ -24,7 +24,8 @@ def lengthened(point: SpecialPoint, period: float) -> SpecialPoint:
     ValueError
         If the period is not positive, or no such cycle is found.
     """
-    problem: Any = point.problem
+    assert point.problem is not None
+    problem = on_mesh(point.problem)
     u, p = np.array(point.u), float(point.value)
     if not period > 0.0:
         raise ValueError(f"period = {period!r} must be positive")
@@ -41,7 +42,9 @@ def lengthened(point: SpecialPoint, period: float) -> SpecialPoint:
         problem, u, p = found
 
 
-def _of_period(problem: Any, u: np.ndarray, p: float, period: float) -> tuple[Any, np.ndarray, float] | None:
+def _of_period(
+    problem: OnMesh, u: np.ndarray, p: float, period: float
+) -> tuple[OnMesh, np.ndarray, float] | None:
     """The cycle of a given period near a guess, on a mesh that suits it."""
     border = np.zeros(problem.dimension + 1)
     border[problem.period_place] = 1.0

@@ -16,6 +16,9 @@ from .plane import Plane
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
+    from ..problems.protocol import Problem as _Plain
+else:
+    _Plain = object  # `WithCondition` answers by its `__getattr__`
 
 
 class PointOfLocus:
@@ -82,7 +85,7 @@ def tested(kind: Kind, plane: Plane) -> float:
         If the test fails for a reason of its own.
     """
     assert kind.test is not None
-    point: Any = of_plane(plane)
+    point = of_plane(plane)
     try:
         return float(kind.test(point))
     except (ArithmeticError, np.linalg.LinAlgError):
@@ -125,15 +128,16 @@ class WithCondition:
         """Without a factory: a file does not know the condition."""
         return {**self.plain.describe(), "factory": None}
 
-    def _inspect(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+    def _inspect(self, data: Problem, u: np.ndarray, p: float, work: object, row: np.ndarray) -> None:
         self.plain.kernels.inspect(data, u, p, work, row[:-1])
-        condition: Any = self.own_kind.locus
+        condition = self.own_kind.locus
+        assert callable(condition)
         try:
             row[-1] = float(condition(self._point(data, u, p, work, row[:-1])))
         except (ArithmeticError, np.linalg.LinAlgError):
             row[-1] = np.nan
 
-    def _point(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> PointOfLocus:
+    def _point(self, data: Problem, u: np.ndarray, p: float, work: object, row: np.ndarray) -> PointOfLocus:
         parameters = {**data.parameters, data.parameter: float(p)}
         return PointOfLocus(
             self.plain, parameters, (u, p), row, lambda: self.plain.kernels.matrix(data, work), data.measures

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
 
 @dataclass(eq=False)
@@ -48,14 +51,25 @@ class PlanePoint:
     residual: float = 0.0
     margins: tuple[int, ...] = ()
     note: str = ""
-    problem: Any = field(default=None, repr=False)
+    problem: Problem | None = field(default=None, repr=False)
 
     @property
-    def orbit(self) -> Any:
-        """The motion as the object that its problem hands to users."""
+    def attached(self) -> Problem:
+        """The problem.
+
+        Raises
+        ------
+        ValueError
+            If the point was loaded without it.
+        """
         if self.problem is None:
             raise ValueError(f"{self.label} was loaded without its problem")
-        return self.problem.orbit(self.u, self.value[0])
+        return self.problem
+
+    @property
+    def orbit(self) -> object:
+        """The motion as the object that its problem hands to users."""
+        return self.attached.orbit(self.u, self.value[0])
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this point in the JSON of a chart."""

@@ -7,6 +7,8 @@ import math
 
 import numpy as np
 
+from ..bifurcation.settings import LOCATING
+from ..shared.floating_point import ROUNDED
 from .layout import (
     BASE_F,
     BORDERS,
@@ -33,8 +35,6 @@ from .layout import (
     SHIFTED,
     SOLUTIONS,
     STATE,
-    STEP,
-    STILL,
     TESTED,
     TRIAL,
     TRIAL_F,
@@ -45,6 +45,7 @@ from .layout import (
     B,
     C,
 )
+from .settings import SCALING
 
 
 def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
@@ -75,7 +76,9 @@ def pair_of(row, multipliers, flow, reference, found):
         a, b = row[2 * i], row[2 * i + 1]
         for j in range(i + 1, multipliers):
             c, d = row[2 * j], row[2 * j + 1]
-            if abs(b + d) > 1e-9 * (1.0 + abs(b)) or (b != 0.0 and abs(a - c) > 1e-9 * (1.0 + abs(a))):
+            if abs(b + d) > LOCATING.rounding * (1.0 + abs(b)) or (
+                b != 0.0 and abs(a - c) > LOCATING.rounding * (1.0 + abs(a))
+            ):
                 continue  # neither two real ones nor a conjugate pair
             total, product = a + c, a * c - b * d
             if flow:
@@ -140,10 +143,10 @@ def slopes_along(data, work, direction, slopes):
     count = last - n
     parts = np.abs(direction) / np.maximum(scales[: last + 1], np.abs(point))
     length = max(parts[last], parts[: n + 1].max())
-    if not length > 1e-14:
+    if not length > ROUNDED:
         slopes[:count] = 0.0
         return
-    h = STEP / length
+    h = SCALING.step / length
     shifted[: n + 1] = point[: n + 1] + h * direction[: n + 1]
     q = point[last] + h * direction[last]
     tests(data, work, shifted[:n], data[UNIT] * shifted[n], q, slopes)
@@ -153,12 +156,12 @@ def slopes_along(data, work, direction, slopes):
 def frozen(work, U, q):
     """Whether directions and slopes are those of the last call, because the point has hardly moved; keeps the point if not.
 
-    Slopes are known to about STEP; a point that has moved less than STILL has them to that accuracy.
+    Slopes are known to about the step; a point that has moved less than that has them to that accuracy.
     """
     kept, scales, state = work[FROZEN], work[SCALES], work[STATE]
     last = U.shape[0]
-    near = state[KNOWN] > 0.0 and abs(q - kept[last]) < STILL * max(scales[last], abs(q))
-    if near and (np.abs(U - kept[:last]) < STILL * np.maximum(scales[:last], np.abs(U))).all():
+    near = state[KNOWN] > 0.0 and abs(q - kept[last]) < SCALING.step * max(scales[last], abs(q))
+    if near and (np.abs(U - kept[:last]) < SCALING.step * np.maximum(scales[:last], np.abs(U))).all():
         return True
     kept[:last], kept[last] = U, q
     return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 
@@ -18,12 +18,9 @@ from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
 from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
+from .settings import SCALING
 
-LEAST = (
-    1e-6  # of its interval: a second parameter that starts closer to zero than this says nothing of its size
-)
 FURTHER = 100.0  # times the sizes along the branch: no locus is measured with more
-UNSEEN = 1e-12  # typical sizes below this part of the largest one are those of zeros
 
 
 TABLE = 3  # of loci, in the native core
@@ -37,9 +34,9 @@ class Data(NamedTuple):
     ``memory`` is the struct `Data` of native/loci.hpp.
     """
 
-    first: Any
-    second: Any
-    calls: Any
+    first: object
+    second: object
+    calls: Kernels | TableKernels
     kind: int
     which: int
     multipliers: int
@@ -52,8 +49,8 @@ class Work(NamedTuple):
     """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`. ``memory`` is the struct `Work` of native/loci.hpp."""
 
     residual: np.ndarray
-    base: Any
-    trial: Any
+    base: Sequence[np.ndarray]
+    trial: Sequence[np.ndarray]
     base_F: np.ndarray
     base_Q: np.ndarray
     trial_F: np.ndarray
@@ -169,7 +166,7 @@ class LocusProblem(ProblemDefaults):
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
         self.compiled = bool(kernels.compiled)
-        self.kernels: Any = TableKernels(native_table(TABLE)) if self.compiled else IN_PYTHON
+        self.kernels = TableKernels(native_table(TABLE)) if self.compiled else IN_PYTHON
         self.natural = has_natural_units(problem)
         about = self.condition, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
         self.data = Data(self.first.data, self.second.data, self.first.kernels, *about)
@@ -217,9 +214,9 @@ class LocusProblem(ProblemDefaults):
         )
         if not self.compiled:
             return work
-        residual, _, _, *arrays = work[: work._fields.index("memory")]
+        arrays = [part for part in work[:-1] if isinstance(part, np.ndarray)]
         sizes = n, self.dimension, len(work.masked), address(base.memory), address(trial.memory)
-        return work._replace(memory=pack(*sizes, residual, *arrays, len(work.row)))
+        return work._replace(memory=pack(*sizes, *arrays, len(work.row)))
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""
@@ -232,7 +229,7 @@ class LocusProblem(ProblemDefaults):
             if scales is not None:
                 largest = float(scales.unknowns.max())
                 # an unknown that is zero all along the branch has shown no size of its own
-                own = np.where(scales.unknowns < UNSEEN * largest, largest, scales.unknowns)
+                own = np.where(scales.unknowns < SCALING.unseen * largest, largest, scales.unknowns)
                 if (
                     self.base.scales_learned
                 ):  # a locus goes further: as far as the second parameter alone moves the motion
@@ -248,7 +245,7 @@ class LocusProblem(ProblemDefaults):
     def _size_of_second(self, within: tuple[float, float]) -> float:
         """Of the second parameter: what it is at the start, or the interval where that says little."""
         width, start = within[1] - within[0], abs(self.base.parameters[self.over])
-        return min(width, start) if start > LEAST * width else width
+        return min(width, start) if start > SCALING.start * width else width
 
     def sizes_at(self, u: np.ndarray, p: float, q: float) -> np.ndarray:
         """What changes of (u, p, q) are compared with near a place."""
@@ -258,7 +255,7 @@ class LocusProblem(ProblemDefaults):
         return np.maximum(own, np.abs(np.append(u, [p, q])))
 
     # ------------------------------------------------------------------ what a solution is
-    def split(self, U: np.ndarray) -> tuple[np.ndarray, Any]:
+    def split(self, U: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(u, p) of a solution."""
         return np.asarray(U[..., : self.size]), self.unit * U[..., self.size]
 
@@ -266,7 +263,7 @@ class LocusProblem(ProblemDefaults):
         """The unknowns of a special point."""
         return np.concatenate([u, [p / self.unit], np.zeros(self.dimension - self.size - 1)])
 
-    def at(self, q: float) -> Any:
+    def at(self, q: float) -> Problem:
         """The problem of the branches at a value of the second parameter."""
         return self.base.against(self.inner, {self.over: float(q)})
 
@@ -284,7 +281,7 @@ class LocusProblem(ProblemDefaults):
             return self.base.margin_kind(j)
         return "resonance" if j == own + 2 else "end"
 
-    def to_multipliers(self, spectrum: Any) -> np.ndarray:
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the full period along the locus."""
         return self.base.to_multipliers(spectrum)
 
@@ -314,7 +311,7 @@ class LocusProblem(ProblemDefaults):
             result |= {name: np.array([row[name][0] for row in rows]) for name in others}
         return result
 
-    def orbit(self, u: np.ndarray, p: float) -> Any:
+    def orbit(self, u: np.ndarray, p: float) -> object:
         """The special solution as the object that the problem hands to users."""
         inner, value = self.split(u)
         return self.at(p).orbit(inner, float(value))
@@ -354,19 +351,32 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Loc
     from ..problems.registry import rebuild
 
     problem = rebuild(description["problem"], trust)
-    return None if problem is None else LocusProblem(problem, *described(description))
+    return None if problem is None else LocusProblem(problem, **described(description))
 
 
-def described(description: Mapping[str, Any]) -> tuple[Any, ...]:
+class Described(TypedDict):
+    """Arguments of a LocusProblem."""
+
+    kind: str
+    over: str
+    index: int
+    bounds: tuple[float, float]
+    borders: np.ndarray
+    reference: float
+    masked: Sequence[int]
+    unit: float
+
+
+def described(description: Mapping[str, Any]) -> Described:
     """The arguments of a LocusProblem, without the problem, from its description."""
     low, high = description["bounds"]
-    return (
-        description["kind"],
-        description["parameter"],
-        description["index"],
-        (low, high),
-        np.array(description["borders"]),
-        description["reference"],
-        description["masked"],
-        description.get("unit", 1.0),
+    return Described(
+        kind=description["kind"],
+        over=description["parameter"],
+        index=description["index"],
+        bounds=(low, high),
+        borders=np.array(description["borders"]),
+        reference=description["reference"],
+        masked=description["masked"],
+        unit=description.get("unit", 1.0),
     )

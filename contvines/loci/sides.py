@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..branches.branch import Branch
+from ..shared.floating_point import TINY
 from .linear import Linearisation
 from .problem import LocusProblem
-from .starts import SINGULAR
-
-STEP = 1e-6  # along the motions, relative to the parameter and to each unknown
+from .settings import SCALING, VANISHING
 
 
 def impossible_side(problem: LocusProblem, branch: Branch) -> int:
@@ -23,14 +22,16 @@ def impossible_side(problem: LocusProblem, branch: Branch) -> int:
     line.at(u, p)
     start = line.row()[place]
     null = line.null_vectors()
-    if abs(null.test) < SINGULAR:
+    if abs(null.test) < VANISHING.singular:
         return 0
     b, c = null.column, null.row
     x, s = line.solve(-line.slope, b, c)
     v, g = line.null(b, c)
     direction = x - (s / g) * v  # du/dp along the motions themselves
     sizes = problem.sizes_at(u, p, float(branch.values[i]))
-    step = STEP * min(float(sizes[-2]), 1.0 / max(float((np.abs(direction) / sizes[:-2]).max()), 1e-300))
+    step = SCALING.step * min(
+        float(sizes[-2]), 1.0 / max(float((np.abs(direction) / sizes[:-2]).max()), TINY)
+    )
     line.at(u + step * direction, p + step)
     rise = line.row()[place] - start
     along = branch.tangents[i]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +17,12 @@ from .borders import borders_at
 from .kinds import condition
 from .layout import APART, MARGIN, PAIR, PERIOD
 from .linear import Linearisation
+from .on_mesh import on_mesh
 from .probing import pair_of
 from .problem import LocusProblem, has_natural_units
+from .settings import VANISHING
 
-ZERO = 1e-9  # margins below this at a border vanish there, all of them all along its locus
-MET = 1e-7  # margins below this are those of a border that is met from its other side
 PLAIN = 16.0  # parameters up to this size, and down to its inverse, are counted as they are
-SINGULAR = 1e-7  # a test below this: the equations are singular, and their solutions known to half the digits
 
 
 def begin(
@@ -57,8 +55,7 @@ def begin(
         index = problem.smooth_margin(index)
     reference = 0.0
     if wanted == PERIOD:
-        cycles: Any = problem
-        index = cycles.period_place
+        index = on_mesh(problem).period_place
         reference = float(u[index])
     make = AdaptiveLocus if isinstance(problem, Adaptive) else LocusProblem
     unit = unit_of(problem, bounds, p)
@@ -73,7 +70,7 @@ def begin(
         locus.masked = (1,) if near else (0, 1)
     if wanted == MARGIN:
         margins = line.row()[2 * int(problem.n_multipliers) :]
-        locus.masked = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < ZERO)) or (index,)
+        locus.masked = tuple(int(j) for j in np.flatnonzero(np.abs(margins) < VANISHING.margin)) or (index,)
     if wanted == PAIR:
         found = np.zeros(2)
         row = line.row()
@@ -98,19 +95,22 @@ def regular_side(point: SpecialPoint) -> SpecialPoint:
     no such stick, and grazes there.
     """
     problem = point.problem
-    if condition(problem, point.kind) != MARGIN or singularity(problem, point.u, point.value) >= SINGULAR:
+    if (
+        condition(problem, point.kind) != MARGIN
+        or singularity(problem, point.u, point.value) >= VANISHING.singular
+    ):
         return point
     outward = -point.tangent if point.index == 0 else point.tangent
     p = float(point.value)
     for seed in problem.beyond(replace(point, tangent=outward)):
         other = seed.problem
-        wide = abs(seed.p - p) + 1e-6 * (1.0 + abs(p))
+        wide = 1.0 + abs(p)
         solved = Engine(other, (p - wide, p + wide), Settings()).at_value(np.asarray(seed.u, dtype=float), p)
-        if solved is None or singularity(other, solved.u, p) < SINGULAR:
+        if solved is None or singularity(other, solved.u, p) < VANISHING.singular:
             continue
         line = Linearisation(other)
         line.at(solved.u, p)
-        zero = np.flatnonzero(np.abs(line.row()[2 * int(other.n_multipliers) :]) < MET)
+        zero = np.flatnonzero(np.abs(line.row()[2 * int(other.n_multipliers) :]) < VANISHING.margin)
         if len(zero):
             j = int(zero[0])
             return replace(point, problem=other, u=solved.u, kind=other.margin_kind(j), margin_index=j)

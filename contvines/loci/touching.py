@@ -12,15 +12,19 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..bifurcation.settings import LOCATING
+from ..continuation.settings import Settings
+from ..shared.floating_point import ROUNDED
 from .linear import Null
 from .plane import Place, Plane
+from .settings import SCALING
 
-STEP = 1e-4  # of the first derivative, along the branch, relative to the sizes of unknowns and parameter
-WIDE, NARROWER, WIDTHS = 8e-3, 0.35, 9  # widths of the differences, relative to the sizes of the parameters
+STEP = (
+    Settings.offset
+)  # of the first derivative, along the branch, relative to the sizes of unknowns and parameter
+NARROWER, WIDTHS = 0.35, 9  # widths of the differences, relative to the sizes of the parameters
 BEND = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / 180.0  # weights of a second derivative
 SWEEPS = 12  # of Newton's method on the branch
-SETTLED = 64.0 * np.finfo(float).eps  # corrections that are rounding
-CLOSE = 1e-9  # corrections below this are the last where they shrink no more
 
 
 def slope_along_branch(plane: Plane, null: Null, index: int) -> float:
@@ -67,7 +71,7 @@ def touching_form(plane: Plane, place: Place, index: int) -> dict[str, float]:
 def _best(value: Callable[[float], float]) -> float:
     """A difference quotient at the width at which it changes least from one width to the next."""
     best, error, before = np.nan, np.inf, np.nan
-    for width in WIDE * NARROWER ** np.arange(WIDTHS):
+    for width in SCALING.widest * NARROWER ** np.arange(WIDTHS):
         now = value(float(width))
         if abs(now - before) < error:
             best, error = now, abs(now - before)
@@ -91,7 +95,7 @@ def _on_branch(plane: Plane, guess: Place, index: int) -> float:
         step = x - (s / g) * v if g != 0.0 else np.full(len(x), np.nan)
         size = float((np.abs(step) / plane.locus.sizes_at(*place)[:-2]).max())
         place = place._replace(u=place.u + step)
-        if size < SETTLED or (size < CLOSE and size > 0.3 * last):
+        if size < ROUNDED or (size < LOCATING.rounding and size > 0.3 * last):
             return _margin(plane, place, index)
         last = size
     return np.nan

@@ -27,6 +27,7 @@ from ..journal import NullJournal
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
+from .adaptive import AdaptiveLocus
 from .codimension_two import becomes, beginning
 from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
@@ -34,17 +35,15 @@ from .long_period import lengthened
 from .own_test import of_own_kind, with_condition
 from .plane_point import PlanePoint
 from .problem import LocusProblem
+from .settings import VANISHING
 from .sides import impossible_side
-from .starts import ZERO, begin, first_point, regular_side
+from .starts import begin, first_point, regular_side
 
 if TYPE_CHECKING:
     from ..journal import Journal
 
 #: how a half may end where equations become singular
 SINGULAR = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE, Status.CREEPING, Status.BORDER)
-UNFOLDED = (
-    1e-7  # an unfolding beyond this (in units of the equations) says that a branch point does not persist
-)
 
 
 @hinting
@@ -176,9 +175,9 @@ def trace_locus(
         try:
             return _traced(problem, u, p, q, within, settings, label, seed, virtual, journal, progress, name)
         except TooCoarse:
-            finer: Any = problem
-            u = finer.base.halved(u)
-            problem = finer.refined()
+            assert isinstance(problem, AdaptiveLocus)
+            u = problem.mesh.halved(u)
+            problem = problem.refined()
     raise AssertionError("meshes are refined a few times at most")
 
 
@@ -207,7 +206,7 @@ def _traced(
     journal = NullJournal() if journal is None else journal
     own = int(problem.base.n_margins)
     margins = engine.margins(start.row)
-    real = not np.any(margins[:own] < -ZERO)
+    real = not np.any(margins[:own] < -VANISHING.margin)
 
     def notice(points: int, value: float) -> None:
         if progress is not None:
@@ -262,14 +261,14 @@ def _traced(
 def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoint) -> None:
     """Let a locus end at the point of a shorter or more symmetric motion that is its end."""
     nothing = np.zeros(len(end.u) + 1)
-    seen = end.problem.offspring(end.problem.flip_kind, end.u, end.value[0], nothing, -1.0 + 0.0j)[0]
+    seen = end.attached.offspring(end.attached.flip_kind, end.u, end.value[0], nothing, -1.0 + 0.0j)[0]
     branch.points, branch.values = branch.points.copy(), branch.values.copy()
     branch.points[index] = problem.joined(np.asarray(seen.u, dtype=float), end.value[0])
     branch.values[index] = end.value[1]
 
 
 def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:
-    return bool((np.abs(points[:, problem.size + 1]) > UNFOLDED).any())
+    return bool((np.abs(points[:, problem.size + 1]) > VANISHING.singular).any())
 
 
 def _border(half: HalfBranch) -> Located | None:

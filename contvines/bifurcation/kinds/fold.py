@@ -9,7 +9,7 @@ from ..determinant import alone
 from ..kind import Classified, Kind, Test
 from ..located import Located
 from ..normal_forms.along_branch import fold_coefficient
-from ..point_on_branch import PointOnBranch
+from ..point_on_branch import Point, PointOnBranch
 from ..segment import Segment
 from .multipliers import passing
 
@@ -34,10 +34,10 @@ def _upright(segment: Segment) -> bool:
     return min(abs(end.tangent[-1]) for end in (segment.a, segment.b)) <= segment.engine.upright(segment.a.p)
 
 
-def turns_back(point: PointOnBranch) -> bool:
+def turns_back(point: Point) -> bool:
     """Whether the parameter turns back by more than rounding and the noise of the equations, or stands still where no other branch passes."""
+    assert isinstance(point, PointOnBranch) and point.segment is not None
     segment, engine = point.segment, point.engine
-    assert segment is not None
     if engine.adaptive and _upright(segment):
         return alone(engine, point.solved)
     moved = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
