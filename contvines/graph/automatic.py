@@ -23,7 +23,7 @@ from .schedule_branches import leave, why_nothing_leaves
 
 @hinting
 def diagram(
-    seed: Any,
+    seed: object,
     over: str | None = None,
     within: tuple[float, float] | None = None,
     depth: int = 3,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..continuation.starts import solve_start, start_remark
 from ..interrupts import listening, take
+from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from .label_special_points import mark, origin_index
 from .match_borders import is_border, same_border, tie_borders
@@ -226,7 +227,8 @@ def refined(
     run: Run, engine: Engine, pending: Pending, first: Solved
 ) -> tuple[Engine, Detector, Solved] | None:
     """The same pending branch with more unknowns; None where it cannot be started there."""
-    coarse: Any = pending.problem
+    coarse = pending.problem
+    assert isinstance(coarse, Adaptive)
     problem = coarse.refined()
     finer, detector = run.engine(problem)
 

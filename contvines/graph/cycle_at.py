@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ..bifurcation.switching import departures
@@ -15,7 +13,7 @@ from ..problems.registry import without_problem
 HALVINGS = 4  # of the amplitude, until a cycle is found
 
 
-def cycle_at(point: SpecialPoint) -> Any:
+def cycle_at(point: SpecialPoint) -> object:
     """One of the small cycles that are born at a Hopf point.
 
     Raises
@@ -23,7 +21,7 @@ def cycle_at(point: SpecialPoint) -> Any:
     ValueError
         If the problem has no cycles, or none is found.
     """
-    problem: Any = point.problem
+    problem = point.problem
     if problem is None:
         raise ValueError(without_problem(point.label))
     children = problem.offspring("hopf", point.u, point.value, point.tangent, 1j)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from contvines.shared.near_names import did_you_mean
 
@@ -13,11 +13,15 @@ from ..bifurcation.kinds import LABELS, RENAMED, kind_named
 from ..continuation.settings import hinted
 from ..interrupts import Resumable
 from ..problems.abilities import notation_of
+from ..shared.plot_options import PlotOptions
 from .attractor import Attractor
 from .unresolved import Unresolved
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
+
+    from matplotlib.figure import Figure
 
     from ..branches.branch import Branch
     from ..branches.special_point import SpecialPoint
@@ -55,6 +59,20 @@ class Switch:
             "kind": self.kind,
             "note": self.note,
         }
+
+
+class DiagramOptions(PlotOptions, total=False):
+    """Of :func:`contvines.plots.diagram.plot_diagram`."""
+
+    labels: bool | Sequence[str]
+    ends: bool
+    marks: bool | Sequence[str]
+    words: bool
+    color: str
+    name: str | None
+    xlim: tuple[float, float] | None
+    ylim: tuple[float, float] | None
+    inset: bool | tuple[tuple[float, float], tuple[float, float]] | None
 
 
 @hinted
@@ -297,7 +315,7 @@ class Graph(Resumable):
 
         return export(self, to, path)
 
-    def plot(self, x: str | None = None, y: str | None = None, **options: Any):
+    def plot(self, x: str | None = None, y: str | None = None, **options: Unpack[DiagramOptions]) -> Figure:
         """The bifurcation diagram; see :func:`contvines.plots.diagram.plot_diagram`."""
         from ..plots.diagram import plot_diagram
 

@@ -21,10 +21,9 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..problems.protocol import Problem
+from .settings import IDENTITY
 
 SAME = Settings().same
-STATED = 1e-4  # of the tolerance: parameter values whose errors are stated
-UNSTATED = 1e-2  # ... and those of which none is stated
 ERRORS = 10.0  # times the stated errors
 
 Form = tuple[Hashable, np.ndarray]
@@ -72,9 +71,9 @@ def same_value(one: Place, other: Place, unit: float, tolerance: float = SAME) -
     """Whether two parameter values may be one, as far as they are known; see the top."""
     stated = one.error > 0.0 and other.error > 0.0
     reach = (
-        STATED * tolerance * unit + ERRORS * (one.error + other.error)
+        IDENTITY.stated * tolerance * unit + ERRORS * (one.error + other.error)
         if stated
-        else UNSTATED * tolerance * unit
+        else IDENTITY.unstated * tolerance * unit
     )
     return abs(one.value - other.value) <= min(reach, tolerance * unit)
 
@@ -104,7 +103,7 @@ def turns_at(engine: Engine, fold: Solved, u: np.ndarray, p: float) -> bool:
         return False
     gap = engine.join(u - fold.u, p - fold.p)
     tolerance = engine.settings.same
-    near = abs(gap[-1]) <= UNSTATED * tolerance * engine.parameter_unit(fold.p)
+    near = abs(gap[-1]) <= IDENTITY.unstated * tolerance * engine.parameter_unit(fold.p)
     return near and engine.norm(gap) <= singular(tolerance)
 
 

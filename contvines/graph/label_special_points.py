@@ -25,9 +25,10 @@ from ..continuation.layout import MARGIN
 from ..interrupts import OPEN
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
-from .identity import UNSTATED, Place, same_form, same_value, turns_at
+from .identity import Place, same_form, same_value, turns_at
 from .match_borders import is_border
 from .run import Origin, Pending, Run
+from .settings import IDENTITY
 from .unresolved import Unresolved
 
 TURNING_KINDS = ("branch-point", "symmetry-breaking")
@@ -211,7 +212,7 @@ def _known(
             if found is not None and found.label == branch.label:
                 other.reached = branch.real
                 return other.point
-    form, beside, near = None, [], UNSTATED * run.settings.same * run.unit(point.p)
+    form, beside, near = None, [], IDENTITY.unstated * run.settings.same * run.unit(point.p)
     for known in run.graph.special.values():
         if known.kind != kind or abs(known.value - point.p) > near or known.problem is None:
             continue
@@ -311,9 +312,9 @@ def _special(run: Run, kind: str, engine: Engine, branch: Branch, event: Located
     if event.role is Role.MEETING:
         special.met_from = branch.label
     if classify := run.kind(kind).classify:
-        special.criticality, special.coefficient, remarks = Classified(
-            *classify(PointOnBranch(engine, point))
-        )
+        form = classify(PointOnBranch(engine, point))
+        form = form if isinstance(form, Classified) else Classified(*form)
+        special.criticality, special.coefficient, remarks = form
         special.remarks = (*special.remarks, *remarks)
     return special
 

@@ -23,6 +23,8 @@ from .well_formed import check_graph
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from _typeshed import DataclassInstance
+
     from ..problems.protocol import Problem
 
 Entry = tuple[str, str, dict[str, Any]]
@@ -101,7 +103,7 @@ def branch_of(content: Mapping[str, Any], problem: Problem | None) -> Branch:
     return Branch(problem=problem, **own)
 
 
-def content_of(thing: Any) -> dict[str, Any]:
+def content_of(thing: DataclassInstance) -> dict[str, Any]:
     """A branch or special point as arrays and JSON values, its problem apart."""
     content = {f.name: getattr(thing, f.name) for f in fields(thing) if f.name not in ("problem", "own_kind")}
     if "endings" in content:
@@ -177,7 +179,7 @@ def renamed(entries: Entries) -> Entries:
     }
 
 
-def _content(group: str, content: Any, labels: Mapping[str, str]) -> Any:
+def _content(group: str, content: dict[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
     if group == "plane-point":
         return {**content, "on": _relabelled(content["on"], labels)}
     if group in ("attractor", "missing") or not isinstance(content, Mapping):
@@ -192,7 +194,7 @@ def _content(group: str, content: Any, labels: Mapping[str, str]) -> Any:
     }
 
 
-def _relabelled(value: Any, labels: Mapping[str, str]) -> Any:
+def _relabelled(value: object, labels: Mapping[str, str]) -> object:
     if isinstance(value, str):
         return labels.get(value, value)
     if isinstance(value, list | tuple):

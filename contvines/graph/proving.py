@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+from ..branches.branch import Branch
+from ..continuation.settings import Settings
 
 if TYPE_CHECKING:
     from .graph import Graph
@@ -11,7 +14,54 @@ if TYPE_CHECKING:
 STABLE = {True: ", stable", False: ", unstable", None: ""}
 
 
-def subject(graph: Graph, label: str) -> Any:
+@runtime_checkable
+class Proof(Protocol):
+    """A proof of a special point, a solution or a branch."""
+
+    @property
+    def existence(self) -> bool: ...
+    @property
+    def real(self) -> bool | None: ...
+    @property
+    def stable(self) -> bool | None: ...
+    @property
+    def radius(self) -> float | None: ...
+    @property
+    def obstacles(self) -> Iterable[object]: ...
+    def certificate(self) -> dict[str, Any]: ...
+
+
+class Piece(Protocol):
+    """What is proved of a stretch of a branch."""
+
+    @property
+    def covered(self) -> tuple[float, float] | None: ...
+    @property
+    def ends(self) -> Iterable[object]: ...
+    @property
+    def real(self) -> bool | None: ...
+    @property
+    def stable(self) -> bool | None: ...
+
+
+@runtime_checkable
+class OfBranch(Proof, Protocol):
+    """A proof of a branch: of stretches between its points."""
+
+    @property
+    def pieces(self) -> Sequence[Piece]: ...
+    @property
+    def places(self) -> Sequence[tuple[int, int]]: ...
+
+
+@runtime_checkable
+class Subject(Protocol):
+    """What can be proved."""
+
+    def prove(self, **options: Any) -> Proof: ...
+
+
+def subject(graph: Graph, label: str) -> object:
     """What a label names: a special point, a branch, or with a colon one solution of a branch (``B1:12``).
 
     Raises
@@ -20,16 +70,17 @@ def subject(graph: Graph, label: str) -> Any:
         If there is none, or it cannot be proved.
     """
     name, _, place = label.partition(":")
-    thing: Any = graph[name]
+    thing = graph[name]
     if not place:
         return thing
-    last = len(thing) - 1 if name in graph.branches else -1
+    last = len(thing) - 1 if isinstance(thing, Branch) else -1
     if not (place.isdigit() and int(place) <= last):
         raise ValueError(
             f"{label}: {name} is a single point; leave out :{place}"
             if last < 0
             else f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}"
         )
+    assert isinstance(thing, Branch)
     return thing.orbit(int(place))
 
 
@@ -47,12 +98,14 @@ def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str,
         If a label is unknown, or its problem has no proofs.
     """
     wanted = list(labels) or list(graph.special)
-    subjects = {label: subject(graph, label) for label in wanted}
-    for label, thing in subjects.items():
-        if not hasattr(thing, "prove"):
+    subjects: dict[str, Subject] = {}
+    for label in wanted:
+        thing = subject(graph, label)
+        if not isinstance(thing, Subject):
             raise ValueError(
                 f"{label}: its problem offers no proofs; machines of orbits with flights in closed form do"
             )
+        subjects[label] = thing
     found = {}
     for label, thing in subjects.items():
         more = {"special": graph.special} if label in graph.branches else {}
@@ -61,9 +114,11 @@ def prove(graph: Graph, labels: Iterable[str] = (), **options: Any) -> dict[str,
     return found
 
 
-def kept(proof: Any) -> dict[str, Any]:
+def kept(proof: Proof) -> dict[str, Any]:
     """What is kept of a proof: its claims, and the certificate where there is one."""
-    parts = getattr(proof, "pieces", ())
+    parts = (
+        [_stretch(*part) for part in zip(proof.pieces, proof.places)] if isinstance(proof, OfBranch) else []
+    )
     return {
         "existence": bool(proof.existence),
         "real": proof.real,
@@ -71,11 +126,11 @@ def kept(proof: Any) -> dict[str, Any]:
         "radius": proof.radius,
         "obstacles": [str(obstacle) for obstacle in proof.obstacles],
         "certificate": (proof.certificate() or None) if proof.existence or parts else None,
-        **({"stretches": [_stretch(*part) for part in zip(parts, proof.places)]} if parts else {}),
+        **({"stretches": parts} if parts else {}),
     }
 
 
-def _stretch(piece: Any, places: tuple[int, int]) -> dict[str, Any]:
+def _stretch(piece: Piece, places: tuple[int, int]) -> dict[str, Any]:
     """What is proved of a stretch of a branch, between two of its points."""
     return {
         "between": list(places),
@@ -92,7 +147,9 @@ def stretches(graph: Graph, label: str) -> list[tuple[list[int], dict[str, Any]]
     for stretch in graph.proofs.get(label, {}).get("stretches", ()):
         if stretch["covered"] is not None and stretch["real"] is not None:
             first, last = stretch["between"]
-            low, high = (value * (1 + side * 1e-9) for side, value in zip((-1, 1), stretch["covered"]))
+            low, high = (
+                value * (1 + side * Settings.located) for side, value in zip((-1, 1), stretch["covered"])
+            )
             points = [i for i in range(first, last + 1) if low <= branch.values[i] <= high]
             found.append((points, stretch))
     return found

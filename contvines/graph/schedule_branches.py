@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.located import Role
@@ -21,7 +22,7 @@ from ..continuation.engine import Engine, Solved
 from ..interrupts import OPEN
 from ..journal import NullJournal
 from ..problems.abilities import Adaptive, Onward
-from ..problems.protocol import Problem, Seed
+from ..problems.protocol import Embedding, Problem, Seed
 from ..problems.registry import UnknownFactory, rebuild
 from .graph import Graph
 from .run import Origin, Pending, Run
@@ -92,7 +93,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     )
     if generic or inside:
         name, critical = "plus", 1.0 + 0.0j
-        children: list[Any] = [_Same(problem, point.u, point.tangent, point.kind)]
+        children = [Embedding(problem, point.u, point.tangent, point.kind)]
     else:
         name, critical = "minus", -1.0 + 0.0j
         children = list(problem.offspring(point.kind, point.u, point.value, point.tangent, critical))
@@ -146,13 +147,13 @@ def _classify(point: SpecialPoint, curvature: float, speed: float | None, name: 
 
     Amplitudes of unknowns that differ much in size say less.
     """
-    problem: Any = point.problem
+    problem = point.problem
     point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
     exact = problem.normal_form(point.kind, point.u, point.value) if isinstance(problem, Adaptive) else None
     if exact is not None:
         rough = exact[0]
         point.criticality = "supercritical" if (rough > 0.0) == (name == "minus") else "subcritical"
-    exactly = partial(_cubic, problem, point.u, point.value, name, rough)
+    exactly = partial(_cubic, point.problem, point.u, point.value, name, rough)
     point.coefficient = rough if point.criticality is None else exactly
 
 
@@ -197,7 +198,7 @@ def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 
 def _exchange(
-    target: Engine, spectrum: Any, value: float, speed: float | None
+    target: Engine, spectrum: NDArray[np.complex128], value: float, speed: float | None
 ) -> Callable[[Solved], bool] | None:
     """Whether a solution of the branch that leaves where a multiplier passes -1 at a speed is stable where the known one is not, and unstable where it is.
 
@@ -215,14 +216,14 @@ def _exchange(
     return exchanged
 
 
-def _critical(engine: Engine, spectrum: Any, critical: complex) -> int | None:
+def _critical(engine: Engine, spectrum: NDArray[np.complex128], critical: complex) -> int | None:
     """How many multipliers are critical, and so how many null vectors there may be; None where the multipliers do not tell."""
     if engine.problem.spectrum != "map":
         return None
     return int((np.abs(spectrum - critical) < engine.settings.together).sum()) or None
 
 
-def _cubic(problem: Any, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
+def _cubic(problem: Problem, u: np.ndarray, p: float, name: str, rough: float | None) -> float | None:
     """The coefficient from derivatives of the equations, where these can be obtained; else the one of the branch that leaves."""
     if isinstance(problem, Adaptive) or len(u) > DERIVATIVES:
         return rough
@@ -247,7 +248,7 @@ def _row(run: Run, engine: Engine, point: SpecialPoint) -> np.ndarray:
     return np.zeros(engine.row_size) if solved is None else solved.row
 
 
-def _which(run: Run, engine: Engine, point: SpecialPoint, name: str, spectrum: Any) -> int:
+def _which(run: Run, engine: Engine, point: SpecialPoint, name: str, spectrum: NDArray[np.complex128]) -> int:
     """Rank of the critical multiplier among those of its sort."""
     event = run.events.get(point.label)
     if event is not None and event.index > 0:
@@ -415,7 +416,7 @@ def _recorded(seeds: list[Seed]) -> dict[str, Any]:
     return record
 
 
-def _rebuilt(record: Any) -> list[Seed] | None:
+def _rebuilt(record: Mapping[str, Any] | None) -> list[Seed] | None:
     """The seeds of a journal's record; None where a problem cannot be obtained from it, and is asked for again."""
     if record is None:
         return None
@@ -431,10 +432,3 @@ def _rebuilt(record: Any) -> list[Seed] | None:
         persistence = bool(record["persistence"][i])
         seeds.append(Seed(problem, record[f"u{i}"], record["p"][i], tangent, "border", note, persistence))
     return seeds
-
-
-class _Same:
-    """The point in its own problem."""
-
-    def __init__(self, problem: Problem, u: np.ndarray, tangent: np.ndarray, kind: str) -> None:
-        self.problem, self.u, self.tangent, self.kind = problem, u, tangent, kind

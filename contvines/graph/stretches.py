@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ..continuation.settings import Settings
+from ..shared.number_text import PART
 from .measures import default_measure
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
     from .graph import Graph
 
-SHARP = 1e-5  # of a step between two points: so closely a peak between them is located
-MEETING = 1e-9  # of the interval: stretches that end nearer to one another meet
+SHARP = Settings.one_place  # of a step between two points: so closely a peak between them is located
+MEETING = Settings.located  # of the interval: stretches that end nearer to one another meet
 SIMULATED = 40  # values over the whole interval, where a diagram has next to nothing of it
-LEAST = 1e-3  # of the interval: gaps that are shorter together are not simulated, and a response is known in spite of them
 
 
 @dataclass(frozen=True)
@@ -114,7 +115,7 @@ def _refined(top: Top) -> Top:
         return np.inf if u is None else -_response(stretch, u, p)
 
     sharp = {"xatol": SHARP * (high - low)}
-    found: Any = minimize_scalar(lowered, bounds=(low, high), method="bounded", options=sharp)
+    found = minimize_scalar(lowered, bounds=(low, high), method="bounded", options=sharp)
     return max(
         top, top._replace(response=-float(found.fun), value=float(found.x)), key=lambda one: one.response
     )
@@ -143,7 +144,6 @@ def inside(top: Top, part: float) -> tuple[np.ndarray, float, float]:
 def _solver(stretch: Stretch, a: int, b: int) -> Callable[[float], np.ndarray | None] | None:
     """The motion at a value between points a and b of a stretch; None for a branch without its problem."""
     from ..continuation.engine import Engine
-    from ..continuation.settings import Settings
 
     branch = stretch.branch
     if branch.problem is None:
@@ -220,7 +220,7 @@ def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], va
     size = within[1] - within[0]
     ascending = sorted(open_, key=lambda gap: gap[1] - gap[0])
     total = np.cumsum([high - low for low, high in ascending])
-    wide = sorted(gap for gap, reached in zip(ascending, total) if reached > LEAST * size)
+    wide = sorted(gap for gap, reached in zip(ascending, total) if reached > PART * size)
     if not values or not wide:
         return []
     length = sum(high - low for low, high in wide)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..shared.number_text import figures, figures_in
+from ..shared.number_text import PART, figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .graph import Graph
 from .measures import default_measure
@@ -16,7 +16,6 @@ from .stretches import at_points, gaps, stretches
 from .table import with_unit
 
 MOST = 8  # motions that are listed
-LEAST = 1e-3  # of the interval: motions that are stable on less are counted only
 
 
 def summary(graph: Graph, width: int | None = None) -> str:
@@ -36,7 +35,7 @@ def summary(graph: Graph, width: int | None = None) -> str:
         met.setdefault((motion_name(about), _kind(about)), []).append(part)
     length = graph.within[1] - graph.within[0]
     found = sorted(((_length(parts), key, parts) for key, parts in met.items()), key=lambda row: -row[0])
-    listed = [row for row in found if row[0] >= LEAST * length][:MOST] or found[:MOST]
+    listed = [row for row in found if row[0] >= PART * length][:MOST] or found[:MOST]
     rows, ends_of = [], [_united(parts) for _, _, parts in listed]
     number = figures_in(graph.within, [end for ends in ends_of for interval in ends for end in interval])
     for (_, (word, kind), parts), stable in zip(listed, ends_of):
@@ -65,7 +64,7 @@ def summary(graph: Graph, width: int | None = None) -> str:
         lines.append(f"and {len(found) - len(listed)} more, on narrow stretches")
     open_ = gaps(graph)
     part = sum(b - a for a, b in open_) / length
-    if part >= LEAST and rows:
+    if part >= PART and rows:
         low, high = max(open_, key=lambda gap: gap[1] - gap[0])
         where = f"{graph.parameter} = {number(low)} to {number(high)} {unit or ''}".rstrip()
         lines.append(

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..bifurcation.kinds import BORDERS, KINDS
 from ..branches.special_point import TRANSCRITICAL
+from ..continuation.settings import Settings
 from ..shared.number_text import figures_in
 from ..text_table import Table, fitted, terminal_width
 from .proving import mark, proof_text
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from .graph import Graph
 
 LEFT = tuple(kind.name for kind in KINDS if kind.leaves)  #: kinds that solutions leave
-AT_END = 1e-9  # part of the interval: special points closer to its end are at it
 
 
 def table(graph: Graph, width: int | None = None) -> str:
@@ -94,7 +94,9 @@ def special_table(graph: Graph, reasons: bool = True) -> Table:
     for point in graph.special.values():
         side = point.criticality or (TRANSCRITICAL if TRANSCRITICAL in point.remarks else "")
         remarks = [side, "" if point.real else "virtual", mark(graph, point.label)]
-        if point.kind != "end" and any(abs(point.value - end) <= AT_END * width for end in graph.within):
+        if point.kind != "end" and any(
+            abs(point.value - end) <= Settings.located * width for end in graph.within
+        ):
             remarks.append("at the end")
         targets = []
         for switch in graph.switches:

@@ -16,9 +16,6 @@ from .plane import Plane
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
-    from ..problems.protocol import Problem as _Plain
-else:
-    _Plain = object  # `WithCondition` answers by its `__getattr__`
 
 
 class PointOfLocus:

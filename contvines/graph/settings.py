@@ -1,0 +1,24 @@
+"""Tolerances of identity that nobody sets; the others are those of :class:`contvines.Settings`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Identity:
+    """When two values of the parameter are one, in parts of `Settings.same`.
+
+    Attributes
+    ----------
+    stated : float
+        Of values whose errors are stated; the errors come on top of it.
+    unstated : float
+        Of values of which none is stated.
+    """
+
+    stated: float = 1e-4
+    unstated: float = 1e-2
+
+
+IDENTITY = Identity()
