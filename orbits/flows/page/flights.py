@@ -346,7 +346,7 @@ def multipliers(data: Pieces, work: Work) -> Any:
         return np.full(data.n_multipliers, np.nan, complex)
     size = chain.shape[1]
     norms = np.abs(chain).sum(axis=2).max(axis=1)
-    if np.prod(np.maximum(norms, 1.0)) < SAFE or len(chain) == 1:
+    if np.log(np.maximum(norms, 1.0)).sum() < np.log(SAFE) or len(chain) == 1:
         product = chain[0]
         for factor in chain[1:]:
             product = factor @ product
