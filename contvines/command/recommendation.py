@@ -12,6 +12,7 @@ from contvines.shared.modulation import BAND
 from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 
+AGREES = 0.01  # of the largest response by diagrams: simulations that exceed it by more are told
 MOST = 4  # sentences about what is not known
 THOUSAND = 1000.0
 LARGER = {"mm": "m", "mm/s": "m/s", "mJ": "J", "mW": "W", "mN": "N"}
@@ -208,6 +209,14 @@ class Recommendation:
         return self.name.replace("_", " ")
 
     @property
+    def simulated(self) -> float:
+        """Largest response at the choice by simulation where this is more than the worst that diagrams know; else minus infinity."""
+        place = self.chosen
+        if place is None or self.checked is None or self.checked[1] <= (1.0 + AGREES) * place.worst:
+            return -math.inf
+        return self.checked[1]
+
+    @property
     def at_end(self) -> bool:
         """Whether the choice is the least or the largest value that was looked at."""
         values = [place.value for place in self.places]
@@ -234,9 +243,12 @@ class Recommendation:
     @property
     def sentences(self) -> list[str]:
         """What there is to say beside the tables, the most important first."""
-        found = []
         peak, place = "peak", self.chosen
-        found += self._beside()
+        found = self._beside()
+        if place is not None and self.simulated > place.worst:
+            found.insert(
+                0, f"Simulation meets {self.shown(peak, self.simulated)} there, more than the diagrams know ({self.shown(peak, place.worst)}): the largest response is not known."
+            )  # fmt: skip
         own = self._own()
         if own:
             found.append(own)
@@ -325,7 +337,13 @@ class Recommendation:
         place, found = self.chosen, []
         if place is not None:
             over = f"worst of {place.samples} samples" if place.samples > 1 else "worst of all that coexists"
-            found.append(("recommended", self.shown("peak", place.worst), over))
+            if self.simulated > place.worst:
+                found.append(
+                    ("recommended", f"at least {self.shown('peak', self.simulated)}", "by simulation")
+                )
+            found.append(
+                ("recommended" if len(found) == 0 else "by diagrams", self.shown("peak", place.worst), over)
+            )
             if place.samples > 1:
                 found.append(("recommended, median", self.shown("peak", place.median), ""))
             found.append(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from contvines.command.recommendation import MET, Curve, Jump, Place, Recommendation, Start
+from contvines.command.recommendation import AGREES, MET, Curve, Jump, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
 from contvines.shared.modulation import BAND, modulation_of
 from contvines.shared.number_text import figures
@@ -40,7 +40,6 @@ REPLAYED, LONGEST = (
     400,
     24,
 )  # forcing periods of a motion simulated from itself, and of the longest that may recur
-AGREES = 0.01  # of the diagram's largest response: simulations up and down that exceed it by more are told
 CHECK = 61  # values of the simulation up and down
 SWEPT = 25  # values at which a machine whose flights are integrated is simulated in place of a diagram
 TRIED = 3  # choices of such machines that are looked at by diagrams, until one is the best of all

@@ -4,6 +4,7 @@ import json
 import math
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +93,19 @@ def test_what_is_not_known_stays_unknown_in_a_file():
     again = Recommendation.from_dict(json.loads(json_text(found.to_dict())))
     assert repr(again) == repr(found)
     assert "No half width can be recommended" in str(again) and "not known: the response" in str(again)
+
+
+def test_a_larger_response_by_simulation_is_the_one_that_counts():
+    place = Place(58.0, 61.0, 60.0, 60.0, 2, 0, "")
+    found = Recommendation(
+        "a.toml", "a", "half_width", "frequency", (7.0, 9.0), {"half_width": "mm", "peak": "mm"}, 58.0, 20.0, (58.0, 58.0), 0.05, {}, [place], {},
+        math.nan, math.nan, {}, {}, (61.0, 70.0), None,
+    )  # fmt: skip
+    assert found.rows[0][:2] == ("recommended", "at least 70 mm")
+    assert found.rows[1][1] == "61 mm"
+    assert "70 mm" in found.sentences[0] and "not known" in found.sentences[0]
+    found = replace(found, checked=(61.0, 61.2))
+    assert found.rows[0][:2] == ("recommended", "61 mm")
 
 
 @pytest.mark.parametrize("seed", range(20))
