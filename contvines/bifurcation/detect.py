@@ -15,8 +15,9 @@ from ..problems.abilities import Nearing
 from ..shared.floating_point import EPSILON
 from .consistency import at_one, inexact, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, pointed, suspicious
+from .kinks import kinked, nearest
 from .locate import locate
-from .located import Located, Role
+from .located import NOWHERE, Located, Role
 from .multiplier_counts import counts
 from .scan import Scan, scanner
 from .segment import Segment
@@ -78,9 +79,8 @@ class Detector(SegmentSearch):
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
         born = pairs_born(seen) if engine.m > 2 else np.zeros(len(lengths), dtype=bool)
-        sharp = np.zeros(len(lengths), dtype=bool)
+        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths)
         if engine.many:
-            sharp = pointed(-wide.rows[:, 0], sides[:, 1], lengths)
             inside[:, SLOPE + 1 : SLOPE + 4] = False
         told = ((sides[1:] != sides[:-1]).any(axis=1) | borders | meets)[extra:]
         meets, lands = meets[extra:], lands[extra:]
@@ -96,7 +96,7 @@ class Detector(SegmentSearch):
             segment = Segment(engine, chunk.solved(i, signs[0]), chunk.solved(i + 1, signs[1]))
             suspects = columns[inside[i]].tolist()
             split = self.inside(segment, real, suspects) if suspects or born[i] else None
-            if sharp[i]:
+            if engine.many and sharp[i]:
                 found = self._closely(segment, real)
             elif split is not None:
                 found = [*self.both(segment, *split, real), _plain(*split)]
@@ -108,7 +108,9 @@ class Detector(SegmentSearch):
                     found = self.both(segment, *split, real)
             else:
                 found = []
-            if not (found or told[i] or split is not None or sharp[i]):
+            if sharp[i] and not (engine.many or found) and kinked(segment):
+                return [*events, Located(float(i), "", 0, segment.a, NOWHERE, 0.0, Role.LEAP)]
+            if not (found or told[i] or split is not None or (engine.many and sharp[i])):
                 continue
             found.sort(key=lambda e: e.position)
             leaping = leap(segment, found)

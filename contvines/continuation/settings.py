@@ -34,6 +34,7 @@ BETWEEN = (
     "sliver",
     "exact",
     "together",
+    "steep",
     "tied",
     "at_end",
     "critical",
@@ -123,6 +124,8 @@ class Settings:
         Special points: residual of a branch point, in units of the rows; halfway between two branches it is larger.
     together : float
         Special points: distance from the circle (the axis) within which multipliers cross at once, double ones, known to half of their digits, included.
+    steep : float
+        Special points: part of the slope at first by which the sides of a kink are at least as steep when looked at nearer.
     tied : float
         Special points: margins that differ by less vanish together.
     at_end : float
@@ -183,6 +186,7 @@ class Settings:
     sliver: float = 1e-8
     exact: float = 1e-12
     together: float = 1e-3
+    steep: float = 0.25
     tied: float = 1e-9
     at_end: float = 1e-7
     critical: float = 1e-4

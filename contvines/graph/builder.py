@@ -22,6 +22,7 @@ from ..continuation.starts import solve_start, start_remark
 from ..interrupts import listening, take
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
+from .identity import parts_further_on
 from .label_special_points import mark, origin_index
 from .match_borders import is_border, same_border, tie_borders
 from .run import Origin, Pending, Run
@@ -165,6 +166,9 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
             run.remark(pending.point, "the branch that leaves here begins beyond a border; it is virtual")
         return None
     known = run.register.find(pending.problem, first.u, first.p, real)
+    if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
+        itself = run.engine(known.problem)[0]
+        known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:
             run.remark(pending.point, "the solution found beyond lies on the same branch")

@@ -25,6 +25,8 @@ from .settings import IDENTITY
 
 SAME = Settings().same
 ERRORS = 10.0  # times the stated errors
+EXACT = 1e-3  # of it: solutions to roundoff that differ by more are two, though they count as the same
+FAR = 0.1  # length along two branches after which they are one
 
 Form = tuple[Hashable, np.ndarray]
 
@@ -173,6 +175,59 @@ def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p
         if here == key and same_vector(near, vector, engine.settings.same, engine.scale):
             return True
     return False
+
+
+def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solved) -> bool:
+    """Whether a branch that begins on a known one, within what counts as the same, is another one: it may leave at a small angle.
+
+    It is followed in steps of twice the length until it is away from the known one, or far along it. Solutions of x (x - 1) (p - 3 x) = 0 with
+    another unknown that is hundreds of times as large leave x = 0 so.
+
+    Parameters
+    ----------
+    branch : Branch
+        The known one.
+    known : Engine
+        Its own: the same solutions may be written with other unknowns there, half a cycle's instead of the whole one's.
+    engine : Engine
+        Of the branch that begins.
+    first : Solved
+    """
+
+    def away(point: Solved) -> float:
+        return _gap(branch, known, *engine.problem.canonical(point.u, point.p), point.p)
+
+    same = engine.settings.same
+    gap, length, point = away(first), same, first
+    exactly = EXACT * same
+    while exactly < gap <= same and 100.0 * engine.noise < exactly and length < FAR:
+        border = engine.weights * point.tangent
+        guess = engine.join(point.u, point.p) + length * point.tangent
+        found = engine.solve(guess[:-1], float(guess[-1]), border, float(border @ guess), point.tangent)
+        if found is None or not engine.lower <= found.p <= engine.upper:
+            return False
+        if engine.inner(point.tangent, found.tangent) < 0.9:
+            length *= 0.25
+            if length < engine.settings.sliver:
+                return False
+            continue
+        before, gap, point, length = gap, away(found), found, 2.0 * length
+        if gap < before:
+            return False
+    return same < gap < np.inf
+
+
+def _gap(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> float:
+    """Distance of a canonical form from the branch at its parameter value as :func:`distance` has it, infinite where the branch is not near."""
+    least, gaps = np.inf, branch.values - p
+    for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
+        found = engine.at_value(_at_value(branch, engine, int(i), p), p)
+        if found is None:
+            continue
+        here, near = engine.problem.canonical(found.u, p)
+        if here == key:
+            least = min(least, distance(near, vector, engine.scale))
+    return least
 
 
 def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> bool:
