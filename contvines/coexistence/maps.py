@@ -202,7 +202,7 @@ class MapPopulation:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return self.problem.cycle_through(np.reshape(u, (-1, self.problem.node)), p)
 
-    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
+    def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]:
         """Measures of a motion that is no cycle: none."""
         return {}
 

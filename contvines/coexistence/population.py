@@ -21,7 +21,8 @@ The contract, in words:
 8. ``population.closed(p)`` returns ``(problem, u)`` of the motions known in closed form, stable or not, each once.
 9. ``population.restored(problem.describe(), u, p)`` returns the problem of a motion that `settle`, `embedded` or `returning` had at p, measured as theirs; None
    where it cannot be rebuilt.
-10. ``population.observed(motion.state, p)`` returns the measures by name of the motion through this state, from simulation; none without a state.
+10. ``population.observed(motion.state, p, periods)`` returns the measures by name of the motion through this state, from simulation, of what does not recur
+    over at least so many periods; none without a state.
 11. ``population.work`` counts the forcing periods (steps of a map) simulated so far, for the budget of an atlas.
 """
 
@@ -95,7 +96,7 @@ class Population(Protocol):
 
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None: ...
 
-    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]: ...
+    def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]: ...
 
 
 @runtime_checkable

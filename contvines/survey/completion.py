@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,9 @@ from ..journal import NullJournal
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
 PASSES = 3  # over the gaps with one value in each, for a branch that is found parts a gap
+PATIENT = (
+    512.0  # forcing periods (of a self-excited machine: events) over which the largest response is measured
+)
 HALVINGS = 5  # of the distance between values about the largest response that was simulated, ...
 NEARLY = 0.998  # ... to where it is nearly as large
 ON_ITS_WAY = ("slow", "impossible")  # a transient that has not ended; a start inside a wall
@@ -123,7 +126,7 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     if untraced:
         spent = f"completion = {run.settings.completion} is spent: {untraced} motions that were met have no branch; raise it to trace them"
         graph.message, graph.complete = spent if graph.complete else f"{graph.message}; {spent}", False
-    return left
+    return _followed_longer(population, graph, left)
 
 
 def _size(graph: Graph, before: Collection[str]) -> int:
@@ -166,6 +169,22 @@ def _observed(population: Population, met: Sequence[Counted]) -> list[Unbranched
     return found
 
 
+def _followed_longer(population: Population, graph: Graph, left: Sequence[Unbranched]) -> list[Unbranched]:
+    """These motions; the one with the largest response, where no branch has a larger one, measured over many periods: chaotic motions seldom reach it."""
+    name = default_measure(graph)
+    one = max(left, key=lambda other: other.measures.get(name, -np.inf), default=None)
+    if one is None or one.state is None or not one.measures.get(name, -np.inf) > _of_branches(graph):
+        return [*left]
+    seen = population.observed(one.state, one.value, PATIENT)
+    longer = replace(one, measures=seen) if seen.get(name, -np.inf) > one.measures[name] else one
+    return [longer if other is one else other for other in left]
+
+
+def _of_branches(graph: Graph) -> float:
+    """The largest stable response of all branches."""
+    return max((float(np.nanmax(s.response, initial=-np.inf)) for s in stretches(graph)), default=-np.inf)
+
+
 def _about_the_largest(
     graph: Graph, left: Sequence[Unbranched], looked: Collection[float]
 ) -> tuple[list[float], np.ndarray | None]:
@@ -176,10 +195,7 @@ def _about_the_largest(
     for one in left:
         known[one.value] = max(known.get(one.value, -np.inf), one.measures.get(name, -np.inf))
     top = max(known, key=lambda value: known[value], default=low)
-    of_branches = max(
-        (float(np.nanmax(s.response, initial=-np.inf)) for s in stretches(graph)), default=-np.inf
-    )
-    if not known.get(top, -np.inf) > of_branches:
+    if not known.get(top, -np.inf) > _of_branches(graph):
         return [], None
     places = sorted({low, high, *known, *looked, *(end for gap in gaps(graph) for end in gap)})
     at = places.index(top)

@@ -24,13 +24,13 @@ MOST_EVENTS = 400  # per period
 PER_PERIOD = 200  # instants of a cycle
 
 
-def observe(found: Attractor) -> Observation:
+def observe(found: Attractor, least: float = 0.0) -> Observation:
     """Statistics of a motion from `found.state`, which stays as it is.
 
     A motion that recurs is followed over one cycle. Another one is followed until its largest values and its mean
     number of impacts have changed by less than 1 % while the time of observation doubled: a modulated motion
     grows, bursts and fades over tens or hundreds of periods, and a few of them show only a part of that. Where a simulation
-    takes long, the last part of that by which the motion was recognised must do.
+    takes long, the last part of that by which the motion was recognised must do, or `least` periods where these are asked for.
     """
     simulator = _simulator(found)
     first, longest = simulator.observed
@@ -40,7 +40,7 @@ def observe(found: Attractor) -> Observation:
         speed = seen.impact_speed if found.impacts else 0.0
         return replace(seen, impact_speed=speed, impacts_per_period=found.impacts_per_period)
     if not longest:
-        return tally.add(found.trajectory)
+        return tally.go_on(least) if least else tally.add(found.trajectory)
     length, before = first, tally.go_on(first)
     while tally.moving and length < longest:
         length *= 2.0
@@ -73,8 +73,8 @@ def measure_names(model: Varying) -> tuple[str, ...]:
     return flow_of(model).simulated_names(model)
 
 
-def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
-    """The attractor with its kind and impacts as it is observed, and its measures by name (see `measure_names`)."""
+def described(found: Attractor, least: float = 0.0) -> tuple[Attractor, dict[str, float]]:
+    """The attractor with its kind and impacts as it is observed (see `observe`), and its measures by name (see `measure_names`)."""
     model, params, orbit, flow = found.model, found.params, found.orbit, flow_of(found.model)
     names = measure_names(model)
     known = dict.fromkeys(names, np.nan)
@@ -84,7 +84,7 @@ def described(found: Attractor) -> tuple[Attractor, dict[str, float]]:
         taken = orbit.measures(*(name for name in names if name in own))
         known |= {speed: 0.0, **taken, "impacts_per_period": found.impacts_per_period}
         return found, known
-    seen = observe(found)
+    seen = observe(found, least)
     rate = seen.impacts_per_period / (1.0 if model.forced else 2.0 * np.pi)
     known |= {**seen.extremes, speed: seen.impact_speed, "impacts_per_period": rate}
     if BAND[0] in names and not found.recurrent and found.kind != _simulator(found).resting:

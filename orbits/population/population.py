@@ -200,14 +200,14 @@ class Population:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return rebuild(description)
 
-    def observed(self, state: np.ndarray | None, p: float) -> dict[str, float]:
-        """Measures, in the machine's units, of the motion through a state; those of a sweep."""
+    def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]:
+        """Measures, in the machine's units, of the motion through a state, those of a sweep; of what does not recur over at least so many periods."""
         from orbits.attractors.observation import described
         from orbits.attractors.search import goes_on
 
         if state is None:
             return {}
-        return described(goes_on(self._simulator(p, state), 0.0, self._longest))[1]
+        return described(goes_on(self._simulator(p, state), 0.0, self._longest), periods)[1]
 
     def _simulator(self, p: float, state: np.ndarray | None = None) -> Simulator:
         """A simulator, on a motion if a state of it is given."""
