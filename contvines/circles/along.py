@@ -15,12 +15,10 @@ import numpy as np
 from .birth import Birth
 from .invariance import Condition, Curve, Frame, at_value, between, first_harmonic, of_amplitude, solve
 from .section import Section
+from .settings import CIRCLES
 
 FEWEST, MOST = 17, 257  # points of a circle
-SMOOTH = 1e-7  # the last harmonics of a circle that has enough points, relative to the first
-LESS = 0.25  # by which twice the points make them smaller at least: a circle that meets a border has no more derivatives to show
-TORN = 3e-3  # ... beyond which it has broken
-APART = 1e-3  # by which its images miss it between its points, relative to its radius: beyond that there is no circle
+LESS = 0.25  # by which twice the points make the last harmonics smaller at least: a circle that meets a border has no more derivatives to show
 # first amplitude relative to the last one, factors from one to the next
 FIRST, GROWTH, SLOWEST = 0.04, 1.35, 1.05
 LONGEST = 0.3  # step along the family, where amplitude, rotation and distance from the birth count 1 each
@@ -77,7 +75,7 @@ def _growing(section: Sections, birth: Birth, reach: Reach) -> tuple[list[Curve]
         if curve is None or _torn(section, curve, birth.frame):
             if not found:
                 amplitude *= 0.5
-                if amplitude < 1e-4 * FIRST * reach.amplitude:
+                if amplitude < CIRCLES.beginning * FIRST * reach.amplitude:
                     raise ValueError(
                         "no circle was found beside the point; the normal form may not hold there"
                     )
@@ -121,7 +119,7 @@ def _onwards(section: Sections, birth: Birth, reach: Reach, found: list[Curve]) 
             return f"has half the size of the motion at {reach.name} = {curve.value:.8g}"
         step = min(LONGEST, 1.3 * part * step)
         if step < LEAST:
-            return _broken(section, birth, reach, curve, curve.tail > SMOOTH)
+            return _broken(section, birth, reach, curve, curve.tail > CIRCLES.smooth)
     return _enough(reach, found)
 
 
@@ -213,10 +211,10 @@ def _smooth(section: Sections, guess: Curve, frame: Frame, condition: Condition)
             before is not None
             and curve is not None
             and LESS * before.tail < curve.tail
-            and before.tail < TORN
+            and before.tail < CIRCLES.torn
         ):
             return before
-        if curve is None or curve.tail < SMOOTH or len(curve.points) >= MOST:
+        if curve is None or curve.tail < CIRCLES.smooth or len(curve.points) >= MOST:
             return curve
         before = curve
         curve = curve.finer(min(MOST, 2 * len(curve.points) - 1))
@@ -225,6 +223,6 @@ def _smooth(section: Sections, guess: Curve, frame: Frame, condition: Condition)
 
 def _torn(section: Sections, curve: Curve, frame: Frame) -> bool:
     """Whether what was found at so many points is no smooth closed curve."""
-    if curve.tail > TORN:
+    if curve.tail > CIRCLES.torn:
         return True
-    return not between(section(curve.value), curve) < APART * abs(first_harmonic(curve, frame))
+    return not between(section(curve.value), curve) < CIRCLES.apart * abs(first_harmonic(curve, frame))

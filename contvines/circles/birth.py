@@ -15,6 +15,7 @@ from ..flows.cycles import CycleProblem
 from ..problems.abilities import Adaptive
 from .invariance import Curve, Frame
 from .section import Imaged, Section, section_of, slopes
+from .settings import CIRCLES
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
@@ -80,7 +81,7 @@ def born(point: SpecialPoint, problem: Problem) -> Birth:
     centre = section.through(u)
     size = float(np.linalg.norm(centre)) or 1.0
     known = isinstance(section, Imaged)
-    matrix = section.images(centre[None])[1][0] if known else slopes(section, centre, 1e-6 * size)
+    matrix = section.images(centre[None])[1][0] if known else slopes(section, centre, CIRCLES.step * size)
     values, right = np.linalg.eig(matrix)
     place = int(np.argmin(np.abs(values - full)))
     vector = right[:, place] / np.linalg.norm(right[:, place])
@@ -100,7 +101,7 @@ def born(point: SpecialPoint, problem: Problem) -> Birth:
         )
     if growth == 0.0:
         raise ValueError(f"{point.label}: the multipliers only touch the unit circle there")
-    frame = Frame(left, size, max(abs(p), 1e-3), p)
+    frame = Frame(left, size, max(abs(p), CIRCLES.least_parameter), p)
     turns = float(np.angle(full)) / (2.0 * np.pi)
     return Birth(p, value, growth, turns, vector, frame, centre, amplitude)
 
@@ -108,7 +109,7 @@ def born(point: SpecialPoint, problem: Problem) -> Birth:
 def _image(section: Section, forms: Forms, multiplier: complex, u: np.ndarray) -> np.ndarray:
     """The critical vector of the unknowns as a direction of points of the section."""
     q = forms.null(multiplier / abs(multiplier))[0] * forms.units
-    h = 1e-6 * (float(np.linalg.norm(u)) or 1.0)
+    h = CIRCLES.step * (float(np.linalg.norm(u)) or 1.0)
     along = [
         (section.through(u + h * part) - section.through(u - h * part)) / (2.0 * h)
         for part in (np.real(q), np.imag(q))
@@ -119,7 +120,7 @@ def _image(section: Section, forms: Forms, multiplier: complex, u: np.ndarray) -
 def _crossing(point: SpecialPoint) -> tuple[complex, float]:
     """The raw critical multiplier, and d(log abs)/dp along the cycles."""
     problem, p = point.problem, float(point.value)
-    unit = max(abs(p), 1e-3)
+    unit = max(abs(p), CIRCLES.least_parameter)
     engine = Engine(problem, (p - unit, p + unit), Settings())
 
     def critical(value: float, near: complex | None) -> complex | None:
@@ -134,14 +135,9 @@ def _crossing(point: SpecialPoint) -> tuple[complex, float]:
     here = critical(p, None)
     if here is None:
         raise ValueError(f"{point.label} has no complex pair of multipliers on the unit circle")
-    for step in (
-        1e-5 * unit,
-        1e-6 * unit,
-        1e-7 * unit,
-        1e-8 * unit,
-    ):  # a fold, or the end of the pair, may be near
+    for step in CIRCLES.crossing:
         rates = []
-        for width in (step, 0.5 * step):
+        for width in (step * unit, 0.5 * (step * unit)):
             above, below = critical(p + width, here), critical(p - width, here)
             if above is None or below is None:
                 break

@@ -13,12 +13,14 @@ from ..continuation.settings import hinting
 from ..interrupts import listening
 from ..problems.abilities import notation_of
 from ..problems.registry import without_problem
+from ..shared.floating_point import TINY
 from .along import Reach, followed
 from .averages import rotation_number
 from .birth import Birth, anchored, born
 from .circle import Circle, Circles
 from .invariance import Curve, between
 from .section import Section, section_of
+from .settings import CIRCLES
 
 REACH = (
     0.5  # amplitude, relative to the size of the section, to which circles are followed where no end is given
@@ -28,7 +30,6 @@ RETURNS = 3000  # of a simulation that is compared with a circle, at most
 FIRST = (
     375  # ... after which, and after twice as many again, its rotation number is asked whether it has settled
 )
-SETTLED = 1e-11  # difference of the rotation numbers of all and of half the returns from which on it has
 PATIENCE = 6000  # returns at most until it settles
 LONGEST = 200  # periods of a locked motion
 LOOK = (
@@ -39,7 +40,6 @@ ROUNDS, RESONANCES = (
     6,
 )  # turns of the drift beside a resonance of this order at most, that they cover at least
 CLEAR = 5.0  # factor from the largest displacement of their first half to that of their second
-DISPLACED = 1e-3  # relative displacement whose growth or decay says whether a circle is stable
 
 
 @hinting
@@ -140,14 +140,14 @@ def _displacements(
     while np.isfinite(x := here.step(x)).all():
         z = complex((x - centre) @ birth.frame.left.conj())
         place = angles[0] + (np.angle(z) - angles[0]) % (2.0 * np.pi)
-        yield float(np.log(max(abs(z), 1e-300)) - np.log(np.interp(place, angles, np.abs(own))))
+        yield float(np.log(max(abs(z), TINY)) - np.log(np.interp(place, angles, np.abs(own))))
 
 
 def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> bool | None:
     """Whether a motion that is displaced outwards comes back to the circle."""
-    rate = 2.0 * abs(birth.growth * (curve.value - birth.p)) or 1e-3
-    count = int(min(_returns(here, PATIENCE), max(200, 2.0 / rate)))
-    start = curve.points[0] + DISPLACED * (curve.points[0] - centre)
+    rate = 2.0 * abs(birth.growth * (curve.value - birth.p))
+    count = int(min(_returns(here, PATIENCE), max(200, 2.0 / max(rate, 1.0 / PATIENCE))))
+    start = curve.points[0] + CIRCLES.displaced * (curve.points[0] - centre)
     distances = _displacements(here, curve, birth, centre, start)
     logs = np.empty(0)
     asked = int(min(count, max(LOOK, ROUNDS / _slowest(curve.rotation))))
@@ -192,7 +192,7 @@ def _simulated(here: Section, curve: Curve, birth: Birth, centre: np.ndarray, ra
         if np.sqrt(((outline - x) ** 2).sum(axis=1).min()) > 0.02 * radius:
             return None
         turns, error = rotation_number(z[: i + 1], curve.rotation)
-        if error < SETTLED or i + 1 == most:
+        if error < CIRCLES.settled or i + 1 == most:
             return turns
     return None
 
@@ -203,8 +203,8 @@ def _beyond(section: Callable[[float], Section], found: list[Curve], birth: Birt
     before = found[-2].value if len(found) > 1 else birth.p
     value = last.value + 0.25 * (last.value - before)
     here, x = section(value), last.points[0]
-    far = 1e3 * birth.frame.size
-    same = 1e-8 * birth.frame.size
+    far = CIRCLES.far * birth.frame.size
+    same = CIRCLES.same * birth.frame.size
     patience = _returns(here, PATIENCE)
     for asked in (patience // 20, patience // 4, patience):
         for _ in range(asked):

@@ -14,15 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..shared.floating_point import TINY
 from .section import Imaged, Section, Varied, slopes
+from .settings import CIRCLES
 
-STEP = 1e-6  # of differences of the simulated map, relative to the size of the section and of the parameter
-INSIDE = 0.01  # ... and at most, relative to the size of the circle and to the distance from its birth
-LEAST = 1e-13  # ... and at least
+INSIDE = (
+    0.01  # largest step of differences, relative to the size of the circle and to the distance from its birth
+)
 SWEEPS = 15
-SOLVED = 1e-10  # residual, relative to the size of the circle
-ROUNDED = 1e-11  # ... of a small circle, relative to the size of the section, where it shrinks no more
-ROUGH = 1e-4  # ... but relative to the size of the circle at most
 
 
 class Frame(NamedTuple):
@@ -165,9 +164,12 @@ def solve(
     points, rho, p = guess.points.copy(), guess.rotation, guess.value
     normal, target = condition
     length = np.linalg.norm(np.array(normal) * (frame.size, 1.0, frame.unit)) / frame.size
-    radius = max(abs(first_harmonic(guess, frame)), 1e-300)
-    h = max(min(STEP * frame.size, INSIDE * radius), LEAST * frame.size)
-    width = max(min(STEP * frame.unit, INSIDE * abs(guess.value - frame.origin)), LEAST * frame.unit)
+    radius = max(abs(first_harmonic(guess, frame)), TINY)
+    h = max(min(CIRCLES.step * frame.size, INSIDE * radius), CIRCLES.least_step * frame.size)
+    width = max(
+        min(CIRCLES.step * frame.unit, INSIDE * abs(guess.value - frame.origin)),
+        CIRCLES.least_step * frame.unit,
+    )
     last = np.inf
     for _ in range(SWEEPS):
         images, by_state, by_value = _images(section(p), points)
@@ -182,8 +184,10 @@ def solve(
         if not np.isfinite(sides).all():
             return None
         error = float(np.abs(sides).max()) / radius
-        rounded = error * radius < ROUNDED * frame.size and error < ROUGH and error > 0.25 * last
-        if error < SOLVED or rounded:
+        rounded = (
+            error * radius < CIRCLES.rounded * frame.size and error < CIRCLES.rough and error > 0.25 * last
+        )
+        if error < CIRCLES.solved or rounded:
             return Curve(points, float(rho), float(p), error)
         if not error < 2.0 * last:
             return None

@@ -7,10 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..shared.floating_point import TINY
+from .settings import MANIFOLDS
+
 TURN = 0.3  # angle between two steps beyond which the radius shrinks
 ARCS = 12  # candidates on the part of a circle that is searched
 REFINED = 60  # times that an angle is refined, at most
-EXACT = 1e-9  # of the radius: images so near to the curve lie on it
 
 
 def next_point(
@@ -48,9 +50,11 @@ def next_point(
                 low, a, b = half, value, 0.5 * b
             else:
                 high, b, a = half, value, 0.5 * a
-            if abs(value) < EXACT * radius:
+            if abs(value) < MANIFOLDS.on_curve * radius:
                 break
-        if beyond or abs(value) > 1e-3 * radius:  # a jump of the motion, not a crossing of the curve
+        if (
+            beyond or abs(value) > MANIFOLDS.jump * radius
+        ):  # a jump of the motion, not a crossing of the curve
             continue
         there = last + radius * np.array([np.cos(middle + half), np.sin(middle + half)])
         return there, segment, abs(half)
@@ -67,7 +71,7 @@ def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) ->
     first = max(at - 2, 0)
     starts, ends = starts[first:], ends[first:]
     along = ends - starts
-    lengths = np.maximum((along * along).sum(axis=1), 1e-300)
+    lengths = np.maximum((along * along).sum(axis=1), TINY)
     part = ((point - starts) * along).sum(axis=1) / lengths
     inside = np.clip(part, 0.0, 1.0)
     gaps = np.linalg.norm(point - (starts + inside[:, None] * along), axis=1)

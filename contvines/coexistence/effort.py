@@ -79,4 +79,5 @@ class Effort:
         for search, pieces in self.waiting.items():
             count, seconds = self._took.get(search, (1, mean))
             left += pieces * seconds / count
-        return min(left, (monotonic() - self.started) * (1.0 / max(self.share, 1e-9) - 1.0))
+        share = self.share
+        return min(left, (monotonic() - self.started) * (1.0 / share - 1.0)) if share else left

@@ -13,15 +13,11 @@ from ..graph.graph import Graph
 from ..graph.run import Run
 from .census import Counted, followed
 from .population import Population
+from .settings import ATLAS
 
 PAST = 0.01  # of a stable stretch's width: so far past its end a motion is followed, where it settles too slowly to be told farther, ...
 BEYOND_CASCADE = 1.0  # ... and so far, for a cascade of doublings is over after 0.27 of the stretch before it (Feigenbaum's 1 / (4.669 - 1)), ...
-FARTHEST = 1e-3  # ... but no farther than this, of the interval
 FARTHER = 4.0  # times as far again where all that was met is too slow
-NARROWEST = 1e-3  # of the interval: where stretches that meet, as those of a cascade, are narrower together, their ends are left, ...
-SHORTEST = 1e-5  # ... and likewise those of single ones, for a cascade has no last one
-MEETING = 1e-9  # of the interval: stretches that end nearer to one another meet
-ASIDE = 1e-3  # of the box of starts: so far to either side of the motion it starts, for what is symmetric stays so
 
 
 @dataclass(frozen=True)
@@ -71,7 +67,7 @@ class Handover:
         """Start on the motion at the end of its stretch, to either side of it, and simulate what it becomes just beyond."""
         self.done.add(_key(end))
         low, high = self.run.graph.within
-        near, far = (min(part * end.width, FARTHEST * (high - low)) for part in (PAST, BEYOND_CASCADE))
+        near, far = (min(part * end.width, ATLAS.farthest * (high - low)) for part in (PAST, BEYOND_CASCADE))
         found: list[Counted] = []
         for past in dict.fromkeys((near, float(np.sqrt(near * far)), far, FARTHER * far)):
             if past not in (near, far) and any(counted.attractor.kind != "slow" for counted in found):
@@ -97,7 +93,7 @@ class Handover:
                 continue
             columns = [self.population.names.index(name) for name in section.names]
             low, high = self.population.box(p)[columns].T
-            aside = ASIDE * (high - low) * np.cos(np.arange(len(point)))
+            aside = ATLAS.aside * (high - low) * np.cos(np.arange(len(point)))
             starts = np.zeros((2, len(self.population.names)))
             starts[:, columns] = np.clip(
                 [point + aside, point - aside], np.minimum(low, point), np.maximum(high, point)
@@ -111,16 +107,16 @@ def loose_ends(graph: Graph) -> list[End]:
     low, high = graph.within
     size = high - low
     stretches = [stretch for b in graph.branches.values() if b.real for stretch in _stretches(b)]
-    stretches = [s for s in stretches if s[1].value - s[0].value > SHORTEST * size]
+    stretches = [s for s in stretches if s[1].value - s[0].value > ATLAS.narrow * size]
     firsts = np.array([first.value for first, _ in stretches])
     lasts = np.array([last.value for _, last in stretches])
-    wide = _together(firsts, lasts, MEETING * size) > NARROWEST * size
+    wide = _together(firsts, lasts, ATLAS.meeting * size) > ATLAS.narrow_chain * size
     stretches = [s for s, enough in zip(stretches, wide, strict=True) if enough]
     found: dict[tuple[str, float, float], End] = {}
     for first, last in stretches:
         for end, others in ((first, lasts), (last, firsts)):
-            inside = low + MEETING * size < end.value < high - MEETING * size
-            if inside and not np.any(np.abs(others - end.value) <= MEETING * size):
+            inside = low + ATLAS.meeting * size < end.value < high - ATLAS.meeting * size
+            if inside and not np.any(np.abs(others - end.value) <= ATLAS.meeting * size):
                 found.setdefault(_key(end), end)
     return list(found.values())
 

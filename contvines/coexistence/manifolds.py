@@ -15,8 +15,10 @@ import numpy as np
 
 from ..bifurcation.symmetry_test import image_of
 from ..circles.section import Section, Walled, section_of
+from ..continuation.settings import Settings
 from ..graph.graph import Graph
 from .circle_step import TURN, next_point
+from .settings import MANIFOLDS
 from .solutions import solutions_at
 
 if TYPE_CHECKING:
@@ -25,16 +27,8 @@ if TYPE_CHECKING:
     from ..branches.branch import Branch
     from ..problems.protocol import Problem
 
-FIRST = (
-    1e-4,
-    1e-5,
-    1e-6,
-    1e-7,
-)  # of the plane's size: distances of the first point from the saddle, the next where
-LINEAR = 0.1  # images are further, in such distances, from where the derivative has them: a saddle beside a grazing impact is bent
-LARGEST, SMALLEST = 0.01, 1e-6  # of the plane's size: radii of the circles
+LINEAR = 0.1  # distances of the first point from the saddle by which its images are off: a saddle beside a grazing impact is bent
 STRAIGHT = 0.05  # angle between two steps below which the radius grows
-CORNER = 1e-3  # of the plane's size: radius below which the curve may have a corner, as where an impact begins to be missed
 BENT = 2.6  # largest angle of a corner
 INWARD = 1.55  # largest angle to the inward normal at which a curve comes out of a wall
 PIECES = 40  # of a curve between walls, at most
@@ -96,6 +90,7 @@ def stable_manifolds(
         None for saddles of motions with more than two states.
     """
     wanted: list[tuple[str, str, Section, np.ndarray, int]] = []
+    same = Settings.kept(graph.settings).same
     for branch in graph.branches.values():
         if not branch.real or branch.problem is None:
             continue
@@ -107,7 +102,7 @@ def stable_manifolds(
             periods = len(section.rounds(u))
             wanted += [
                 (branch.label, word, section, place, periods)
-                for place in _places(branch.problem, section, u, at)
+                for place in _places(branch.problem, section, u, at, same)
             ]
     wanted.sort(key=lambda entry: entry[-1])  # those of few periods separate wide basins
     found: list[Manifold] = []
@@ -157,12 +152,12 @@ class _Counted:
         return self.step(x)
 
 
-def _places(problem: Problem, section: Section, u: np.ndarray, p: float) -> list[np.ndarray]:
-    """Where a solution and its images under the problem's symmetries meet the section, each point once."""
+def _places(problem: Problem, section: Section, u: np.ndarray, p: float, same: float) -> list[np.ndarray]:
+    """Where a solution and its images under the problem's symmetries meet the section, each point once; `same` is `Settings.same`."""
     found: list[np.ndarray] = []
     for one in (u, *(image_of(symmetry, u, p) for symmetry in problem.symmetries)):
         for place in section.rounds(one):
-            if not any(np.allclose(place, other, atol=1e-7) for other in found):
+            if not any(np.allclose(place, other, rtol=same, atol=same) for other in found):
                 found.append(place)
     return found
 
@@ -178,7 +173,9 @@ def _halves(
 ) -> list[tuple[np.ndarray, str]]:
     """The pieces of both halves, and how each ends."""
     size = float(np.ptp(limits, axis=1).max())
-    found = [saddle for first in FIRST if (saddle := _linear(step, place, first * size)) is not None]
+    found = [
+        saddle for first in MANIFOLDS.first if (saddle := _linear(step, place, first * size)) is not None
+    ]
     if not found:
         return []
     first, ray, slow, _ = next((saddle for saddle in found if saddle[-1] < LINEAR), found[0])
@@ -234,14 +231,14 @@ class _Half:
         self.size = float(np.ptp(limits, axis=1).max())
         self.pieces = [[place, place + first * ray]]
         self.heading, self.at, self.length = ray, 0, first
-        self.smallest = min(SMALLEST * self.size, 0.01 * first)
+        self.smallest = min(MANIFOLDS.smallest * self.size, 0.01 * first)
 
     def grown(self, longest: float, more: Callable[[], bool]) -> list[tuple[np.ndarray, str]]:
         """The pieces, and how each ends."""
         self.more = more
         ends = [self._on(self.length, TURN, longest * self.size)]
         while ends[-1] == "leaves" and self._through():
-            ended = self._on(CORNER * self.size, INWARD, longest * self.size)
+            ended = self._on(MANIFOLDS.corner * self.size, INWARD, longest * self.size)
             if len(self.pieces[-1]) == 1:  # it does not come out of the wall
                 self.pieces.pop()
                 break
@@ -256,13 +253,13 @@ class _Half:
             starts, ends = self._segments()
             known = (starts, ends, self.at)
             found = next_point(self.image, known, points[-1], self.heading, radius, widest)
-            if found is None and widest == TURN and radius < CORNER * size:
+            if found is None and widest == TURN and radius < MANIFOLDS.corner * size:
                 found = next_point(self.image, known, points[-1], self.heading, radius, BENT)
             if found is None:
                 radius *= 0.5
                 if radius < self.smallest:
                     # no start beyond a wall
-                    edge = np.abs(points[-1][:, None] - limits).min() < CORNER * size
+                    edge = np.abs(points[-1][:, None] - limits).min() < MANIFOLDS.corner * size
                     at_wall = len(points) > 1 and (edge or self._struck() is not None)
                     return "leaves" if at_wall else "breaks"
                 continue
@@ -273,7 +270,7 @@ class _Half:
             if np.any(point < limits[:, 0]) or np.any(point > limits[:, 1]):
                 return "leaves"
             if turn < STRAIGHT or widest > TURN:
-                radius = min(2.0 * radius, LARGEST * size)
+                radius = min(2.0 * radius, MANIFOLDS.largest * size)
             widest = TURN
         return "long"
 
@@ -288,7 +285,7 @@ class _Half:
 
     def _struck(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Where the curve goes on if its last point is at a wall, and the direction away from the wall."""
-        return None if self.struck is None else self.struck(self.pieces[-1][-1], CORNER * self.size)
+        return None if self.struck is None else self.struck(self.pieces[-1][-1], MANIFOLDS.corner * self.size)
 
     def _segments(self) -> tuple[np.ndarray, np.ndarray]:
         """Where the segments of all pieces begin and end."""

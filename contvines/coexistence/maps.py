@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..flows.settings import FlowSettings
+from ..shared.floating_point import TINY
+from .settings import MAPS
+
 if TYPE_CHECKING:
     from ..problems.maps import MapProblem
     from ..problems.protocol import Problem
 
 TRANSIENTS = (200, 800, 3200)  # iterations, each for those that do not recur before
 LONGEST = 64  # of the cycles looked for
-RETURN = 1e-9  # difference that counts as a return, relative to the box
-NEAR = 1e-5  # a settled point lies so near to a solved cycle that it belongs to it
-FAR = 1e4  # times the box: escaped
 GROWTH = 4000  # iterations for a Lyapunov exponent
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
 SIGMAS = 3.0
@@ -24,7 +25,7 @@ EMBEDDED, EMBEDDED_IN = (
     6,
     4000,
 )  # longest unstable cycle looked for, and iterations of a chaotic motion in which it is
-NEAREST, APART = 400, 1e-3  # returns looked at for each length; they lie so far apart, relative to the box
+NEAREST = 400  # returns looked at for each length
 NEWTON, FROM_GUESS = 12, 0.05  # steps, and how far they may lead, relative to the box
 ANYWHERE = 2.0  # likewise, where there is but a start
 
@@ -112,7 +113,7 @@ class MapPopulation:
             first, period = now.copy(), np.zeros(len(left), dtype=int)
             for k in range(1, LONGEST + 1):
                 now = self._advance(step, now, 1)
-                back = (np.abs(now - first).max(axis=1) < RETURN * self.size) & (period == 0)
+                back = (np.abs(now - first).max(axis=1) < MAPS.returned * self.size) & (period == 0)
                 period[back] = k
             period[~np.all(np.isfinite(now), axis=1)] = -1
             x[left], periods[left] = now, period
@@ -124,7 +125,7 @@ class MapPopulation:
         for _ in range(count):
             with np.errstate(all="ignore"):
                 x = step(x)
-                x[np.abs(x - middle).max(axis=1) > FAR * self.size] = np.nan
+                x[np.abs(x - middle).max(axis=1) > MAPS.far * self.size] = np.nan
         return x
 
     def _sorted(
@@ -147,7 +148,7 @@ class MapPopulation:
                     cycle.append(step(cycle[-1][None])[0])
                 points = np.array(cycle)
                 gaps = np.abs(x[:, None, :] - points[None]).max(axis=2).min(axis=1)
-                here = (gaps < NEAR * self.size) & (periods == periods[i])
+                here = (gaps < MAPS.near * self.size) & (periods == periods[i])
                 problem = self.problem.cycle_through(points, p)
                 motions.append(
                     Cycle("periodic", f"{periods[i]}-cycle", int(periods[i]), problem, points.ravel())
@@ -171,7 +172,7 @@ class MapPopulation:
             for i in np.argsort(gaps, kind="stable")[:NEAREST]:
                 if not free[i]:
                     continue
-                free &= np.abs(run[: len(gaps)] - run[i]).max(axis=1) > APART * self.size
+                free &= np.abs(run[: len(gaps)] - run[i]).max(axis=1) > MAPS.apart * self.size
                 points = self._solved(run[i : i + period], p)
                 if points is not None and not any(self._one(points, known) for known in cycles):
                     cycles.append(points)
@@ -219,7 +220,7 @@ class MapPopulation:
             if not np.all(np.isfinite(image)):
                 return None
             step = np.linalg.lstsq(matrix - np.eye(len(x)), x - image, rcond=None)[0]
-            if np.abs(step).max() <= RETURN * self.size:
+            if np.abs(step).max() <= MAPS.returned * self.size:
                 return np.array(points)
             x = x + step
             if np.abs(x - guess[0]).max() > reach * self.size:
@@ -229,7 +230,7 @@ class MapPopulation:
     def _one(self, points: np.ndarray, known: np.ndarray) -> bool:
         """Whether a cycle is a known one, or that one several times round."""
         gaps = np.abs(known - points[0]).max(axis=1)
-        return len(points) % len(known) == 0 and bool(gaps.min() < NEAR * self.size)
+        return len(points) % len(known) == 0 and bool(gaps.min() < MAPS.near * self.size)
 
     def _wandering(self, x: np.ndarray, p: float) -> Cycle:
         """A motion that does not recur, judged by the growth of a tangent vector; blocks give the error of the mean."""
@@ -241,8 +242,8 @@ class MapPopulation:
         for k in range(GROWTH):
             vector = functions.jacobian(x, p) @ vector
             size = float(np.linalg.norm(vector))
-            logs[k] = np.log(max(size, 1e-300))
-            vector = vector / max(size, 1e-300)
+            logs[k] = np.log(max(size, TINY))
+            vector = vector / max(size, TINY)
             x = functions.value(x, p)
         means = logs.reshape(20, -1).mean(axis=1)
         mean, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(len(means)))
@@ -279,6 +280,7 @@ class _Iteration:
         except Exception:  # a function of one point: whatever it says of columns
             return False
         # a power of numbers and one of arrays may differ in the last digit
+        agree = FlowSettings.agree
         return columns.shape == x.T.shape and np.allclose(
-            columns.T, single, rtol=1e-12, atol=1e-14, equal_nan=True
+            columns.T, single, rtol=agree, atol=agree, equal_nan=True
         )

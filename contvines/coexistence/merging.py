@@ -76,7 +76,7 @@ def _special(run: Run, point: SpecialPoint, called: dict[str, str]) -> str:
     graph = run.graph
     form = point.problem.canonical(point.u, point.value)
     for known in graph.special.values():
-        near = abs(known.value - point.value) <= 1e-8 * run.unit(point.value)
+        near = abs(known.value - point.value) <= run.settings.same * run.unit(point.value)
         if (
             known.kind == point.kind
             and near
@@ -96,7 +96,9 @@ def _refuse_strangers(graph: Graph, other: Graph) -> None:
     for name, value in graph.model.items():
         theirs = other.model.get(name, value)
         numbers = isinstance(value, int | float) and isinstance(theirs, int | float)
-        if (numbers and not np.isclose(value, theirs, rtol=1e-12)) or (not numbers and theirs != value):
+        if (numbers and not np.isclose(value, theirs, rtol=Settings.rounding)) or (
+            not numbers and theirs != value
+        ):
             raise ValueError(
                 f"graphs of two machines cannot be merged: {name} = {value} here and {theirs} there"
             )

@@ -8,9 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from ..graph.graph import Graph
+from .settings import ATLAS
 
-BEYOND = 2e-3  # of the interval: so far outside a stable stretch it is asked what the motion becomes
-NARROWEST = 1e-6  # of the interval: narrower stretches between two changes are left out
 RESOLVED = (
     0.01  # of the interval: a kind of motion that has no branch is told of up to so near to where it ends
 )
@@ -48,12 +47,12 @@ def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
     wanted: list[tuple[float, float]] = []
     for first, last in pairwise(marks):
         width = float(last - first)
-        if width <= NARROWEST * size:
+        if width <= ATLAS.narrow_gap * size:
             continue
         inside = known[(known > first) & (known < last)]
         if not inside.size:
             wanted.append((width, float(0.5 * (first + last))))
-        step = BEYOND * size
+        step = ATLAS.beyond * size
         if width <= 4.0 * step:
             continue
         for p in (first + step, last - step):

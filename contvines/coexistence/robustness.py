@@ -18,6 +18,7 @@ from ..text_table import fitted
 from .basins import wilson
 from .population import Population, population_of
 from .ranges import stable_range
+from .settings import ATLAS
 from .solutions import solutions_at
 
 MANY, FEW, MANY_ACROSS = 1024, 256, 100
@@ -317,7 +318,7 @@ class _Kicked:
         ends = np.where(along > 0.0, self.box[:, 1], self.box[:, 0])
         with np.errstate(divide="ignore", invalid="ignore"):
             room = np.where(along == 0.0, np.inf, (ends - place) / along)
-        return np.maximum(room.min(axis=1), 0.0) * (1.0 - 1e-9)
+        return np.maximum(room.min(axis=1), 0.0) * (1.0 - ATLAS.inside)
 
     def _starts(self, states: np.ndarray) -> np.ndarray:
         starts = np.zeros((len(states), len(self.population.names)))

@@ -18,13 +18,13 @@ from .census import Counted
 from .effort import Effort
 from .population import Population
 from .roots import add_root
+from .settings import ATLAS
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
 CYCLES = "searches for unstable cycles"
 MOST = 10_000  # branches traced apart
-NARROWEST = 1e-5  # of the interval: narrower windows are left out
 
 
 class Windows:
@@ -157,7 +157,7 @@ class Windows:
             (branch.problem, branch.points[i], float(branch.values[i]))
             for branch in new
             if branch.real
-            for i in _middles(branch, NARROWEST * (self.run.graph.within[1] - self.run.graph.within[0]))
+            for i in _middles(branch, ATLAS.narrow * (self.run.graph.within[1] - self.run.graph.within[0]))
         ]
 
 

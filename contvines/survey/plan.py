@@ -9,6 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
+from ..coexistence.settings import ATLAS
+
 SAMPLINGS = ("latin", "sobol", "random")
 MOST = 1_000_000
 KEYS = ("within", "count", "values", "normal", "uniform")
@@ -191,7 +193,7 @@ def _drawn(uncertain: dict[str, Law], sampling: str, samples: int, seed: int) ->
         places = qmc.Sobol(count, rng=generator).random_base2(power)[:samples]
     else:
         places = qmc.LatinHypercube(count, rng=generator).random(samples)
-    places = np.clip(places, 1e-9, 1.0 - 1e-9)
+    places = np.clip(places, ATLAS.inside, 1.0 - ATLAS.inside)
     return {name: np.asarray(law.ppf(places[:, i])) for i, (name, law) in enumerate(uncertain.items())}
 
 

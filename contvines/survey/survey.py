@@ -75,7 +75,7 @@ def survey(
     about: Mapping[str, object] | None = None,
     progress: Callable[[Row], None] | bool | None = None,
     interrupt: OnInterrupt = "raise",
-    **options: Any,
+    **options: object,
 ) -> Survey:
     """A diagram of each of many systems.
 

@@ -53,7 +53,7 @@ class Job:
     gaps: int = 5
     values: int = 0
     starts: int = 1
-    options: dict[str, Any] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
     atlas: Mapping[str, Any] | None = None
     swept: int = 0
 

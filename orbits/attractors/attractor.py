@@ -210,7 +210,7 @@ class Attractor:
             )
         return self.orbit
 
-    def problem(self, parameter: str | None = None, symmetric: bool | None = None) -> Any:
+    def problem(self, parameter: str | None = None, symmetric: bool | None = None):
         """The attractor as a continuation problem, so that it can be handed to `contvines.diagram`.
 
         Raises

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Protocol
 
 import numpy as np
+
+from orbits.orbit import Orbit
 
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
 SOLVED = 1000.0  # forcing periods whose simulation takes about as long as Newton's method for a cycle
 SAME = 1e-5  # difference of two canonical forms that are one
 RARE = 32  # forcing periods of the longest recurrence looked for where neighbours come together
+
+
+Form = tuple[Hashable, np.ndarray]
+"""A motion, so that two are one if theirs are `alike`."""
+
+
+class Problem(Protocol):
+    """What is asked of a motion's problem: the form of a solution that all descriptions of one motion share."""
+
+    def canonical(self, u: np.ndarray, p: float) -> Form: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +48,7 @@ class Motion:
     kind: str
     word: str = ""
     periods: int = 0
-    problem: Any = field(default=None, repr=False)
+    problem: Problem | None = field(default=None, repr=False)
     u: np.ndarray | None = field(default=None, repr=False)
     exponent: float = float("nan")
     error: float = float("nan")
@@ -57,10 +69,10 @@ def wandering(exponent: float, error: float, roomy: bool) -> str:
     return "quasi-periodic" if roomy and exponent > -SIGMAS * error else "slow"
 
 
-def distinct(cycles: Iterable[Any], parameter: str, p: float) -> list[tuple[Any, np.ndarray]]:
+def distinct(cycles: Iterable[Orbit], parameter: str, p: float) -> list[tuple[Problem, np.ndarray]]:
     """Problems and unknowns of orbits at a value of a parameter, each motion once."""
-    found: list[tuple[Any, np.ndarray]] = []
-    forms: list[tuple[Any, np.ndarray]] = []
+    found: list[tuple[Problem, np.ndarray]] = []
+    forms: list[Form] = []
     for orbit in cycles:
         problem = orbit.problem(parameter)
         u = orbit.seed(problem)[0]
@@ -71,6 +83,6 @@ def distinct(cycles: Iterable[Any], parameter: str, p: float) -> list[tuple[Any,
     return found
 
 
-def alike(one: tuple[Any, np.ndarray], other: tuple[Any, np.ndarray]) -> bool:
+def alike(one: Form, other: Form) -> bool:
     """Whether two canonical forms are those of one motion."""
     return one[0] == other[0] and np.allclose(one[1], other[1], atol=SAME)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 
 from orbits.attractors.fixed_points import fixed_point
 from orbits.flows.protocol import SimulationError, Simulator, later
 from orbits.flows.trajectory import Trajectory
+from orbits.orbit import Orbit
+
+Solve = Callable[[Trajectory, int, int, int], Orbit | None]
+"""(record, first, last, periods) -> the cycle next to these events of a record, or None."""
 
 WARM = (
     3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
@@ -23,8 +26,8 @@ def returning_cycles(
     starts: np.ndarray,
     box: np.ndarray,
     longest: int,
-    solve: Callable[[Trajectory, int, int, int], Any],
-) -> Iterator[Any]:
+    solve: Solve,
+) -> Iterator[Orbit]:
     """Cycles of up to `longest` forcing periods with events, each once.
 
     Parameters
@@ -79,7 +82,7 @@ def returning_cycles(
                 yield found
 
 
-def _solved(simulator: Simulator, x: np.ndarray, periods: int, solve: Callable) -> Any:
+def _solved(simulator: Simulator, x: np.ndarray, periods: int, solve: Solve) -> Orbit | None:
     """The cycle through a point; None if it is none that can be continued."""
     try:
         simulator.start(x)

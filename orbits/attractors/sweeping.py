@@ -138,14 +138,14 @@ def find_attractors(
     starts: Sequence[Mapping[str, float] | np.ndarray | None],
     *,
     workers: int = 1,
-    **options: Any,
+    **options: object,
 ) -> list[Attractor]:
     """`find_attractor` from many starts; the result does not depend on the number of worker processes."""
     return _many(partial(_one_attractor, model, options), starts, workers)
 
 
 def sweeps(
-    model: Varying, over: str, runs: Sequence[Sequence[float]], *, workers: int = 1, **options: Any
+    model: Varying, over: str, runs: Sequence[Sequence[float]], *, workers: int = 1, **options: object
 ) -> list[list[SweepRow]]:
     """`sweep` over several lists of values, such as one up and one down, in worker processes if asked for."""
     return _many(partial(_one_sweep, model, over, options), runs, workers)

@@ -279,7 +279,7 @@ def _loses_alike(one: Orbit, other: Orbit) -> bool:
         return True
     losses = [orbit.measure("friction_loss") / orbit.periods for orbit in (one, other)]
     energy = one.model.gauge("energy", other.params) * math.prod(one.model.natural_units(one.params)) ** 2
-    return abs(losses[0] - losses[1]) <= 0.05 * energy
+    return bool(abs(losses[0] - losses[1]) <= 0.05 * energy)
 
 
 def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit | None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from orbits.borders.holding import parameter_unit
 from orbits.contacts.letters import HIT, STICK, TURN
+from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
 from orbits.words.margins import border_kind, place_of
@@ -118,8 +119,8 @@ def piled_up(orbit: Orbit, approaches: np.ndarray | None = None) -> bool:
 
 def _gives_way_one_way(orbit: Orbit) -> bool:
     """Whether friction and slope hold the absorber better one way than the other."""
-    reserves = getattr(orbit.model.rest, "reserves", None)
-    if reserves is None:
+    model = orbit.model
+    if not isinstance(model, Model):
         return False
-    left, right = reserves(orbit.params)
-    return abs(left - right) > ONE_WAY * orbit.model.friction_acceleration(orbit.params)
+    left, right = model.rest.reserves(orbit.params)
+    return bool(abs(left - right) > ONE_WAY * model.friction_acceleration(orbit.params))

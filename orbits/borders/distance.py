@@ -92,9 +92,9 @@ def _largest(gap: np.ndarray, free: np.ndarray) -> np.ndarray:
 
 def _unlike(one: Orbit, other: Orbit) -> float:
     """How much periods and extremes (of positions that may be shifted: how far they go) differ."""
-    names = [f"{side}_{state}" for state in one.model.states for side in ("max", "min")]
+    names = [f"{side}_{state}" for state in one.model.node_names[1:] for side in ("max", "min")]
     free = {
-        one.model.states[entry - 1]
+        one.model.node_names[entry]
         for entry in (*one.flow.loose(one.model, one.word), *other.flow.loose(other.model, other.word))
     }
     rows = []

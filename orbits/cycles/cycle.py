@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from orbits.cycles.identity import is_symmetric, root_orbit, size_of_one
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import Flow
-from orbits.machines.base import Model
 from orbits.machines.events import EventTable, events_of
 from orbits.words import Word
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -35,14 +37,14 @@ class Cycle:
         Parameter vector, in the order of `model.parameter_names`.
     """
 
-    model: Any
+    model: Varying
     word: Word
     periods: int
     nodes: np.ndarray = field(repr=False)
     params: np.ndarray = field(repr=False)
 
     @classmethod
-    def at_rest(cls, model: Model, params: np.ndarray) -> Self:
+    def at_rest(cls, model: Varying, params: np.ndarray) -> Self:
         """The cycle without events of a built-in machine."""
         return cls(model, Word((), ()), 1, np.zeros((0, model.node)), params)
 

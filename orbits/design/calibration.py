@@ -19,8 +19,8 @@ from orbits.machines.path import along
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from orbits.machines.base import Model
     from orbits.machines.varying import Varying
+    from orbits.simulation.runs import Start
 
 GRID = 900  # places at which the search for a guess looks
 CANDIDATES = 8  # of them that are followed
@@ -39,7 +39,7 @@ def from_impacts(
     unknown: Mapping[str, float],
     *,
     start: Mapping[str, float] | None = None,
-    limits: Any = None,
+    limits: Mapping[str, Sequence[float]] | None = None,
     fixed: Mapping[str, float] | None = None,
     confidence: float = 0.95,
 ) -> Calibration:
@@ -70,7 +70,7 @@ def from_impacts(
 
     measured = _measured(times)
     model = _with_amounts(machine, unknown)
-    bounds = _limits(model, unknown, limits)
+    bounds = _limits(unknown, limits)
     since = measured - measured[0]
     count = measured.size
 
@@ -150,7 +150,7 @@ def from_sweep(
     unknown: Mapping[str, float],
     *,
     measure: str = "max_abs_q1",
-    limits: Any = None,
+    limits: Mapping[str, Sequence[float]] | None = None,
     fixed: Mapping[str, float] | None = None,
     transient: float = SETTLED,
     confidence: float = 0.95,
@@ -185,13 +185,13 @@ def from_sweep(
         raise ParameterError("the sweep has numbers that are not finite: leave those rows out")
     model = _with_amounts(machine, unknown)
 
-    def residuals(guess: np.ndarray, start: Any = None) -> np.ndarray:
+    def residuals(guess: np.ndarray, start: Start = None) -> np.ndarray:
         params = _vector(model, dict(zip(unknown, guess)), fixed)
         numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
         rows = sweep(model, over, places, start=start, transient=transient, nudge=0.0, **numbers)
         return np.array([row.measures[measure] for row in rows]) - heights
 
-    bounds = _limits(model, unknown, limits)
+    bounds = _limits(unknown, limits)
     known = np.array([*unknown.values()], dtype=float)
     generator = np.random.default_rng(20)
     params = _vector(model, unknown, fixed)
@@ -220,7 +220,7 @@ def _measured(times: ArrayLike) -> np.ndarray:
     return measured
 
 
-def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Any:
+def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Varying:
     """The machine given by what is to be estimated."""
     if not unknown:
         raise ParameterError(
@@ -234,18 +234,19 @@ def _with_amounts(machine: Varying, unknown: Mapping[str, float]) -> Any:
     return machine
 
 
-def _vector(model: Model, values: Mapping[str, float], fixed: Mapping[str, float] | None) -> np.ndarray:
+def _vector(model: Varying, values: Mapping[str, float], fixed: Mapping[str, float] | None) -> np.ndarray:
     params = model.vector(fixed)
     for name, value in values.items():
         params = along(model.path(name, params), params, float(value))
     return params
 
 
-def _limits(model: Model, unknown: Mapping[str, float], limits: Any) -> dict[str, tuple[float, float]]:
+def _limits(
+    unknown: Mapping[str, float], limits: Mapping[str, Sequence[float]] | None
+) -> dict[str, tuple[float, float]]:
     usual = {"restitution": (0.01, 1.0), "friction": (0.0, 2.0)}
-    return {
-        name: tuple(limits[name])
-        if limits and name in limits
-        else usual.get(name, (0.2 * value, 5.0 * value))
-        for name, value in unknown.items()
-    }
+    found = {name: usual.get(name, (0.2 * value, 5.0 * value)) for name, value in unknown.items()}
+    for name in found.keys() & (limits or {}).keys():
+        low, high = (limits or {})[name]
+        found[name] = (low, high)
+    return found

@@ -18,17 +18,20 @@ from orbits.design.swept_responses import swept_responses
 from orbits.flows.protocol import SimulationError
 from orbits.machines.conditions import Table, resolved
 from orbits.orbit import Orbit
+from orbits.simulation.runs import Start
 from orbits.starts.find import StartError, centred, find, polish
 
 if TYPE_CHECKING:
-    from orbits.machines.base import Model
     from orbits.machines.varying import Varying
 
 PLACES = 5  # where an orbit is looked for in the interval
 NARROW = 1.0 / 64.0  # the least part of the way that is tried
 
+Near = tuple[np.ndarray, np.ndarray, tuple[str, ...], tuple[int, ...], int]
+"""What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
 
-def settled(model: Model, params: np.ndarray, state: Any = None) -> Any:
+
+def settled(model: Varying, params: np.ndarray, state: Start = None) -> Orbit | None:
     """The orbit to which the machine settles from rest, or from a state; None where nothing recurs."""
     values: dict[str, Any] = dict(zip(model.parameter_names, (float(value) for value in params)))
     found = find_attractor(model, state, max_period=8, **values)
@@ -68,7 +71,7 @@ class Family:
     machine: Varying
     word: str | None = None
     periods: int = 1
-    guess: Any = None
+    guess: Sequence[Sequence[float]] | np.ndarray | None = None
     loose: Mapping[str, float] | None = None
     over: str | None = None
     within: tuple[float, float] | None = None
@@ -80,7 +83,7 @@ class Family:
         """Labels of axes by name of parameter or measure."""
         return self.machine.notation
 
-    def __call__(self, values: Mapping[str, float], near: Any = None) -> Any:
+    def __call__(self, values: Mapping[str, float], near: Near | None = None) -> Orbit:
         """The orbit of the machine with these values, counted in its units.
 
         Where the orbit with the family's word does not exist, the one to which the machine settles from rest.
@@ -126,7 +129,7 @@ class Family:
             )
         return orbit
 
-    def machine_at(self, values: Mapping[str, float]) -> tuple[Any, dict[str, float]]:
+    def machine_at(self, values: Mapping[str, float]) -> tuple[Varying, dict[str, float]]:
         """The machine with these values, and the parameters left to its orbits."""
         values = resolved(self.tables, values)
         # a physical machine counts in its units; the numbers of a page are all its orbits'
@@ -187,16 +190,18 @@ class Family:
         return swept_responses(model, over, at, loose)
 
     @staticmethod
-    def near(orbit: Orbit) -> tuple[Any, ...] | None:
+    def near(orbit: Orbit) -> Near | None:
         """What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
         word = orbit.word
         return (
             (orbit.nodes, orbit.params, word.events, word.modes, orbit.periods) if len(orbit.nodes) else None
         )
 
-    def starts(self, systems: Sequence[Mapping[str, float]], neighbours: Sequence[int | None]) -> list[Any]:
+    def starts(
+        self, systems: Sequence[Mapping[str, float]], neighbours: Sequence[int | None]
+    ) -> list[Near | None]:
         """`near` of each system's own orbit, each carried over from its neighbour; None where that fails."""
-        found: list[Any] = []
+        found: list[Near | None] = []
         for values, neighbour in zip(systems, neighbours):
             before = None if neighbour is None else found[neighbour]
             try:
@@ -210,7 +215,7 @@ class Family:
                 found.append(None)
         return found
 
-    def _carried(self, model: Model, params: np.ndarray, near: Any) -> Orbit | None:
+    def _carried(self, model: Varying, params: np.ndarray, near: Near) -> Orbit | None:
         """The orbit at `params` from one nearby, both with the word of the latter."""
         nodes, here, events, modes, periods = near
         word = model.word_of(events, modes, params)

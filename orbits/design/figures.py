@@ -12,9 +12,10 @@ sticking ends.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import wraps
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,7 +35,7 @@ class Figure(NamedTuple):
 
     name: str
     symbol: str
-    value: Any
+    value: Reals
     unit: str
     meaning: str
 
@@ -68,7 +69,7 @@ class Design:
     """
 
     half_width: Reals = 0.02
-    natural_frequency: Any = 7.666
+    natural_frequency: Reals = 7.666
     restitution: Reals = 0.76
     friction: Reals = 0.5
     mass_ratio: Reals = 0.006
@@ -106,7 +107,7 @@ class Design:
         half_width: float | None = None,
         natural_frequency: float | None = None,
         cavity: float | None = None,
-        **fields: Any,
+        **fields: Reals,
     ) -> Design:
         """From ``g~ = g/(b omega_0^2)`` and one of the two scales; the other one follows.
 
@@ -142,9 +143,10 @@ class Design:
                 f"gravity = {gravity!r} with {name} = {value!r} {unit} means {follows.format(other)}, which lies outside "
                 f"{SCALE[0]:g} to {SCALE[1]:g}; change one of the two."
             )
-        return cls(half_width=cavity, natural_frequency=natural_frequency, **fields)
+        frequency = value if natural_frequency is None else natural_frequency
+        return cls(half_width=cavity, natural_frequency=frequency, **fields)
 
-    def with_(self, **changes: Any) -> Design:
+    def with_(self, **changes: Reals) -> Design:
         """A copy with some fields changed."""
         if "cavity" in changes:
             changes["half_width"] = changes.pop("cavity")
@@ -203,11 +205,11 @@ class Design:
         return self.friction * self.acceleration / (2.0 * np.pi * f) ** 2
 
     @property
-    def sliding_bounds(self) -> tuple[Any, Any]:
+    def sliding_bounds(self) -> tuple[Reals, Reals]:
         """`sliding_bounds_at` the natural frequency."""
         return self.sliding_bounds_at()
 
-    def sliding_bounds_at(self, frequency: ArrayLike | None = None) -> tuple[Any, Any]:
+    def sliding_bounds_at(self, frequency: ArrayLike | None = None) -> tuple[Reals, Reals]:
         """Displacements [m] of the oscillator between which the absorber slides, without sticking or impacts, at an
         excitation frequency [Hz] (default ``f_0``).
 
@@ -270,11 +272,11 @@ class Design:
         ]  # fmt: skip
 
 
-def _older_name(init: Any) -> Any:
+def _older_name(init: Callable[..., None]) -> Callable[..., None]:
     """`Design(cavity=...)` is `Design(half_width=...)`."""
 
     @wraps(init)
-    def known(self: Design, *values: Any, **fields: Any) -> None:
+    def known(self: Design, *values: Reals, **fields: Reals) -> None:
         if "cavity" not in fields:
             return init(self, *values, **fields)
         if "half_width" in fields:

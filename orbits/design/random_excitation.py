@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from orbits.flows.protocol import SimulationError
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
 from orbits.machines.parameters import ParameterError
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 INSTANTS = 20  # of the shortest period
 PERIODS = 2000  # of a record, in radians of the middle of the density over 2 pi
@@ -121,7 +124,7 @@ class RandomResponse:
 
 
 def random_base(
-    model: Any,
+    model: Model,
     params: np.ndarray,
     psd: Density,
     *,

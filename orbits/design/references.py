@@ -6,10 +6,13 @@ Of each the largest displacement of the oscillator under the same excitation, in
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
 
 KINDS = ("bare", "tuned", "friction")
 NAMES = {
@@ -132,7 +135,7 @@ def _sliding(omega: float, force: float, drag: float, eps: float, own: float) ->
     return high
 
 
-def reference(kind: str, model: Any, params: np.ndarray) -> np.ndarray:
+def reference(kind: str, model: Model, params: np.ndarray) -> np.ndarray:
     """One of `KINDS` at parameter vectors (m, P) of a machine with an oscillator, in half-widths, shape (m,).
 
     Raises

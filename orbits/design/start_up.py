@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +12,11 @@ from orbits.design.coupled_page import coupled_page
 from orbits.design.page_transients import page_transient
 from orbits.design.settling import settled
 from orbits.machines.base import ParameterError
+from orbits.machines.physical.machine import Physical
 from orbits.simulation.runs import simulate
+
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
 
 FEWEST, MOST = 60, 2000  # forcing periods
 CONSTANTS = 6.0  # time constants of the bare oscillator that are followed
@@ -54,7 +58,7 @@ class StartUp:
 
 
 def start_up(
-    model: Any, params: np.ndarray, periods: int | None = None, run_up: tuple[float, float] | None = None
+    model: Varying, params: np.ndarray, periods: int | None = None, run_up: tuple[float, float] | None = None
 ) -> StartUp:
     """Simulate the machine from rest, the absorber in the middle, from the moment at which the excitation begins at its phase 0.
 
@@ -85,7 +89,7 @@ def start_up(
         raise ParameterError(f"periods = {periods}: give 1 to {MOST}")
     if run_up is not None:
         return _running_up(
-            params[: len(model.base.parameter_names) if model.units else None],
+            params[: len(model.base.parameter_names) if isinstance(model, Physical) else None],
             periods * 2.0 * math.pi / omega,
             run_up,
         )

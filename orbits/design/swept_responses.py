@@ -16,6 +16,7 @@ from orbits.population.population import Population
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
+    from orbits.simulation.runs import Start
 
 DRAWN = 3  # starts at the first, the middle and the last value
 SAME = 1e-3  # relative difference of the responses of one motion
@@ -84,7 +85,7 @@ class _Seen:
         self.measure = flow_of(model).default_measure(model)
         self.rows: list[SweepRow] = []
 
-    def at(self, value: float, start: Any, transient: float = USUAL) -> SweepRow:
+    def at(self, value: float, start: Start, transient: float = USUAL) -> SweepRow:
         """What a state leads to."""
         ways = {"transient": transient, "exponents": False}
         (row,) = sweep(self.model, self.over, [value], start=start, **ways, **self.numbers)
@@ -103,7 +104,7 @@ class _Seen:
             for other in here
         )
 
-    def run(self, places: Sequence[int], start: Any, until_known: bool) -> None:
+    def run(self, places: Sequence[int], start: Start, until_known: bool) -> None:
         """Follow a motion along some of the values; to one that is known, if asked."""
         for k in places:
             row = self.at(self.values[k], start)

@@ -117,7 +117,7 @@ def taken_share(model: Model, params: np.ndarray, displacement: float, time: flo
         raise ParameterError(
             f"time = {time:g} is out of range; give a time above 0, of at most {LONGEST:g} periods"
         )
-    numbers: Any = dict(zip(model.parameter_names, (float(x) for x in params))) | {
+    numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params))) | {
         "forcing": 0.0,
         "frequency": 1.0,
     }

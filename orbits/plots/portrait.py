@@ -103,7 +103,8 @@ def portrait(
                 raise ValueError(
                     f"show = {panels!r} needs {2 if panels == 'both' else 1} axes, not {len(drawn)}"
                 )
-            figure: Any = drawn[0].get_figure(root=True)
+            figure = drawn[0].get_figure(root=True)
+            assert figure is not None
         if panels != "history":
             panel.phase(drawn[0], seen, orbit.real)
         if panels != "phase":

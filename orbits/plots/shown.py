@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from orbits.contacts.letters import NAMES
+from orbits.machines.base import Model
 from orbits.plots.track import track
 
 if TYPE_CHECKING:
@@ -84,12 +85,13 @@ class Shown:
 
 def shown(orbit: Orbit, points: int) -> Shown:
     """An orbit as pictures show it, with about so many samples."""
-    return SHOWN[orbit.model.flow](orbit, points)
+    model = orbit.model
+    return _of_cavity(orbit, model, points) if isinstance(model, Model) else _of_states(orbit, points)
 
 
-def _of_cavity(orbit: Orbit, points: int) -> Shown:
+def _of_cavity(orbit: Orbit, model: Model, points: int) -> Shown:
     """The absorber in its cavity: its relative position and velocity, left wall on the left; both bodies over forcing periods."""
-    model, params, table, motion = orbit.model, orbit.params, orbit.events, orbit.sample(points)
+    params, table, motion = orbit.params, orbit.events, orbit.sample(points)
     known = model.gauges(("w", "w_rate"), params)
     (long, length), (fast, velocity) = (known.get(name, (1.0, "")) for name in ("w", "w_rate"))
     w, rate = motion["w"] * long, motion["w_rate"] * fast
@@ -120,7 +122,7 @@ def _of_cavity(orbit: Orbit, points: int) -> Shown:
 
 def _of_states(orbit: Orbit, points: int) -> Shown:
     """A declared machine: its first two states against one another, and all states over time."""
-    motion, names = orbit.sample(points), orbit.model.states
+    motion, names = orbit.sample(points), list(orbit.model.node_names[1:])
     x, y = names[0], names[1] if len(names) > 1 else names[0]
     clock = motion["phase"] / (2.0 * np.pi) if orbit.forced else motion["time"]
     first = [np.searchsorted(motion["segment"], i) for i in range(len(orbit.word))]
@@ -136,7 +138,6 @@ def _of_states(orbit: Orbit, points: int) -> Shown:
     )  # fmt: skip
 
 
-SHOWN = {"native": _of_cavity, "page": _of_states}
 """By the flow of the machine."""
 
 

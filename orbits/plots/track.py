@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.contacts.wall import Wall
 from orbits.machines.page.formulas import Named, NoPhase, States
 
 if TYPE_CHECKING:
@@ -32,13 +34,18 @@ def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
         "bodies": positions by the states' names; "walls": "name", "at" and "side" (+1: beyond larger positions) of each;
         "periods".
     """
-    rates = _rates(orbit.model.states, motion)
+    from orbits.machines.page.machine import Machine
+
+    rates = _rates(orbit.model.node_names[1:], motion)
     if not rates:
         return None
     bodies = {velocity: place for place, velocity in rates.items()}
     walls = []
-    for contact in orbit.model.contacts:
-        pushed = [name for name in getattr(contact, "push", {}) if name in bodies]
+    machine = orbit.model
+    for contact in machine.contacts if isinstance(machine, Machine) else ():
+        if not isinstance(contact, Wall):
+            continue
+        pushed = [name for name in contact.push if name in bodies]
         if len(pushed) == 1:
             gaps = _gaps(orbit, contact, motion)
             side = -1.0 if _number(contact.push[pushed[0]], orbit, motion) > 0.0 else 1.0
@@ -74,20 +81,20 @@ def _rates(states: tuple[str, ...], motion: dict[str, np.ndarray]) -> dict[str, 
 
 
 def _states(orbit: Orbit, motion: dict[str, np.ndarray]) -> list[tuple[States, Any]]:
-    names = orbit.model.states
+    names = orbit.model.node_names[1:]
     rows = np.column_stack([motion[name] for name in names])
     phases = motion["phase"] if orbit.model.forced else [NoPhase()] * len(rows)
     return [(States(names, row), phase) for row, phase in zip(rows, phases, strict=True)]
 
 
-def _gaps(orbit: Orbit, contact: Any, motion: dict[str, np.ndarray]) -> np.ndarray:
+def _gaps(orbit: Orbit, contact: Wall, motion: dict[str, np.ndarray]) -> np.ndarray:
     p = Named("p", orbit.parameters)
     return np.array([float(contact.gap(state, phase, p)) for state, phase in _states(orbit, motion)])
 
 
-def _number(push: Any, orbit: Orbit, motion: dict[str, np.ndarray]) -> float:
+def _number(push: float | str | Callable, orbit: Orbit, motion: dict[str, np.ndarray]) -> float:
     """What a unit impulse does to a velocity, at the start of the period."""
     if callable(push):
         state, phase = _states(orbit, motion)[0]
-        return float(push(state, phase, Named("p", orbit.parameters)))  # type: ignore[arg-type]
+        return float(push(state, phase, Named("p", orbit.parameters)))
     return float(orbit.parameters[push] if isinstance(push, str) else push)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.attractors.attractor import Attractor
-from orbits.attractors.motion import RARE, SOLVED, Motion, wandering
+from orbits.attractors.motion import RARE, SOLVED, Motion, Problem, wandering
 from orbits.attractors.recurrence import NEARLY, attracted, recurring, returns
 from orbits.flows.protocol import Batch, Outcome, SimulationError, Simulator
 from orbits.flows.trajectory import TWO_PI
 from orbits.orbit import Orbit
 from orbits.population.sorting import Sorting
+
+if TYPE_CHECKING:
+    from orbits.flows.trajectory import Trajectory
 
 BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)
 """Forcing periods (or events) between two looks at a motion that is followed alone."""
@@ -84,7 +87,8 @@ class Fleet:
         outcome = batch.outcomes[i]
         if outcome == Outcome.AT_REST:
             rest = Orbit.at_rest(self.model, self.params)
-            return self._rest(batch.outcomes == outcome, rest if rest.real else None, 1, None, sorting)
+            motion = Motion("stuck", "", 1, *_solution(rest if rest.real else None, sorting.parameter))
+            return sorting.assign(batch.outcomes == outcome, sorting.place(motion))
         if outcome == Outcome.LOST:
             return sorting.plain(batch.outcomes == outcome, "escaped")
         self.simulator.go_on(batch.states[i])
@@ -143,14 +147,16 @@ class Fleet:
                 continue
             run = simulator.look(self.longest)
             if not run.held and simulator.rests(run, True):
-                return self._rest(i, _equilibrium(run), 0, simulator.state.copy(), sorting)
+                solution = _equilibrium(run, sorting.parameter)
+                motion = Motion("stuck", "", 0, *solution, state=simulator.state.copy())
+                return sorting.assign(i, sorting.place(motion))
             orbit = recurring(simulator, run, self.longest, NEARLY)
             if orbit is not None:
                 return self._add(i, orbit, orbit.flow.kind(orbit), orbit.periods, orbit.spelling, sorting)
             if run.held:
                 return sorting.plain(i, "stuck", state=simulator.state.copy())
             if run.chatters and next(returns(run, self.longest, simulator.waiting.returned), None):
-                return sorting.plain(i, "chatter", periods=0, state=simulator.state.copy())
+                return sorting.plain(i, "chatter", state=simulator.state.copy())
             if looks >= TOLD and any(m.kind in UNENDING for m in sorting.motions):
                 break
             if simulator.count - begun > ENOUGH:
@@ -186,15 +192,6 @@ class Fleet:
         return best
 
     # ------------------------------------------------------------------ motions
-    def _rest(
-        self, members: np.ndarray | int, rest: Any, periods: int, state: np.ndarray | None, sorting: Sorting
-    ) -> None:
-        """Starts that come to rest, at a solution where one is known."""
-        k, problem, u = sorting.known(rest, "stuck", periods)
-        if k < 0:
-            k = sorting.add(rest, Motion("stuck", "", periods, problem, u, state=state))
-        sorting.assign(members, k)
-
     def _found(self, found: Attractor, i: int, sorting: Sorting) -> None:
         """What a motion of a batch settles on."""
         orbit, periods = found.orbit, found.periods
@@ -213,10 +210,8 @@ class Fleet:
         free: bool = False,
     ) -> None:
         """Put the motion on which the simulator is on the list, unless it is there, and give it all starts whose points lie on it."""
-        k, problem, u = sorting.known(orbit, kind, periods)
-        if k < 0:
-            motion = Motion(kind, word, periods, problem, u, state=self.simulator.state.copy())
-            k = sorting.add(orbit, motion)
+        solution = _solution(orbit, sorting.parameter)
+        k = sorting.place(Motion(kind, word, periods, *solution, state=self.simulator.state.copy()))
         marks = next((marks for marks in self.marks if marks.place == k), None)
         if marks is None:
             marks = self._marks(k, orbit, max(periods, 1), free)
@@ -260,11 +255,23 @@ class Fleet:
         return _Marks(place, {"": np.array(own)}, {"": np.array(image)} if mirrored else {}, counted)
 
 
-def _equilibrium(run: Any) -> Any:
+def _solution(orbit: Orbit | None, parameter: str) -> tuple[Problem | None, np.ndarray | None]:
+    """Problem and unknowns of an orbit; None of a motion without a word."""
+    if orbit is None:
+        return None, None
+    problem = orbit.problem(parameter)
+    return problem, orbit.seed(problem)[0]
+
+
+def _equilibrium(run: Trajectory, parameter: str) -> tuple[Problem | None, np.ndarray | None]:
     """The solution near the end of a self-excited motion without events; None where none is known."""
     from orbits.flows.page.smooth import rest_near
+    from orbits.simulation.page import PageTrajectory
 
-    return rest_near(run.model, run.modes[-1], run.params, run.last)
+    if not isinstance(run, PageTrajectory):
+        return None, None
+    rest = rest_near(run.model, run.modes[-1], run.params, run.last)
+    return (None, None) if rest is None else (rest.problem(parameter), rest.state)
 
 
 def _after_events(orbit: Orbit) -> dict[str, np.ndarray]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contvines.shared.near_names import no_parameter
-from orbits.attractors.motion import SOLVED, Motion, distinct
+from orbits.attractors.motion import SOLVED, Motion, Problem, distinct
 from orbits.attractors.recurrence import solved
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError, Simulator
@@ -148,7 +148,7 @@ class Population:
         finally:
             self.work += fleet.work
 
-    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Unstable cycles that the chaotic motion through a state passes near, each once, as problems with their unknowns.
 
         Parameters
@@ -165,7 +165,7 @@ class Population:
         self.work += simulator.time - begun + SOLVED * len(cycles)
         return distinct(cycles, self.parameter, p)
 
-    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Cycles, stable or not, that are known in closed form or to which Newton's method leads from starts, each once.
 
         Rest and sliding between the walls are in closed form: their mean position is free, so no start leads Newton's method to them. Of a
@@ -186,7 +186,7 @@ class Population:
         self.work += SOLVED * (len(starts) + len(cycles))
         return distinct((*self._closed(p), *cycles), self.parameter, p)
 
-    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
+    def closed(self, p: float) -> list[tuple[Problem, np.ndarray]]:
         """The real motions known in closed form, stable or not: of built-in machines rest, sliding between the walls, symmetric impacts."""
         return distinct(self._closed(p), self.parameter, p)
 
@@ -196,7 +196,7 @@ class Population:
         model = self.model
         return closed_orbits(model, self.vector(p), Orbit) if isinstance(model, Model) else ()
 
-    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return rebuild(description)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
-from orbits.attractors.motion import Motion, alike
+from orbits.attractors.motion import Form, Motion, alike
 
 
 class Fleet(Protocol):
@@ -34,7 +34,7 @@ class Sorting:
         self.motions: list[Motion] = []
         self.index = np.full(count, -1)
         self.mirrored = np.zeros(count, dtype=bool)
-        self._forms: list[Any] = []
+        self._forms: list[Form | None] = []
 
     def sort(self, fleet: Fleet) -> tuple[list[Motion], np.ndarray, np.ndarray]:
         """Motions in the order of their first start, then `index` and `mirrored`."""
@@ -46,34 +46,40 @@ class Sorting:
         place = np.argsort(order)
         return [self.motions[k] for k in order], place[self.index], self.mirrored
 
-    def plain(self, members: np.ndarray | int, kind: str, **facts: Any) -> None:
+    def plain(
+        self,
+        members: np.ndarray | int,
+        kind: str,
+        exponent: float = np.nan,
+        error: float = np.nan,
+        state: np.ndarray | None = None,
+    ) -> None:
         """These starts reach the motion of a kind that is not distinguished any further."""
         for k, motion in enumerate(self.motions):
             if motion.kind == kind and self._forms[k] is None and not motion.word:
                 return self.assign(members, k)
-        self.motions.append(Motion(kind, **facts))
-        self._forms.append(None)
-        self.assign(members, len(self.motions) - 1)
+        self.assign(members, self._add(Motion(kind, exponent=exponent, error=error, state=state), None))
 
-    def known(self, orbit: Any, kind: str, periods: int) -> tuple[int, Any, Any]:
-        """Which motion an orbit (None: one without a word) is, -1 if it is new; its problem and unknowns."""
-        problem = u = form = None
-        if orbit is not None:
-            problem = orbit.problem(self.parameter)
-            u = orbit.seed(problem)[0]
-            form = problem.canonical(u, self.p)
-        for k, motion in enumerate(self.motions):
+    def place(self, motion: Motion) -> int:
+        """The number of a motion, which is put on the list if it is a new one."""
+        form = self._form(motion)
+        for k, known in enumerate(self.motions):
             other = self._forms[k]
             one = alike(form, other) if form is not None and other is not None else form is other
-            if one and motion.kind == kind and motion.periods == periods:
-                return k, problem, u
-        return -1, problem, u
+            if one and known.kind == motion.kind and known.periods == motion.periods:
+                return k
+        return self._add(motion, form)
 
-    def add(self, orbit: Any, motion: Motion) -> int:
-        """A new motion; its number."""
+    def _add(self, motion: Motion, form: Form | None) -> int:
         self.motions.append(motion)
-        self._forms.append(None if orbit is None else motion.problem.canonical(motion.u, self.p))
+        self._forms.append(form)
         return len(self.motions) - 1
+
+    def _form(self, motion: Motion) -> Form | None:
+        """By which a motion is known; None of one without a word."""
+        if motion.problem is None or motion.u is None:
+            return None
+        return motion.problem.canonical(motion.u, self.p)
 
     def assign(self, members: np.ndarray | int, k: int, mirrored: np.ndarray | bool = False) -> None:
         """These starts, as far as they are free, reach motion k, or its mirror image."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from orbits.words.margins import margin_name
 
 if TYPE_CHECKING:
     from orbits.cycles.cycle import Cycle
-    from orbits.machines.base import Model
+    from orbits.machines.varying import Varying as VaryingMachine
 
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
@@ -38,7 +38,7 @@ PLAIN = ("end", "user")  # kinds of special points where nothing happens
 class Motions(Protocol):
     """What a proof asks of the problem of a word's cycles (`orbits.problem.OrbitProblem`)."""
 
-    model: Any
+    model: VaryingMachine
     word: Word
     periods: int
     symmetric: bool
@@ -243,7 +243,7 @@ def _critical(
     return ("fold" if kind == "branch-point" else kind), word, periods, nodes, half
 
 
-def _refuse_pages(model: Model) -> None:
+def _refuse_pages(model: VaryingMachine) -> None:
     if not flow_of(model).closed_form:
         raise ProofError(
             f"the machine {model.name!r} offers no proofs, for flights of declared machines have no closed form; "

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
 
 from orbits.proofs.checks import SIDED
+from orbits.proofs.equations import Motif
+from orbits.proofs.obstacles import Obstacle
 from orbits.words import Word
 from orbits.words.alphabet import shaken
 
@@ -18,7 +21,52 @@ SAYS = {
 }
 
 
-def spelling(proof: Any) -> str:
+class Claim(Protocol):
+    """What is said of whatever is proved."""
+
+    @property
+    def motif(self) -> Motif: ...
+    @property
+    def parameters(self) -> Mapping[str, Any]: ...
+    @property
+    def parameter(self) -> str | None: ...
+    @property
+    def real(self) -> bool | None: ...
+    @property
+    def stable(self) -> bool | None: ...
+    @property
+    def obstacles(self) -> Sequence[Obstacle]: ...
+
+
+class OfOrbit(Claim, Protocol):
+    """What is said of an orbit or a special point (`orbits.proofs.proof.Proof`)."""
+
+    @property
+    def kind(self) -> str: ...
+    @property
+    def existence(self) -> bool: ...
+    @property
+    def radius(self) -> float | None: ...
+    @property
+    def value(self) -> Sequence[str] | None: ...
+    @property
+    def broken(self) -> tuple[str, int] | None: ...
+
+
+class OfPiece(Claim, Protocol):
+    """What is said of a piece of a branch (`orbits.proofs.pieces.Piece`)."""
+
+    @property
+    def asked(self) -> tuple[float, float]: ...
+    @property
+    def covered(self) -> tuple[str, str] | None: ...
+    @property
+    def ends(self) -> tuple[str | None, ...]: ...
+    @property
+    def count(self) -> int: ...
+
+
+def spelling(proof: Claim) -> str:
     """The word of what is proved, as tables and pictures have it: one spelling for one motion."""
     motif = proof.motif
     word = Word(tuple(motif.events), tuple(motif.modes), shaken(motif.frictionless))
@@ -27,18 +75,18 @@ def spelling(proof: Any) -> str:
     return f"symmetric {word.with_image().spelled()}"
 
 
-def _mirrored(proof: Any) -> bool:
+def _mirrored(proof: Claim) -> bool:
     """Whether mirror images are motions of the machine, however the enclosed parameter varies."""
     known = proof.parameters
     alike = all(known.get(f"{name}_left") == known.get(f"{name}_right") for name in SIDED)
     return alike and float(known.get("slope", 0.0 if proof.motif.machine != "cavity" else 1.0)) == 0.0
 
 
-def sentence(proof: Any) -> str:
+def sentence(proof: OfOrbit) -> str:
     """What an `orbits.proofs.proof.Proof` proves, and what was in the way."""
     word = spelling(proof)
     what = "the orbit" if proof.kind == "orbit" else f"the {proof.kind}"
-    if proof.box is None:
+    if not proof.existence:
         lines = [f"{what} of {word}: existence not proved"]
     else:
         facts = [f"exists, one and only one within {proof.radius:.2g}"]
@@ -55,7 +103,7 @@ def sentence(proof: Any) -> str:
     return "\n".join(lines)
 
 
-def piece_sentence(piece: Any) -> str:
+def piece_sentence(piece: OfPiece) -> str:
     """What an `orbits.proofs.pieces.Piece` proves of a piece of a branch."""
     word = spelling(piece)
     lines = []

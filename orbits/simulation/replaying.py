@@ -7,7 +7,7 @@ from one of the orbit's events to itself.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -75,7 +75,7 @@ class Round(NamedTuple):
     message: str
 
 
-def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int = 200) -> Replay:
+def replay(orbit: Motion, *, thorough: bool = False, loss: float = 1e-4, most: int = 200) -> Replay:
     """Replay an orbit of a forced machine: start exactly at its first node and compare events and nodes over one period.
 
     Parameters
@@ -120,7 +120,7 @@ def replay(orbit: Any, *, thorough: bool = False, loss: float = 1e-4, most: int 
     return Replay(error, "", multipliers, _tracked(*cycle, loss, wanted), float(expected), returned)
 
 
-def _without_events(simulator: Simulator, orbit: Any) -> Replay:
+def _without_events(simulator: Simulator, orbit: Motion) -> Replay:
     """A period without an event; the absorber must not slip."""
     model, params, nothing = orbit.model, orbit.params, np.empty(0, complex)
     if model.in_cavity:

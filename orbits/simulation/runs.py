@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,13 +17,16 @@ if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
 
+Start = Mapping[str, float] | np.ndarray | None
+"""Where a simulation begins: entries by name, or a state in which another one has ended; None for rest."""
+
 SIMULATORS = {
     "native": ("orbits.simulation.native", "NativeSimulator"),
     "page": ("orbits.simulation.page", "PageSimulator"),
 }
 
 
-def simulator_of(model: Any, params: np.ndarray) -> Simulator:
+def simulator_of(model: Varying, params: np.ndarray) -> Simulator:
     """The simulator of a machine at these parameters; the contract is at the top of `orbits.flows.protocol`."""
     return _simulators(model.flow)(model, params)
 

@@ -79,7 +79,7 @@ def check_guess(
 
 
 def find(
-    model: Any,
+    model: Varying,
     word: str | Word,
     periods: int = 1,
     guess: Sequence[Sequence[float]] | np.ndarray | None = None,
