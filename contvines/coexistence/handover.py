@@ -11,6 +11,7 @@ from ..branches.branch import Branch
 from ..circles.section import section_of
 from ..graph.graph import Graph
 from ..graph.run import Run
+from ..graph.stretches import MEETING
 from .census import Counted, followed
 from .population import Population
 from .settings import ATLAS
@@ -110,13 +111,13 @@ def loose_ends(graph: Graph) -> list[End]:
     stretches = [s for s in stretches if s[1].value - s[0].value > ATLAS.narrow * size]
     firsts = np.array([first.value for first, _ in stretches])
     lasts = np.array([last.value for _, last in stretches])
-    wide = _together(firsts, lasts, ATLAS.meeting * size) > ATLAS.narrow_chain * size
+    wide = _together(firsts, lasts, MEETING * size) > ATLAS.narrow_chain * size
     stretches = [s for s, enough in zip(stretches, wide, strict=True) if enough]
     found: dict[tuple[str, float, float], End] = {}
     for first, last in stretches:
         for end, others in ((first, lasts), (last, firsts)):
-            inside = low + ATLAS.meeting * size < end.value < high - ATLAS.meeting * size
-            if inside and not np.any(np.abs(others - end.value) <= ATLAS.meeting * size):
+            inside = low + MEETING * size < end.value < high - MEETING * size
+            if inside and not np.any(np.abs(others - end.value) <= MEETING * size):
                 found.setdefault(_key(end), end)
     return list(found.values())
 

@@ -15,8 +15,6 @@ class AtlasSettings:
         Stable stretches and windows that are narrower are left out.
     narrow_gap : float
         Stretches between two changes of what is stable that are narrower are not looked into.
-    meeting : float
-        Stretches that end nearer to one another meet.
     narrow_chain : float
         Stretches that meet, as those of a cascade, and are narrower together, are not followed past their ends.
     beyond : float
@@ -31,7 +29,6 @@ class AtlasSettings:
 
     narrow: float = 1e-5
     narrow_gap: float = 1e-6
-    meeting: float = 1e-9
     narrow_chain: float = 1e-3
     beyond: float = 2e-3
     farthest: float = 1e-3

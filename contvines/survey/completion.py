@@ -19,8 +19,9 @@ from ..graph.graph import Graph
 from ..graph.limits import Limits
 from ..graph.measures import default_measure
 from ..graph.run import Run
-from ..graph.stretches import LEAST, gaps, spread, stretches, unseen
+from ..graph.stretches import gaps, spread, stretches, unseen
 from ..journal import NullJournal
+from ..shared.number_text import PART
 
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
@@ -202,7 +203,7 @@ def _about_the_largest(
     beside = [
         other
         for other in (places[max(at - 1, 0)], places[min(at + 1, len(places) - 1)])
-        if abs(other - top) > LEAST * (high - low) and known.get(other, -np.inf) < NEARLY * known[top]
+        if abs(other - top) > PART * (high - low) and known.get(other, -np.inf) < NEARLY * known[top]
     ]
     state = next(one.state for one in left if one.value == top and one.measures.get(name) == known[top])
     return [0.5 * (top + other) for other in beside], state
