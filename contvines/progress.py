@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 Tell = Callable[[Any], None]
 FIRST, AGAIN = 20.0, 60.0  # seconds until a log gets its first line, and between two of them
@@ -37,12 +37,50 @@ def shown(asked: Tell | bool | None = None) -> Iterator[Tell | None]:
         yield _Log() if asked else None
 
 
-def as_text(state: Any) -> str:
+class TimeLeft(Protocol):
+    """How much of a piece of work is known to be left."""
+
+    @property
+    def done(self) -> int: ...
+    @property
+    def known(self) -> int: ...
+    @property
+    def seconds(self) -> float: ...
+    @property
+    def budget(self) -> float: ...
+
+
+@runtime_checkable
+class Spoken(Protocol):
+    """A state that says itself where it is."""
+
+    @property
+    def sentence(self) -> str: ...
+
+
+@runtime_checkable
+class Running(Protocol):
+    """The state of a diagram that is being made."""
+
+    @property
+    def message(self) -> str: ...
+    @property
+    def branches(self) -> int: ...
+    @property
+    def special(self) -> int: ...
+    @property
+    def points(self) -> int: ...
+    @property
+    def waiting(self) -> int: ...
+    @property
+    def left(self) -> TimeLeft | None: ...
+
+
+def as_text(state: object) -> str:
     """Where a run, a chart or a survey is, in one line."""
-    own = getattr(state, "sentence", None)
-    if own:
-        return str(own)
-    if not hasattr(state, "waiting"):
+    if isinstance(state, Spoken) and state.sentence:
+        return state.sentence
+    if not isinstance(state, Running):
         return str(state)
     left = state.left
     return (
@@ -82,7 +120,8 @@ def _in_notebook() -> bool:
 def _notebook(say: Callable[[Any], str] = as_text) -> Iterator[Tell]:
     from IPython.display import display
 
-    line: Any = display({"text/plain": "starting"}, raw=True, display_id=True)
+    line = display({"text/plain": "starting"}, raw=True, display_id=True)
+    assert line is not None
     try:
         yield lambda state: line.update({"text/plain": say(state)}, raw=True)
     finally:
@@ -95,7 +134,7 @@ class _Log:
     def __init__(self, say: Callable[[Any], str] = as_text) -> None:
         self.due, self.say = monotonic() + FIRST, say
 
-    def __call__(self, state: Any) -> None:
+    def __call__(self, state: object) -> None:
         if monotonic() >= self.due:
             self.due = monotonic() + AGAIN
             print(f"contvines: {self.say(state)}", file=sys.stderr, flush=True)

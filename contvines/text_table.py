@@ -7,7 +7,6 @@ import shutil
 import sys
 import textwrap
 from dataclasses import dataclass
-from typing import Any
 
 GAP = "  "
 LEAST = 16  # characters for the last column, before its text goes on in further lines
@@ -118,5 +117,12 @@ def fitted(text: str, width: int | None = None) -> str:
 
 def _wrapped(text: str, width: int, first: str = "", later: str = "") -> list[str]:
     """Lines broken between words alone; a word that is longer than a line stays whole."""
-    options: Any = {"break_long_words": False, "break_on_hyphens": False}
-    return textwrap.wrap(text, width, initial_indent=first, subsequent_indent=later, **options) or [""]
+    wrapped = textwrap.wrap(
+        text,
+        width,
+        initial_indent=first,
+        subsequent_indent=later,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return wrapped or [""]

@@ -17,6 +17,7 @@ import numpy as np
 from ..continuation.aims import NO_COLUMNS, SIGN, Aim
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Doubtful
+from ..problems.dense import DenseWork
 from ..shared.floating_point import EPSILON, TINY
 from .locate import Root, locate, locate_singular
 from .segment import Segment
@@ -97,11 +98,11 @@ def certain(engine: Engine, point: Solved) -> bool:
     if not isinstance(problem, Doubtful):
         return True
     engine.residual(point.u, point.p)
-    doubts = problem.doubts(engine.work, ROUNDING)
-    if not isinstance(doubts, np.ndarray):
+    work, doubts = engine.work, problem.doubts(engine.work, ROUNDING)
+    if not isinstance(work, DenseWork) or not isinstance(doubts, np.ndarray):
         return True
     matrix = np.empty((engine.n + 1, engine.n + 1))
-    matrix[:-1, :-1], matrix[:-1, -1] = engine.work.jacobian, engine.work.derivative
+    matrix[:-1, :-1], matrix[:-1, -1] = work.jacobian, work.derivative
     matrix[-1] = engine.weights * point.tangent
     with np.errstate(all="ignore"):
         try:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Blurred, Doubtful
+from ..problems.interpreted import Linearised
 from ..shared.floating_point import EPSILON
 from .located import Located
 from .segment import Segment
@@ -87,7 +88,14 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
 
 def _image(engine: Engine, left: np.ndarray, way: np.ndarray) -> float:
     """y (F_u, F_p) times a direction, as linearised last."""
-    return float(left @ (engine.work.jacobian @ way[:-1] + engine.work.derivative * way[-1]))
+    work = _linearised(engine)
+    return float(left @ (work.jacobian @ way[:-1] + work.derivative * way[-1]))
+
+
+def _linearised(engine: Engine) -> Linearised:
+    """The workspace of a problem made of Python callables, the only ones that doubt their entries."""
+    assert isinstance(engine.work, Linearised)
+    return engine.work
 
 
 def _slope(
@@ -112,9 +120,10 @@ def _null_vectors(
     right = engine.apply_inverse(border, side)
     other, left, unused = problem.workspace(), np.empty(n + 1), np.empty(n + 1)
     engine.residual(u, p)
+    assert problem.kernels.transpose is not None
     problem.kernels.transpose(problem.data, engine.work, border[:-1], other)
-    other.residual[:] = -side[:-1] / engine.row_sizes
-    turned = np.append(engine.work.derivative, border[-1])
+    other[0][:] = -side[:-1] / engine.row_sizes
+    turned = np.append(_linearised(engine).derivative, border[-1])
     with np.errstate(all="ignore"):
         problem.kernels.bordered(problem.data, other, turned, 0.0, left, unused)
         return right / np.abs(right).max(), left[:-1] / np.abs(left[:-1]).max()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
 from .ending import Ending
+
+if TYPE_CHECKING:
+    from ..problems.protocol import BorderPoint
 
 
 @hinted
@@ -161,15 +164,16 @@ class Branch:
             raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
         found = self.problem.orbit(self.points[i], float(self.values[i]))
         ends = {0: self.endings[0], n - 1: self.endings[1]}
-        limited = i % n in ends and ends[i % n].kind in BORDERS and isinstance(found, Limited)
-        return found.with_multipliers(self.multipliers[i]) if limited else found
+        if i % n in ends and ends[i % n].kind in BORDERS and isinstance(found, Limited):
+            return found.with_multipliers(self.multipliers[i])
+        return found
 
     def prove(
         self,
         within: tuple[float, float] | None = None,
         bits: int | None = None,
-        special: Mapping[str, Any] | None = None,
-    ) -> Any:
+        special: Mapping[str, BorderPoint] | None = None,
+    ) -> object:
         """Prove the branch between its special points, or the part of it ``within`` an interval of the parameter.
 
         Parameters

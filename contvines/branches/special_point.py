@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,11 @@ from ..bifurcation.kinds import BORDERS
 from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..bifurcation.kind import Kind
 
 
 class Later:
@@ -24,15 +29,15 @@ class Later:
     def __set_name__(self, owner: type, name: str) -> None:
         self.place = "_" + name
 
-    def __get__(self, instance: Any, owner: type | None = None) -> float | None:
+    def __get__(self, instance: object, owner: type | None = None) -> float | None:
         if instance is None:
             return None  # the default
-        value: Any = vars(instance)[self.place]
+        value: float | Callable[[], float | None] | None = vars(instance)[self.place]
         if callable(value):
             value = vars(instance)[self.place] = value()
         return value
 
-    def __set__(self, instance: Any, value: float | Callable[[], float | None] | None) -> None:
+    def __set__(self, instance: object, value: float | Callable[[], float | None] | None) -> None:
         vars(instance)[self.place] = value
 
 
@@ -121,7 +126,7 @@ class SpecialPoint:
     margin_index: int | None = None
     index: int = -1
     problem: Any = field(default=None, repr=False)
-    own_kind: Any = field(default=None, repr=False)
+    own_kind: Kind | None = field(default=None, repr=False)
 
     @property
     def note(self) -> str:
@@ -165,22 +170,23 @@ class SpecialPoint:
         if self.problem is None:
             raise ValueError(without_problem(self.label))
         found = self.problem.orbit(self.u, self.value)
-        limited = self.kind in BORDERS and isinstance(found, Limited)
-        return found.with_multipliers(self.multipliers) if limited else found
+        if self.kind in BORDERS and isinstance(found, Limited):
+            return found.with_multipliers(self.multipliers)
+        return found
 
-    def plot(self, **options: Any):
+    def plot(self, **options: Any) -> Figure:
         """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""
         from ..plots.portrait import plot_portrait
 
         return plot_portrait(self.orbit, **options)
 
-    def circles(self, to: float | None = None, **options: Any) -> Any:
+    def circles(self, to: float | None = None, **options: int):
         """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
         from ..circles.follow import circles
 
         return circles(self, to, **options)
 
-    def cycles(self) -> Any:
+    def cycles(self) -> object:
         """One of the small cycles that are born at a Hopf point: a seed for ``contvines.diagram``.
 
         Raises
@@ -207,7 +213,7 @@ class SpecialPoint:
 
         return point_page(self)
 
-    def prove(self, **options: Any) -> Any:
+    def prove(self, bits: int | None = None) -> object:
         """Prove the point as a regular zero of its defining system, where the problem can: `orbits` with closed-form flights.
 
         Raises
@@ -219,7 +225,7 @@ class SpecialPoint:
             raise ValueError(
                 f"{self.label}: its problem offers no proofs; machines of orbits with flights in closed form do"
             )
-        return self.problem.prove(self.kind, self.u, self.value, margin=self.margin_index, **options)
+        return self.problem.prove(self.kind, self.u, self.value, margin=self.margin_index, bits=bits)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this point in the JSON of a graph."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import count as count_from
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Role
@@ -13,6 +13,7 @@ from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.trace import Retrace, chunks
 from ..journal import NullJournal
+from ..problems.abilities import Adaptive
 from .half_branch import HalfBranch, Piece, pack, piece_of, single, unpack
 from .opening import SHORTER, opening
 
@@ -69,7 +70,7 @@ def trace_half(
     stop = real and engine.problem.n_margins > 0
     walk = chunks(engine, start, journal, key, stop, first_step)
     retrace = None
-    adaptive: Any = engine.problem if engine.adaptive else None
+    adaptive = engine.problem if isinstance(engine.problem, Adaptive) else None
     for number in count_from(0):
         chunk = next(walk) if retrace is None else walk.send(retrace)
         name = f"{key}/{number}/events"

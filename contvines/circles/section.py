@@ -22,21 +22,9 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from ..problems.abilities import Section as Section
 from ..problems.abilities import Sectioned
 from ..problems.protocol import Problem
-
-
-class Section(Protocol):
-    """See the contract at the top of this module."""
-
-    @property
-    def names(self) -> tuple[str, ...]: ...
-
-    def through(self, u: np.ndarray) -> np.ndarray: ...
-
-    def rounds(self, u: np.ndarray) -> np.ndarray: ...
-
-    def step(self, x: np.ndarray) -> np.ndarray: ...
 
 
 @runtime_checkable

@@ -3,11 +3,16 @@
 native/march.hpp has the same functions for compiled problems.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from .layout import Solved
 
 # kinds of spectra that tell
 NONE, MAP, FLOW, REAL = 0, 1, 2, 3
@@ -40,7 +45,7 @@ class Aim:
     rank: int = 1
     anyway: int = 0
 
-    def __call__(self, point: Any) -> float:
+    def __call__(self, point: Solved) -> float:
         """The number at a solved point."""
         return float(probe(self, point.row.tolist(), float(point.tangent[-1]), float(point.sign)))
 

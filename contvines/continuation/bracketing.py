@@ -9,6 +9,8 @@ What is known is kept in a list of numbers, or an array: see the names below. na
 
 import math
 
+from contvines.shared.floating_point import TINY
+
 from .layout import (
     AGAIN,
     AIMED,
@@ -30,6 +32,7 @@ from .layout import (
     X2,
     X3,
 )
+from .settings import SOLUTION
 
 BISECTIONS = 2  # before a function is taken for one with a jump or a kink at its zero
 ENOUGH = 0.25  # part of a function's value that a secant may leave
@@ -51,7 +54,7 @@ def begin(known, a, b, fa, fb, pa, pb, tolerance, jump):
     tolerance : float
         Width of the final bracket relative to the first one.
     jump : float
-        Give up where f still changes by more than this over a bracket of 1e-5 of the first one: f has a jump there.
+        Give up where f still changes by more than this over a small part of the first bracket: f has a jump there.
     """
     for j in range(SIZE):
         known[j] = 0.0
@@ -94,8 +97,8 @@ def follow(known, x, fx, px):
         known[X2], known[F2], known[P2] = x1, f1, px
         return math.nan
     width, tolerance = known[WIDTH], known[PRECISION]
-    limit = 0.5 * tolerance * width / max(abs(x2 - x1), 1e-300)
-    if abs(f1 - f2) > known[JUMP] and abs(x2 - x1) < 1e-5 * width:
+    limit = 0.5 * tolerance * width / max(abs(x2 - x1), TINY)
+    if abs(f1 - f2) > known[JUMP] and abs(x2 - x1) < SOLUTION.jump * width:
         return math.nan
     if limit > 0.5 or abs(x2 - x1) <= tolerance * width or known[COUNT] >= MOST:
         return math.nan

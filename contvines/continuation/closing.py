@@ -6,8 +6,8 @@ import numpy as np
 
 from .chunk import Chunk, Status
 from .engine import Engine, Solved
+from .settings import SOLUTION
 
-SAME = 1e-5  # of two solutions on different meshes
 NEAR = 1.5  # distances of neighbours from the start at which a branch may close
 
 
@@ -38,7 +38,7 @@ class Closing:
         if shift is not None:
             turns = np.round((chunk.points @ shift - z[:-1] @ shift) / (shift @ shift))
             along -= turns * (shift @ border[:-1])
-        along[np.abs(along) <= 1e-13 * (1.0 + abs(border) @ abs(z))] = 0.0  # the start itself
+        along[np.abs(along) <= SOLUTION.predicted * (1.0 + abs(border) @ abs(z))] = 0.0  # the start itself
         (passed,) = ((along[:-1] < 0.0) & (along[1:] >= 0.0)).nonzero()
         if not len(passed):
             return None
@@ -55,7 +55,7 @@ class Closing:
             if found is None:
                 continue
             gap = np.abs(engine.join(found.u, found.p) - z) / (engine.scale + np.abs(z))
-            if gap.max() <= 1e-7 and engine.inner(found.tangent, self.start.tangent) > 0.0:
+            if gap.max() <= engine.settings.same and engine.inner(found.tangent, self.start.tangent) > 0.0:
                 points, rest = chunk.cut(int(i) + 1), self.start
                 end = rest.u if shift is None else rest.u + turns[i] * shift
                 return Chunk(
@@ -86,7 +86,7 @@ class Closing:
             wanted, there = problem.canonical(start.u, start.p)
             if key == wanted and here.shape == there.shape:
                 size = engine.scale[: len(here)] if len(here) < len(engine.scale) else 1.0
-                if (np.abs(here - there) <= SAME * (size + np.abs(there))).all():
+                if (np.abs(here - there) <= engine.settings.one_place * (size + np.abs(there))).all():
                     points = chunk.cut(int(i) + 1)
                     # not the start itself: there the same motion may begin at another time, or lie on another mesh
                     way = 1.0 if engine.inner(found.tangent, points.tangents[-1]) > 0.0 else -1.0

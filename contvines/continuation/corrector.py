@@ -11,13 +11,9 @@ from .aims import NOTHING, probe
 from .arrays import add, correction_size, distance, hermite, orient, put, remainder
 from .bracketing import begin, best, follow
 from .layout import AT_END, ELIMINATE, EVERYTHING, JUMP, LINEARISE, NOWHERE, PASSED, PRECISION, X1
+from .settings import SOLUTION
 
-TIGHT = 1e-12  # tolerance of single points
-SMALL = 1e-11  # corrections below this, and the tolerance, end the iteration however they came about
-ROUNDOFF = 1e-13  # predicted error at which a point counts as exact, relative to scale + abs(unknown)
 STRAY = 0.3  # part of a chord by which a point may lie off the interpolation between its ends
-STALLED = 1e-6  # corrections below this that do not shrink any more are roundoff
-HUGE = 1e6  # larger corrections are a divergence
 
 
 def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
@@ -47,20 +43,20 @@ def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
         1 when converged, -1 when diverged, else 0.
     """
     size = correction_size(step, u, p, metric)
-    if not size < HUGE:
+    if not size < SOLUTION.huge:
         return p, size, -1
-    if sweep > 1 and size > 2.0 * before and size > max(STALLED, 10.0 * noise):
+    if sweep > 1 and size > 2.0 * before and size > max(SOLUTION.stalled, 10.0 * noise):
         return p, size, -1
     add(u, step)
     p += float(step[u.shape[0]])
-    if size <= max(min(SMALL, tolerance), noise):
+    if size <= max(min(SOLUTION.small, tolerance), noise):
         return p, size, 1
     if sweep > 0:
         ratio = size / before
         # quadratic convergence: the next correction would be about ratio^2 size
-        if size <= tolerance and ratio * ratio * size <= max(ROUNDOFF, noise):
+        if size <= tolerance and ratio * ratio * size <= max(SOLUTION.predicted, noise):
             return p, size, 1
-        if size <= STALLED and ratio > 0.3 and residual < 1e-9:
+        if size <= SOLUTION.stalled and ratio > 0.3 and residual < SOLUTION.solved:
             return p, size, 1
         # corrections that are noise do not shrink, whatever the tolerance
         if size <= 30.0 * noise and ratio > 0.1:
@@ -177,7 +173,7 @@ def points(
                 break
             if sweep == limit:
                 break
-            p, size, verdict = improve(u, p, step, sweep, residual, size, TIGHT, metric, noise)
+            p, size, verdict = improve(u, p, step, sweep, residual, size, SOLUTION.rounding, metric, noise)
             if verdict < 0:
                 break
             settled = verdict > 0
@@ -215,7 +211,7 @@ def points(
             smallest, largest = min(abs(first_value), abs(value)), max(abs(first_value), abs(value))
             if first_value * value > 0.0:
                 # an end that is the zero itself may have either sign, by roundoff
-                if aim.anyway == 0 and smallest > 1e-9 * largest:
+                if aim.anyway == 0 and smallest > SOLUTION.solved * largest:
                     return NOWHERE
                 outcome = AT_END
                 known[X1] = 0.0 if abs(first_value) < abs(value) else 1.0

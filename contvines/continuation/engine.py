@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contvines.shared.floating_point import EPSILON
+
+from ..core.table import TableKernels
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Adaptive, Nearing, Rough
-from ..problems.protocol import Problem
+from ..problems.protocol import KernelFunctions, Problem
 from . import layout
 from .aims import NO_COLUMNS, NOTHING, Aim
 from .layout import Found, Metric, Scratch, solved_point
 from .layout import Hit as Hit
 from .layout import Solved as Solved
 from .rows import Rows
-from .settings import Settings
+from .settings import SOLUTION, Settings
+
+if TYPE_CHECKING:
+    from .interpreted import InterpretedLoop
+    from .native import NativeLoop
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
 ONE = np.zeros(1)  # a single place: the chord's first end
@@ -47,7 +54,7 @@ class Engine(Rows):
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
         kernels = problem.kernels
-        self.compiled = bool(kernels.compiled)
+        self.compiled = kernels.compiled
         self.section = HELD if self.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()
@@ -93,16 +100,16 @@ class Engine(Rows):
             np.empty((1, n)), np.empty((1, n + 1)), np.zeros((1, self.row_size)), np.empty((1, 5))
         )
 
-    def _loop(self, kernels: Any):
+    def _loop(self, kernels: KernelFunctions) -> InterpretedLoop | NativeLoop:
         """March and single points, in the native core for compiled problems."""
         rest = self.metric, self.noise, self.known, self.scratch, self.settings.step_rule
-        if not self.compiled:
-            from .interpreted import InterpretedLoop
+        if isinstance(kernels, TableKernels):
+            from .native import NativeLoop
 
-            return InterpretedLoop(kernels, self.data, self.work, *rest)
-        from .native import NativeLoop
+            return NativeLoop(kernels.table, self.data, self.work, (self.n, self.row_size), *rest)
+        from .interpreted import InterpretedLoop
 
-        return NativeLoop(kernels.table, self.data, self.work, (self.n, self.row_size), *rest)
+        return InterpretedLoop(kernels, self.data, self.work, *rest)
 
     def parameter_unit(self, p: float) -> float:
         """What differences of the parameter near p are compared with."""
@@ -227,8 +234,8 @@ class Engine(Rows):
         if outcome == layout.AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
         place = one if abs(f_one) < abs(f_other) else other
-        width = abs(p_one - p_other) + 4e-16 * abs(point.p)
-        return Hit(place, point, max(width, point.correction * 1e-3), abs(f_one - f_other))
+        width = abs(p_one - p_other) + 2.0 * EPSILON * abs(point.p)
+        return Hit(place, point, max(width, SOLUTION.left * point.correction), abs(f_one - f_other))
 
     def _run(
         self,

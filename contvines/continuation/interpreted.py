@@ -12,7 +12,7 @@ from .layout import Found, Metric, Points, Scratch
 from .step_rule import StepRule
 
 if TYPE_CHECKING:
-    from ..problems.protocol import Kernels
+    from ..problems.protocol import KernelFunctions
 
 
 class InterpretedLoop:
@@ -32,7 +32,7 @@ class InterpretedLoop:
 
     def __init__(
         self,
-        kernels: Kernels,
+        kernels: KernelFunctions,
         data: object,
         work: object,
         metric: Metric,

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .settings import SOLUTION
+
 # entries of the control vector
 (
     ANGLE,
@@ -25,7 +27,7 @@ CONTROL_SIZE = 10
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
 
 MARGIN = (
-    -1e-12
+    -SOLUTION.rounding
 )  # margins below this are negative; above it they are zero to rounding, at a border or all along a branch
 
 # what `points` does

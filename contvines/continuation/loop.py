@@ -29,6 +29,7 @@ from .layout import (
     TOLERANCE,
     UPPER,
 )
+from .settings import SOLUTION
 
 
 def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch):
@@ -128,7 +129,7 @@ def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch)
             if tangent[n] * norm < 0.0:
                 sign = -sign
         turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
-        factor = judge(turn, error, sweeps, length, angle, max(1e-12, noise))
+        factor = judge(turn, error, sweeps, length, angle, max(SOLUTION.rounding, noise))
         if not factor > 0.0:
             h = length * (-factor if -1.0 < factor < 0.0 else 0.5)
             continue

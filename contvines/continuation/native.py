@@ -5,19 +5,16 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
+from ..core.table import memory_of
 from ..interrupts import wanted
 from .aims import Aim
 from .layout import RUNNING, Found, Metric, Points, Scratch
 from .step_rule import BY_ANGLE, StepRule
-
-if TYPE_CHECKING:
-    from ..core.table import Struct
 
 AT_ONCE = 50_000  # unknowns times points of one call: between calls an interrupt is seen
 FEWEST = 8  # points of one call
@@ -77,8 +74,8 @@ class NativeLoop:
     def __init__(
         self,
         table: int,
-        data: Struct,
-        work: Struct,
+        data: object,
+        work: object,
         sizes: tuple[int, int],
         metric: Metric,
         noise: float,
@@ -90,8 +87,8 @@ class NativeLoop:
         self.n, self.row_size = sizes
         self.frame = pack(
             table,
-            address(data.memory),
-            address(work.memory),
+            memory_of(data),
+            memory_of(work),
             *sizes,
             float(metric.of_unknowns),
             float(metric.of_parameter),

@@ -12,15 +12,14 @@ import numpy as np
 
 from .chunk import Chunk
 from .engine import Engine, Solved
+from .settings import SOLUTION
 
-# doublings of the distance, to FAR, for which the rest of the interval has to have room, on branches that go on
+# doublings of the distance, to `SOLUTION.huge`, for which the rest of the interval has to have room, on branches that go on
 DOUBLINGS = 26
 # a doubling that takes so much less than the one before, and so little of the interval, is one of the last
 SHRINKS, SMALL = 0.5, 0.05
 MANY = 600  # short steps in a row that lead nowhere
 OFF = 2.0  # times `escape`, of cycles at one value of the parameter: as of families of a linear oscillator, which have all amplitudes
-ALONE = 1e-3  # ... which have a multiplier that is nearer to 1
-FAR = 1e6  # times `escape`: further away a branch has run away in any case
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
 
 
@@ -89,7 +88,7 @@ class Reach:
                 not self.bounded and comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
             )
             family = self.bounded and stands and self._one_of_a_family(chunk.rows[i])
-            if bound or distances[i] > (OFF if family else FAR) * escape:
+            if bound or distances[i] > (OFF if family else SOLUTION.huge) * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
             self.moved, self.turned = np.inf if turned else moved, False
@@ -97,7 +96,9 @@ class Reach:
 
     def _one_of_a_family(self, row: np.ndarray) -> bool:
         """Whether a multiplier is 1, as of cycles that all exist at one value of the parameter; those of a canard explosion are far from it."""
-        return bool(np.abs(self.engine.spectrum(row) - 1.0).min(initial=np.inf) < ALONE)
+        return bool(
+            np.abs(self.engine.spectrum(row) - 1.0).min(initial=np.inf) < self.engine.settings.together
+        )
 
     def creeps(self, chunk: Chunk) -> bool:
         """Whether many points have come next to nowhere; of problems whose points are dear."""
@@ -120,6 +121,6 @@ def _away(points: np.ndarray, u: np.ndarray, escape: float, scale: np.ndarray) -
     limit = escape * escape * len(u)
     squares = np.einsum("ij,ij->i", points, points)
     # nothing as large as the points is made, unless unknowns are so large that their squares cancel
-    if squares.max() + u @ u < 1e9 * limit:
+    if SOLUTION.cancels * (squares.max() + u @ u) < limit:
         return squares - 2.0 * (points @ u) + u @ u > limit
     return ~(((points - u) ** 2).sum(axis=1) <= limit)

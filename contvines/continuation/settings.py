@@ -250,6 +250,48 @@ class Settings:
         return values if self.step_rule is BY_ANGLE else {**values, "step_rule": self.step_rule.name}
 
 
+@dataclass(frozen=True)
+class SolutionSettings:
+    """What counts as a solution; no user's business. native/march.hpp has the same numbers for compiled problems.
+
+    Attributes
+    ----------
+    rounding : float
+        Corrections of single points, predictions that miss by so little, and negative margins that are rounding.
+    small : float
+        Corrections that end Newton's method however they came about, if they are within the tolerance.
+    predicted : float
+        Predicted error, relative to scale + abs(unknown), at which a point counts as exact.
+    stalled : float
+        Corrections below this that do not shrink any more are rounding.
+    solved : float
+        Residual of a solution; part of a number's value at the other end of a segment that is zero.
+    huge : float
+        Larger corrections are a divergence, and a branch so many times `escape` away has run away in any case.
+    left : float
+        Part of the last correction that may be left as an error.
+    jump : float
+        Part of a bracket over which a function that has not come near zero jumps.
+    told : float
+        Distance of a start from the solution that was found, in typical sizes, that is mentioned.
+    cancels : float
+        Part of the squares of unknowns below which their difference loses its digits.
+    """
+
+    rounding: float = 1e-12
+    small: float = 1e-11
+    predicted: float = 1e-13
+    stalled: float = 1e-6
+    solved: float = 1e-9
+    huge: float = 1e6
+    left: float = 1e-3
+    jump: float = 1e-5
+    told: float = 1e-2
+    cancels: float = 1e-9
+
+
+SOLUTION = SolutionSettings()
+
 P = ParamSpec("P")
 R = TypeVar("R")
 T = TypeVar("T")

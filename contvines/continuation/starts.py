@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 
 from ..problems.abilities import Rough, Started
 from ..problems.protocol import MEMBERS, Problem
 from .engine import Engine, Solved
+from .settings import SOLUTION
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,10 +19,13 @@ if TYPE_CHECKING:
 
     from ..problems.scales import Scales
 
-TOLD = (
-    1e-2  # distance of a start from the solution that was found, in typical sizes, from which on it is told
-)
-SOLVED = 1e-9  # residual of a start that is a solution
+
+@runtime_checkable
+class Orbit(Protocol):
+    """A solution that hands out its problem and its unknowns."""
+
+    def problem(self, parameter: str, /) -> Problem: ...
+    def seed(self, problem: Problem, /) -> tuple[np.ndarray, float]: ...
 
 
 def check_interval(within: Iterable[float]) -> tuple[float, float]:
@@ -48,8 +52,8 @@ def check_interval(within: Iterable[float]) -> tuple[float, float]:
 
 
 def problem_and_start(
-    seed: Any, over: str | None, u: ArrayLike | None = None, p: float | None = None
-) -> tuple[Problem, Any, float]:
+    seed: object, over: str | None, u: ArrayLike | None = None, p: float | None = None
+) -> tuple[Problem, ArrayLike, float]:
     """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``; u and p win where they are given."""
     if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
         problem = complete(seed)
@@ -65,7 +69,7 @@ def problem_and_start(
                 )
             u, p = (problem.u0 if u is None else u), (problem.p0 if p is None else p)
         return problem, u, float(p)
-    if not (hasattr(seed, "problem") and hasattr(seed, "seed")):
+    if not isinstance(seed, Orbit):
         raise TypeError(f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}")
     if over is None:
         known = ", ".join(map(repr, getattr(seed, "parameters", None) or ("amplitude",)))
@@ -75,7 +79,7 @@ def problem_and_start(
     return problem, own_u if u is None else u, float(own_p if p is None else p)
 
 
-def complete(problem: Any) -> Problem:
+def complete(problem: object) -> Problem:
     """A problem that answers all that it may be asked.
 
     Raises
@@ -83,13 +87,17 @@ def complete(problem: Any) -> Problem:
     TypeError
         If it does not.
     """
-    missing = [name for name in MEMBERS if not hasattr(problem, name)]
-    if missing:
+    if not _is_complete(problem):
+        missing = [name for name in MEMBERS if not hasattr(problem, name)]
         raise TypeError(
             f"{type(problem).__name__} does not say its {', '.join(missing)}; derive it from contvines.ProblemDefaults, which "
             "answers what a problem has nothing to say on"
         )
     return problem
+
+
+def _is_complete(problem: object) -> TypeGuard[Problem]:
+    return all(hasattr(problem, name) for name in MEMBERS)
 
 
 def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | None = None) -> Solved:
@@ -116,7 +124,7 @@ def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | No
         if stuck := getattr(engine.problem, "stuck", ""):
             raise ValueError(f"from the start at {name} = {p:.10g} no step can be made: {stuck}")
         why = f"does not converge (its residual is {residual:.3g})"
-        if residual < SOLVED:
+        if residual < SOLUTION.solved:
             why = "is a solution, but where the derivatives of the equations vanish or are singular, in the parameter, too"
         elif not residual < np.inf:
             trouble = getattr(engine.problem, "trouble", "")
@@ -164,7 +172,7 @@ def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     u = np.asarray(u, dtype=float).reshape(-1)
     moved = np.abs(found.u - u) / engine.scale[:-1]
     shift = abs(found.p - float(p)) / float(engine.scale[-1])
-    if max(float(moved.max()), shift) < TOLD:
+    if max(float(moved.max()), shift) < SOLUTION.told:
         return ""
     size = float(np.abs(problem.residuals(u, float(p))).max())
     i = int(np.argmax(moved))
@@ -175,7 +183,7 @@ def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
             f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}; give a better guess or another parameter value"
         )
     where = f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}"
-    if shift >= TOLD:
+    if shift >= SOLUTION.told:
         where += f", {problem.parameter} = {found.p:.6g} instead of {float(p):.6g}"
     far = f", {moved[i]:.2g} of its typical size away" if moved[i] >= 0.1 else ""
     return f"the start given is no solution (the largest entry of F is {size:.2g}): the branch begins at {where}{far}"

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..interrupts import listening
 from ..journal import NullJournal
+from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from . import layout
 from .chunk import Chunk, Status
@@ -69,9 +70,8 @@ def chunks(
     try:
         yield from _chunks(engine, start, journal, key, stop_at_border, first_step)
     finally:
-        if engine.adaptive:
-            problem: Any = engine.problem
-            problem.anchor(None)
+        if isinstance(engine.problem, Adaptive):
+            engine.problem.anchor(None)
 
 
 def _chunks(
@@ -85,15 +85,15 @@ def _chunks(
     settings = engine.settings
     n, capacity = engine.n, settings.first_chunk
     retrace: Retrace | None = None
-    problem: Any = engine.problem
-    adaptive = engine.adaptive
+    problem = engine.problem
+    adaptive = problem if isinstance(problem, Adaptive) else None
     engine.control[layout.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0
     ):
         yield _pack([start], Status.LEFT_INTERVAL)
         return
-    history = _anchored(engine, [start]) if adaptive else [start]
+    history = [start] if adaptive is None else _anchored(engine, adaptive, [start])
     h = settings.first_step if first_step is None else first_step
     closing, reach = Closing(engine, start), Reach(engine, start)
     total, number = 1, 0
@@ -118,8 +118,8 @@ def _chunks(
             if not engine.compiled:
                 # points are dear, and a branch that closes is found to only at the end of a chunk
                 room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
-            if adaptive:
-                room = min(room, problem.chunk)
+            if adaptive is not None:
+                room = min(room, adaptive.chunk)
             room = min(room, max(settings.max_points - total, 1))
             apart = _apart(engine, max(h, longest))
             chunk, h = _march(engine, history, room, h, longest, stop_at_border)
@@ -153,14 +153,13 @@ def _chunks(
         total += len(chunk) - 1
         number += 1
         history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
-        if adaptive:
-            history = _anchored(engine, history)
+        if adaptive is not None:
+            history = _anchored(engine, adaptive, history)
         capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
 
 
-def _anchored(engine: Engine, history: list[Solved]) -> list[Solved]:
+def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[Solved]:
     """The last points on a mesh that suits the last one, whose phase is kept from now on."""
-    problem: Any = engine.problem
     problem.anchor(None)
     image = problem.adapted(history[-1].u)
     points = list(history)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -29,11 +29,25 @@ _PROTOTYPES = (
 """Of linearise, bordered, inspect, assign, flip, transpose."""
 
 
+@runtime_checkable
 class Struct(Protocol):
     """What the functions of a table find at an address."""
 
     @property
     def memory(self) -> np.ndarray: ...
+
+
+def memory_of(thing: object) -> int:
+    """Address of the data or the workspace of a compiled problem.
+
+    Raises
+    ------
+    TypeError
+        If it has no memory that native code can read.
+    """
+    if not isinstance(thing, Struct):
+        raise TypeError(f"a {type(thing).__name__} has no memory for the native core")
+    return address(thing.memory)
 
 
 class TableKernels:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from .simulation import rates
 
 if TYPE_CHECKING:
+    from scipy.integrate._ivp.ivp import OdeResult
+
     from .field import Field
 
 SAMPLES = 400  # states of a period that are handed over
@@ -60,7 +62,7 @@ def recurrence(
 
 def _run(
     field: Field, p: float, x: np.ndarray, start: float, stop: float, dense: bool = False, rough: bool = False
-) -> Any:
+) -> OdeResult:
     from scipy.integrate import solve_ivp
 
     s = field.settings
@@ -73,7 +75,7 @@ def _run(
         rtol=relative,
         atol=cast("float", absolute * (field.lengths + np.abs(x))),
         dense_output=dense,
-        events=field.events.crossings(field, p) or None,
+        events=field.events.crossings(field.values, p) or None,
     )
     if found.status == 1:
         name = next(
@@ -152,7 +154,7 @@ def _free(
 
 
 def _returned(
-    run: Any, normal: np.ndarray, place: np.ndarray, close: np.ndarray, longest: int
+    run: OdeResult, normal: np.ndarray, place: np.ndarray, close: np.ndarray, longest: int
 ) -> tuple[float, np.ndarray] | None:
     """After what time, and to which state in a plane, a motion comes back at its end; None if it does not."""
     heights = normal @ (run.y - place[:, None])
@@ -169,7 +171,7 @@ def _returned(
     return None
 
 
-def _crossing(run: Any, normal: np.ndarray, place: np.ndarray, i: int) -> float:
+def _crossing(run: OdeResult, normal: np.ndarray, place: np.ndarray, i: int) -> float:
     """Time at which a motion passes a plane in a step of the integrator, by bisection."""
     low, high = float(run.t[i]), float(run.t[i + 1])
     for _ in range(60):

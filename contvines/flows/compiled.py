@@ -59,7 +59,7 @@ class CompiledRates:
         call: Callable[..., Any],
         x: np.ndarray,
         parameters: Parameters | complex,
-        t: Any,
+        t: np.ndarray | float | None,
         shape: tuple[int, ...],
     ) -> np.ndarray:
         """One of the three functions at points (n, d), with result of shape (n, *shape)."""
@@ -83,7 +83,7 @@ class CompiledRates:
         call: Callable[..., Any],
         x: np.ndarray,
         parameters: Parameters | complex,
-        t: Any,
+        t: np.ndarray | float | None,
         shape: tuple[int, ...],
     ) -> np.ndarray:
         """For arguments as functions in Python have them: a point (d,), or points (d, n)."""
@@ -105,10 +105,10 @@ class CompiledRates:
         """df/dx."""
         return self._one(self.dfdx, x, parameters, t, (len(x), len(x)))
 
-    def derivatives(self, names: list[str]) -> dict[str, Any]:
+    def derivatives(self, names: list[str]) -> dict[str, Callable[..., np.ndarray]]:
         """df/dp by the names of the parameters."""
 
-        def by(k: int) -> Any:
+        def by(k: int) -> Callable[..., np.ndarray]:
             return lambda x, p, t=None: self._one(self.dfdp, x, p, t, (len(x), len(names)))[:, k]
 
         return {name: by(k) for k, name in enumerate(names)}

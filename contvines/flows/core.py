@@ -2,12 +2,37 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ..core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
+
+if TYPE_CHECKING:
+    from .collocation import Rule
+
+
+class Discretised(Protocol):
+    """What is read of the problem of cycles."""
+
+    clock: float
+    free_period: int
+    intervals: int
+    node: int
+    node_scale: np.ndarray
+    parameter_scale: float
+    rule: Rule
+
+
+class Filled(Protocol):
+    """The arrays of a workspace that are filled."""
+
+    residual: np.ndarray
+    derivative: np.ndarray
+    blocks: np.ndarray
+    by_period: np.ndarray
+    phase: np.ndarray
 
 
 class CoreCycle:
@@ -20,7 +45,7 @@ class CoreCycle:
         Its arrays are those that are filled.
     """
 
-    def __init__(self, data: Any, work: Any) -> None:
+    def __init__(self, data: Discretised, work: Filled) -> None:
         r, count, d = data.rule, data.intervals, data.node
         m, k = r.degree, data.free_period + 1
         self.points, rates = np.empty((2, count * m, d))

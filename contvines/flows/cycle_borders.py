@@ -6,16 +6,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contvines.shared.floating_point import TINY
+
 from ..problems.functions import NotEvaluable
+from ..problems.protocol import margin_of
 from . import mesh
 from .core import distance_to_rest
-from .cycle_mesh import TINY, CycleMesh
+from .cycle_mesh import CycleMesh
 from .events import FINER
 from .kernels import CycleWork
 from .sparse import distance_to_rest as rest_of_sparse
 
 if TYPE_CHECKING:
-    from ..problems.protocol import BorderPoint, Seed
+    from ..problems.protocol import BorderPoint
 
 
 class CycleBorders(CycleMesh):
@@ -33,19 +36,6 @@ class CycleBorders(CycleMesh):
         """A cycle that comes near to an equilibrium ends as a homoclinic orbit; else it touches an event."""
         own = 2 * self.free_period
         return "homoclinic" if j < own else self.flow.border_kind(j - own)
-
-    def beyond(self, point: BorderPoint) -> list[Seed]:
-        """Nothing goes on from a homoclinic orbit; at an event the flow says what does."""
-        k = int(point.margin_index) - 2 * self.free_period
-        return [] if k < 0 else self.flow.beyond(self, point, k)
-
-    def dead_end(self, point: BorderPoint) -> str:
-        """The equilibrium to which an orbit is homoclinic, and its eigenvalues; or the event that stops the motion."""
-        k = int(point.margin_index) - 2 * self.free_period
-        if k >= 0:
-            return self.flow.dead_end(self, point, k)
-        x, period, _ = self.parts(point.u, point.value)
-        return self.flow.homoclinic_text(x.reshape(-1, self.node), period, point.value, self.values)
 
     # ------------------------------------------------------------------ homoclinic orbits
     def _from_homoclinic(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
@@ -106,7 +96,7 @@ class CycleBorders(CycleMesh):
 
     def touch_error(self, point: BorderPoint) -> float:
         """By how much the parameter at which a cycle touches an event may be off."""
-        k = int(point.margin_index) - 2 * self.free_period
+        k = margin_of(point) - 2 * self.free_period
         missed = self._missed(point.u, float(point.value), k)
         step = self.flow.settings.touch / max(
             float(np.abs(point.tangent[:-1] / self.column_scale).max()), TINY

@@ -7,10 +7,11 @@ from typing import Self
 
 import numpy as np
 
+from contvines.shared.floating_point import TINY
+
 from . import mesh
 from .cycle_unknowns import CycleUnknowns
 
-TINY = np.finfo(float).tiny
 MOST = 1280  # intervals
 ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from ..problems.images import in_order
 from ..problems.protocol import Embedding, Symmetry
 from . import mesh
 from .cycle_borders import CycleBorders
+
+if TYPE_CHECKING:
+    from ..problems.algebraic import AlgebraicProblem
 
 
 class CycleRelatives(CycleBorders):
@@ -45,13 +49,17 @@ class CycleRelatives(CycleBorders):
     def _mirrored(self, u: np.ndarray) -> np.ndarray:
         v = np.array(u, dtype=float)
         x = v[: self.states].reshape(-1, self.node)
-        v[: self.states] = np.array([self.flow.mirror(y) for y in x]).reshape(-1)
+        mirror = self.flow.mirror
+        assert mirror is not None
+        v[: self.states] = np.array([mirror(y) for y in x]).reshape(-1)
         return v
 
-    def _root(self, u: np.ndarray) -> tuple[Any, np.ndarray]:
+    def _root(self, u: np.ndarray) -> tuple[AlgebraicProblem | Self, np.ndarray]:
         return self.root(u, self.p0, self.flow.settings.at_rest) or (self, u)
 
-    def root(self, u: np.ndarray, p: float, loose: float | None = None) -> tuple[Any, np.ndarray] | None:
+    def root(
+        self, u: np.ndarray, p: float, loose: float | None = None
+    ) -> tuple[AlgebraicProblem | Self, np.ndarray] | None:
         """The equilibrium, or the cycle of half the period, that a solution only repeats; else None."""
         x, widths = self._curve(u)
         y = x.reshape(-1, self.node)
@@ -100,7 +108,7 @@ class CycleRelatives(CycleBorders):
         problem = self.with_unknowns(doubled, p, 2 * self.intervals, 2 * self.copies, rounds)
         return [Embedding(problem, doubled, direction, kind)]
 
-    def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
         """Means over the shortest period of powers and products of the coordinates, the same for all meshes and phases; of mirror images the smaller."""
         shorter = self.root(u, p)
         if shorter is not None:

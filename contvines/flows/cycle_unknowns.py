@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from copy import copy
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -13,13 +13,14 @@ from ..problems.protocol import ProblemDefaults, Symmetry
 from ..problems.scales import Scales
 from .collocation import Rule, rule
 from .field import Field
-from .flow_attractors import FlowAttractors
 from .kernels import KERNELS, SPARSE, CycleWork
-from .measures import CycleMeasures
 from .sparse import LEADING, SparseEquations
 
+if TYPE_CHECKING:
+    from .flow import Flow
 
-class CycleUnknowns(FlowAttractors, CycleMeasures, ProblemDefaults, ABC):
+
+class CycleUnknowns(ProblemDefaults, ABC):
     """Values at the nodes of each interval of the mesh, shape (N, m, d), the period (autonomous flows), and the widths of the intervals in units of the period.
 
     Parameters
@@ -49,7 +50,7 @@ class CycleUnknowns(FlowAttractors, CycleMeasures, ProblemDefaults, ABC):
 
     def __init__(
         self,
-        flow: Any,
+        flow: Flow,
         field: Field,
         u: np.ndarray,
         intervals: int,

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.floating_point import ROUNDED
+
 from ..problems.functions import NotEvaluable
+from ..problems.protocol import margin_of
 from . import mesh
 from .cycle_relatives import CycleRelatives
 from .forms import LARGEST, cubic, neimark_sacker, quadratic
 from .kernels import CycleWork, linearise, spectrum
+from .measures import measured
+from .orbit import CycleOrbit
 from .returns import ReturnMap
 from .section import FlowSection
 
-ROUNDING = 64 * 2.0**-53  # relative accuracy of a value that is found to roundoff
+if TYPE_CHECKING:
+    from ..problems.populations import Population
+    from ..problems.protocol import BorderPoint, Seed
+
 CAUTION = 10.0  # times the estimated error of values on the mesh
 
 
@@ -129,7 +138,7 @@ class CycleProblem(CycleRelatives):
         x = u[: self.states].reshape(self.intervals, -1, self.node) / self.node_scale
         self.reference = work.phase.copy(), x.reshape(self.intervals, -1)
 
-    def _moved(self, points: np.ndarray, p: Any, places: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    def _moved(self, points: np.ndarray, p: complex, places: np.ndarray, widths: np.ndarray) -> np.ndarray:
         """Period times width times f, of forced flows, as a function of the parameter alone."""
         period = self.rounds * self.field.length_of_period(p)
         f = self.field(points, p, period * places).reshape(self.intervals, self.rule.degree, self.node)
@@ -151,7 +160,7 @@ class CycleProblem(CycleRelatives):
 
     def uncertainty(self) -> float:
         """Relative accuracy of the equations: of rounding."""
-        return ROUNDING * 8
+        return ROUNDED * 4
 
     def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
         """Why a branch ends where Newton's method fails."""
@@ -189,10 +198,65 @@ class CycleProblem(CycleRelatives):
             return None
         return found if np.isfinite(found).all() else None
 
-    def population(self, over: str | None = None, **options: Any):
+    # ------------------------------------------------------------------ borders
+    def beyond(self, point: BorderPoint) -> list[Seed]:
+        """Nothing goes on from a homoclinic orbit; at an event the flow says what does."""
+        k = margin_of(point) - 2 * self.free_period
+        return [] if k < 0 else self.flow.beyond(self, point, k)
+
+    def dead_end(self, point: BorderPoint) -> str:
+        """The equilibrium to which an orbit is homoclinic, and its eigenvalues; or the event that stops the motion."""
+        k = margin_of(point) - 2 * self.free_period
+        if k >= 0:
+            return self.flow.dead_end(self, point, k)
+        x, period, _ = self.parts(point.u, point.value)
+        return self.flow.homoclinic_text(x.reshape(-1, self.node), period, point.value, self.values)
+
+    # ------------------------------------------------------------------ what people see of a cycle, and what attracts
+    @property
+    def default_measure(self) -> str:
+        """The largest value of the first state."""
+        return next(iter(self.flow.of_states))
+
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Largest, smallest and mean value of each coordinate, the root mean square of the state, the period."""
+        return ("norm", "period", *self.flow.of_states, *self.flow.own_measures)
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures for an array of solutions."""
+        u = np.atleast_2d(u)
+        p = np.broadcast_to(np.asarray(p, dtype=float).reshape(-1), (len(u),))
+        for name in names:
+            if name not in self.measure_names:
+                raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
+        found = [measured(self, names, *pair) for pair in zip(u, p.tolist(), strict=True)]
+        return {name: np.array([values[i] for values in found]) for i, name in enumerate(names)}
+
+    def orbit(self, u: np.ndarray, p: float) -> CycleOrbit:
+        """The cycle."""
+        return CycleOrbit(self, np.array(u, dtype=float), float(p))
+
+    def replay(self, u: np.ndarray, p: float) -> float | None:
+        """Largest distance of a simulation from the cycle; see :meth:`CycleOrbit.replay`."""
+        return self.orbit(u, p).replay()
+
+    def simulated_attractors(self, p: float, starts: int = 16) -> list[dict[str, Any]]:
+        """See :meth:`FlowProblem.simulated_attractors`."""
+        return self.flow.simulated_attractors(self, p, starts)
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """See :meth:`FlowProblem.known`."""
+        return self.flow.known(self, u, p)
+
+    def population(
+        self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None, **values: float
+    ) -> Population:
         """Starts round this cycle, and what they settle on."""
         states = self.u0[: self.states].reshape(-1, self.node)
-        return self.flow.population(over or self.parameter, around=states, **{**self.parameters, **options})
+        return self.flow.population(
+            over or self.parameter, box=box, around=states, **{**self.parameters, **values}
+        )
 
     def return_map(self, u: np.ndarray, p: float) -> ReturnMap:
         """The map of which a cycle is a fixed point."""

@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contvines.shared.floating_point import LEAST
+
 from ..core.library import NUMBER, POINTER, WHOLE, address, function, native
 from ..core.multipliers.periodic_schur import multipliers
 from ..core.records import pack
-
-LEAST = 1e-18  # singular values of a singular system, relative to the largest
 
 
 class Condensed(NamedTuple):
@@ -146,7 +146,7 @@ def _solve(matrix: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
     if sign != 0.0:
         return np.linalg.solve(matrix, sides), sign
     left, values, right = np.linalg.svd(matrix)
-    values = np.maximum(values, LEAST * max(values[0], 1e-200))
+    values = np.maximum(values, LEAST * values[0])
     return right.T @ ((left.T @ sides) / values[:, None]), 0.0
 
 

@@ -2,40 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse import issparse
 
 from ..problems.algebraic import AlgebraicProblem
-from ..problems.functions import NotEvaluable
-from ..problems.protocol import Embedding, Seed
+from ..problems.functions import NotEvaluable, Operator
+from ..problems.protocol import Embedding, Seed, margin_of
 from . import mesh
-from .flow_attractors import FlowAttractors
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from scipy.sparse import csc_array
+
+    from ..problems.populations import Population
     from ..problems.protocol import BorderPoint
+    from .flow import Flow
 
 FIRST = 20  # intervals of a cycle that has just been born
 
 
-class Equilibria(FlowAttractors, AlgebraicProblem):
+class Equilibria(AlgebraicProblem):
     """Equilibria of x' = f(x, p).
 
     Parameters
     ----------
     flow : FlowProblem
-    **options
-        Of :class:`contvines.AlgebraicProblem`.
+    f, x0, params, parameter, jacobian, derivative, mirror, name, scale
+        As :class:`contvines.AlgebraicProblem` has them.
     """
 
-    flow: Any
     mixed_rows = False  # f(R x) = R f(x), as cycles have it
 
-    def __init__(self, flow: Any, *arguments: Any, **options: Any) -> None:
+    def __init__(
+        self,
+        flow: Flow,
+        f: Callable,
+        x0: np.ndarray,
+        params: float | Mapping[str, float],
+        parameter: str,
+        jacobian: Callable | None,
+        derivative: Callable | Mapping[str, Callable] | None,
+        mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None,
+        name: str,
+        scale: ArrayLike | None,
+    ) -> None:
         self.flow = flow
-        super().__init__(*arguments, spectrum="flow", **options)
+        super().__init__(f, x0, params, parameter, jacobian, derivative, "flow", mirror, name, scale)
         self.n_margins = len(flow.events)
 
     @property
@@ -93,22 +107,23 @@ class Equilibria(FlowAttractors, AlgebraicProblem):
 
     def beyond(self, point: BorderPoint) -> list[Seed]:
         """See :meth:`FlowProblem.beyond`."""
-        return self.flow.beyond(self, point, int(point.margin_index))
+        return self.flow.beyond(self, point, margin_of(point))
 
     def dead_end(self, point: BorderPoint) -> str:
         """See :meth:`FlowProblem.dead_end`."""
-        return self.flow.dead_end(self, point, int(point.margin_index))
+        return self.flow.dead_end(self, point, margin_of(point))
+
+    def _matrix(self, u: np.ndarray, p: float) -> np.ndarray | csc_array | Operator:
+        return self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
         """At a Hopf point: the cycles that are born there, with the direction in which their amplitude grows; of each pair where two are critical."""
-        if kind != "hopf" or self.functions.structure == "free":
+        if kind != "hopf" or isinstance(matrix := self._matrix(u, p), Operator):
             return []
-        matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
-        matrix = matrix.toarray() if issparse(matrix) else matrix
-        decomposed: Any = np.linalg.eig(matrix)
-        values, vectors = decomposed[0].astype(complex), decomposed[1].astype(complex)
+        found, own = np.linalg.eig(matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray()))
+        values, vectors = np.asarray(found, dtype=np.complex128), own.astype(complex)
         upper = np.flatnonzero(values.imag > 0.0)
         if not len(upper):
             return []
@@ -119,9 +134,21 @@ class Equilibria(FlowAttractors, AlgebraicProblem):
         ]
         return [cycles_at(self, u, p, float(values[k].imag), vectors[:, k]) for k in critical]
 
-    def population(self, over: str | None = None, **options: Any):
+    def simulated_attractors(self, p: float, starts: int = 16) -> list[dict[str, Any]]:
+        """See :meth:`FlowProblem.simulated_attractors`."""
+        return self.flow.simulated_attractors(self, p, starts)
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """See :meth:`FlowProblem.known`."""
+        return self.flow.known(self, u, p)
+
+    def population(
+        self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None, **values: float
+    ) -> Population:
         """Starts round the flow's start, and what they settle on."""
-        return self.flow.population(over or self.parameter, **{**self.values.values, **options})
+        return self.flow.population(
+            over or self.parameter, box=box, around=None, **{**self.values.values, **values}
+        )
 
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -82,8 +82,8 @@ class Events:
 
     def _many(
         self, function: Callable, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None
-    ) -> Any:
-        def one(y: np.ndarray, s: Any) -> float:
+    ) -> np.ndarray | list[float]:
+        def one(y: np.ndarray, s: float | None) -> float:
             return float(function(y, parameters, s) if self.forced else function(y, parameters))
 
         if len(x) > 2:
@@ -139,9 +139,9 @@ class Events:
             where[k] = places[i] + step * (places[1] - places[0])
         return smallest, where % 1.0
 
-    def crossings(self, field: Any, p: float) -> Sequence[Callable]:
+    def crossings(self, values: ParameterSet, p: float) -> Sequence[Callable]:
         """The functions as scipy's integrators want them, each of which ends the integration."""
-        parameters = field.values.at(p)
+        parameters = values.at(p)
 
         def stopping(k: int, function: Callable) -> Callable:
             def value(t: float, x: np.ndarray) -> float:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ..problems.parameters import Parameters
 
 WORDS = {
     "exp": np.exp,
@@ -38,7 +41,7 @@ PARAMETER = re.compile(r"([A-Za-z_]\w*)\s*=\s*([^,\s]+)")
 
 
 def compiled_expressions(
-    expressions: Sequence[Any], states: Sequence[Any], parameters: Sequence[str], time: Any = None
+    expressions: Sequence[object], states: Sequence[object], parameters: Sequence[str], time: object = None
 ) -> tuple[Callable, Callable]:
     """f and its Jacobian from SymPy expressions of states and parameters."""
     import sympy
@@ -55,13 +58,13 @@ def compiled_expressions(
     value = sympy.lambdify(own, list(rates), modules="numpy")
     slope = sympy.lambdify(own, rates.jacobian(own[:d]).tolist(), modules="numpy")
 
-    def arguments(x: Any, p: Any, t: Any) -> list[Any]:
+    def arguments(x: np.ndarray, p: Parameters, t: tuple[object, ...]) -> list[object]:
         return [*(x[j] for j in range(d)), *(getattr(p, name) for name in parameters), *t]
 
-    def f(x: Any, p: Any, *t: Any) -> Any:
+    def f(x: np.ndarray, p: Parameters, *t: object) -> list[object]:
         return value(*arguments(x, p, t))
 
-    def jacobian(x: Any, p: Any, *t: Any) -> Any:
+    def jacobian(x: np.ndarray, p: Parameters, *t: object) -> list[list[object]]:
         return slope(*arguments(x, p, t))
 
     return f, jacobian
@@ -173,8 +176,8 @@ def _evaluator(
     bodies = [(name, names, compile(text, name, "eval")) for name, names, text in functions]
     states = list(rates)
 
-    def f(x: Any, p: Any, *t: Any) -> list[Any]:
-        scope: dict[str, Any] = {"__builtins__": {}, **WORDS, "t": t[0] if t else 0.0}
+    def f(x: np.ndarray, p: Parameters, *t: object) -> list[object]:
+        scope: dict[str, object] = {"__builtins__": {}, **WORDS, "t": t[0] if t else 0.0}
         scope.update({name: getattr(p, name) for name in parameters})
         scope.update({name: x[j] for j, name in enumerate(states)})
         for name, names, body in bodies:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .files import load_flow
+
+if TYPE_CHECKING:
+    from .equilibria import Equilibria
+    from .orbit import CycleOrbit
 
 
 @dataclass(frozen=True)
@@ -31,7 +35,7 @@ class FlowFamily:
     values: Mapping[str, float]
     state: Sequence[float] | None = None
 
-    def __call__(self, values: Mapping[str, float], near: Any = None) -> Any:
+    def __call__(self, values: Mapping[str, float], near: object = None) -> CycleOrbit | Equilibria:
         """The start of a system's diagram.
 
         Raises

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 from scipy.sparse import issparse
 
-from ..problems.derivatives import COMPLEX_STEP, Differentiated
+from contvines.shared.floating_point import COMPLEX_STEP
+
+from ..problems.derivatives import Differentiated
 from ..problems.functions import NotEvaluable
 from ..problems.large.colouring import Colouring
 from ..problems.parameters import ParameterSet
@@ -21,7 +23,7 @@ from .sparse import LARGE, found_sparsity
 if TYPE_CHECKING:
     from ..problems.parameters import Parameters
 
-STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so 1e-14 of it
+STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so a hundredfold rounding of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
 
 
@@ -62,14 +64,18 @@ class Field:
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
         self.events = Events(None, period is not None, start, values)
         self.values, self.period, self.node = values, period, len(start)
-        slope: Any = (
-            {name: _at_zero(g, period) for name, g in derivative.items()}
-            if isinstance(derivative, Mapping)
-            else _at_zero(derivative, period)
-        )
-        still: Any = _at_zero(f, period)
+        slope: Callable | Mapping[str, Callable] | None = None
+        if isinstance(derivative, Mapping):
+            slope = {name: _at_zero(g, period) for name, g in derivative.items()}
+        elif derivative is not None:
+            slope = _at_zero(derivative, period)
         self.functions = Differentiated(
-            still, _at_zero(jacobian, period), slope, start, values, "the right-hand side"
+            _at_zero(f, period),
+            None if jacobian is None else _at_zero(jacobian, period),
+            slope,
+            start,
+            values,
+            "the right-hand side",
         )
         self.lengths, self.complex_step = self.functions.lengths, self.functions.complex_step
         if not self.complex_step and not self.functions.noise.any():
@@ -91,7 +97,11 @@ class Field:
         """Whether f depends on time."""
         return self.period is not None
 
-    def length_of_period(self, p: Any) -> Any:
+    @overload
+    def length_of_period(self, p: float) -> float: ...
+    @overload
+    def length_of_period(self, p: complex) -> complex: ...
+    def length_of_period(self, p: complex) -> complex:
         """Period of f in time.
 
         Raises
@@ -106,7 +116,7 @@ class Field:
         return period
 
     # ------------------------------------------------------------------ values
-    def __call__(self, x: np.ndarray, p: Any, t: np.ndarray | None = None) -> np.ndarray:
+    def __call__(self, x: np.ndarray, p: complex, t: np.ndarray | None = None) -> np.ndarray:
         """f at the points, shape (n, d).
 
         Raises
@@ -124,11 +134,18 @@ class Field:
             [self._one(self.f, y, parameters, s, (self.node,)) for y, s in zip(x, times, strict=True)]
         )
 
-    def _arguments(self, x: np.ndarray, parameters: Parameters | complex, t: Any) -> tuple[Any, ...]:
+    def _arguments(
+        self, x: np.ndarray, parameters: Parameters | complex, t: float | np.ndarray | None
+    ) -> tuple[object, ...]:
         return (x, parameters) if self.period is None else (x, parameters, t)
 
     def _one(
-        self, f: Callable, x: np.ndarray, parameters: Parameters | complex, t: Any, shape: tuple[int, ...]
+        self,
+        f: Callable,
+        x: np.ndarray,
+        parameters: Parameters | complex,
+        t: np.ndarray | None,
+        shape: tuple[int, ...],
     ) -> np.ndarray:
         try:
             value = f(*self._arguments(x.copy(), parameters, t))
@@ -140,7 +157,12 @@ class Field:
         return value
 
     def _stacked(
-        self, f: Callable, x: np.ndarray, parameters: Parameters | complex, t: Any, shape: tuple[int, ...]
+        self,
+        f: Callable,
+        x: np.ndarray,
+        parameters: Parameters | complex,
+        t: np.ndarray | None,
+        shape: tuple[int, ...],
     ) -> np.ndarray:
         try:
             given = f(*self._arguments(x.T.copy(), parameters, t))
@@ -161,7 +183,12 @@ class Field:
                 self.many_jacobian = self._agrees(self.given_jacobian, x, parameters, t, shape)
 
     def _agrees(
-        self, f: Callable, x: np.ndarray, parameters: Parameters | complex, t: Any, shape: tuple[int, ...]
+        self,
+        f: Callable,
+        x: np.ndarray,
+        parameters: Parameters | complex,
+        t: np.ndarray | None,
+        shape: tuple[int, ...],
     ) -> bool:
         times = [None] * len(x) if t is None else t
         try:
@@ -246,7 +273,7 @@ class Field:
             result[:, :, j] = _difference(lambda s, unit=unit: self(x + s * unit, p, t)) / step
         return result
 
-    def along(self, line: Callable[[Any], np.ndarray], p: float) -> np.ndarray:
+    def along(self, line: Callable[[complex], np.ndarray], p: float) -> np.ndarray:
         """Derivative of a function of the parameter at p: by the complex step where f allows it, else by differences."""
         if self.complex_step:
             try:
@@ -271,7 +298,8 @@ class Field:
             return self.along(lambda q: self(x, q, t), p)
         times, parameters, shape = [None] * len(x) if t is None else t, self.values.at(p), (self.node,)
         if self.values.varying not in self.many_slope:
-            self.many_slope[self.values.varying] = self._agrees(given, x[:7], parameters, times[:7], shape)
+            first = None if t is None else t[:7]
+            self.many_slope[self.values.varying] = self._agrees(given, x[:7], parameters, first, shape)
         if self.many_slope[self.values.varying]:
             return self._stacked(given, x, parameters, t, shape)
         return np.array([self._one(given, y, parameters, s, shape) for y, s in zip(x, times, strict=True)])
@@ -282,14 +310,14 @@ def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:
     return sum(weight * (line(float(k)) - line(float(-k))) for k, weight in SIXTH)  # type: ignore[return-value]
 
 
-def _at_zero(f: Callable | None, period: Callable | None) -> Callable | None:
+def _at_zero(f: Callable, period: Callable | None) -> Callable:
     """A function of (x, p, t) at t = 0."""
-    if f is None or period is None or not callable(f):
+    if period is None or not callable(f):
         return f
     return lambda x, p: f(x, p, 0.0)
 
 
-def _broadcast(given: Any, n: int, shape: tuple[int, ...]) -> np.ndarray:
+def _broadcast(given: Iterable, n: int, shape: tuple[int, ...]) -> np.ndarray:
     """What a function of arrays of n numbers returned, nested as `shape` has it, as array (n, *shape)."""
     if isinstance(given, np.ndarray) and given.dtype != object:
         if given.shape != (*shape, n):

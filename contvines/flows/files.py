@@ -8,23 +8,25 @@ import sys
 from collections.abc import Mapping
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
 from ..problems.registry import find_callables
 from .cycles import CycleProblem
 from .expressions import read_text
-from .problem import FlowProblem
+from .problem import FlowProblem, NamedOptions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from .equilibria import Equilibria
 
 
 _known: dict[str, FlowProblem] = {}  # branches of one graph share their flow
 
 
-def from_description(description: Mapping[str, Any], trust: bool = False) -> Any:
+def from_description(description: Mapping[str, Any], trust: bool = False) -> Equilibria | CycleProblem | None:
     """Equilibria or cycles of a flow from what ``describe()`` returned; None where its functions are not at hand."""
     flow = _flow(description, trust)
     if flow is None:
@@ -32,7 +34,7 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Any
     return problem_of(flow, description)
 
 
-def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Any:
+def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Equilibria | CycleProblem:
     """Equilibria or cycles of a flow from what ``describe()`` returned."""
     values = description["p0"]
     named = dict(values) if isinstance(values, Mapping) else {description["parameter"]: values}
@@ -56,7 +58,7 @@ def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Any:
 
 
 def read_ode(
-    path: str | Path, x0: Sequence[float] | np.ndarray | float | None = None, **options: Any
+    path: str | Path, x0: Sequence[float] | np.ndarray | float | None = None, **options: Unpack[NamedOptions]
 ) -> FlowProblem:
     """A flow from an .ode file of XPP: equations, parameters, functions and fixed quantities; see :mod:`contvines.flows.expressions`.
 

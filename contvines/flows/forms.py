@@ -17,13 +17,18 @@ for the return map; Kuznetsov, Govaerts, Doedel and Dhooge, SIAM J. Numer. Anal.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
 from . import mesh
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import SuperLU
+
+    from .cycle_mesh import CycleMesh
 
 NEAR = 0.001  # distance along the critical direction at which the third derivative counts
 LARGEST = 100_000  # unknowns of one return up to which there are normal forms
@@ -38,7 +43,7 @@ class Return:
 
     Parameters
     ----------
-    problem : CycleProblem
+    problem : CycleMesh
     u, p
         A cycle.
 
@@ -48,7 +53,7 @@ class Return:
         If the right-hand side fails there.
     """
 
-    def __init__(self, problem: Any, u: np.ndarray, p: float) -> None:
+    def __init__(self, problem: CycleMesh, u: np.ndarray, p: float) -> None:
         self.problem, self.p = problem, p
         r, d, m, count = problem.rule, problem.node, problem.rule.degree, problem.intervals
         self.free, self.states = problem.free_period, problem.states
@@ -94,7 +99,7 @@ class Return:
         matrix = self.closed_by(factor)
         return splu(matrix).solve(side.astype(matrix.dtype))
 
-    def parts(self, x: np.ndarray, factor: complex) -> tuple[np.ndarray, Any]:
+    def parts(self, x: np.ndarray, factor: complex) -> tuple[np.ndarray, complex]:
         """A perturbation at the Gauss points, and that of the period."""
         problem = self.problem
         ends = mesh.closed(x[: self.states].reshape(problem.intervals, problem.rule.degree, problem.node))
@@ -121,7 +126,9 @@ class Return:
         flat = np.asarray(values).reshape(-1)
         return np.append(flat, 0.0) if self.free else flat
 
-    def second(self, bent: np.ndarray, a: Any, b: Any) -> np.ndarray:
+    def second(
+        self, bent: np.ndarray, a: tuple[np.ndarray, complex], b: tuple[np.ndarray, complex]
+    ) -> np.ndarray:
         """B(a, b) of perturbations (at the Gauss points, period), where `bent` is the derivative of the Jacobian along a."""
         (x, t), (y, s) = a, b
         value = -self.steps[:, None] * _apply(bent, y)
@@ -148,14 +155,14 @@ class Critical(NamedTuple):
     right: np.ndarray
     left: np.ndarray
     weight: complex
-    bordered: Any
+    bordered: SuperLU
 
 
 def _apply(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return np.einsum("nab,nb->na", matrices, vectors)
 
 
-def quadratic(problem: Any, u: np.ndarray, p: float, along: np.ndarray) -> tuple[float, float]:
+def quadratic(problem: CycleMesh, u: np.ndarray, p: float, along: np.ndarray) -> tuple[float, float]:
     """a at a fold, its sign that along a direction of the unknowns, and what it would be if B(v, v) pointed along w."""
     system = Return(problem, u, p)
     v, w, weight, _ = system.critical(1.0)
@@ -172,7 +179,7 @@ def quadratic(problem: Any, u: np.ndarray, p: float, along: np.ndarray) -> tuple
     return float(scale * (w @ side)), float(abs(scale) * size)
 
 
-def cubic(problem: Any, u: np.ndarray, p: float, factor: float) -> tuple[float, float]:
+def cubic(problem: CycleMesh, u: np.ndarray, p: float, factor: float) -> tuple[float, float]:
     """c at a period doubling (m = -1) or a pitchfork (m = 1), and the sum of the magnitudes of its terms."""
     system = Return(problem, u, p)
     v, w, weight, bordered = system.critical(factor)
@@ -191,13 +198,13 @@ def _summed(terms: np.ndarray) -> tuple[float, float]:
     return float(terms.sum()), float(np.abs(terms).sum())
 
 
-def neimark_sacker(problem: Any, u: np.ndarray, p: float, multiplier: complex) -> tuple[float, float]:
+def neimark_sacker(problem: CycleMesh, u: np.ndarray, p: float, multiplier: complex) -> tuple[float, float]:
     """d at a Neimark-Sacker point, Re(c / m), and the sum of the magnitudes of its terms."""
     m = multiplier / abs(multiplier)
     system = Return(problem, u, p)
     q, w, weight, _ = system.critical(m)
     here = system.parts(q, m)
-    other: tuple[np.ndarray, Any] = (here[0].conj(), np.conj(here[1]))
+    other: tuple[np.ndarray, complex] = (here[0].conj(), np.conj(here[1]))
     a1, a2 = system.bent(np.real(here[0]))
     b1, b2 = system.bent(np.imag(here[0]))
     along, against = a1 + 1j * b1, a1 - 1j * b1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -16,9 +16,14 @@ from .mesh import closed
 from .sparse import SparseEquations, leading_multipliers, solve_bordered
 
 if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
     from ..problems.parameters import ParameterSet
     from .collocation import Rule
+    from .field import Field
 
+NOTHING = (np.zeros(0), np.zeros(0))
+NOWHERE = (np.zeros(0), math.nan, np.zeros(0), np.zeros(0))  # before the first linearisation
 LARGEST = 707.0  # logarithms of multipliers are clamped here, where floats end
 
 
@@ -27,7 +32,8 @@ class Collocated(Protocol):
 
     column_scale: np.ndarray
     dimension: int
-    field: Any
+    field: Field
+    clock: float
     free_period: int
     intervals: int
     missed: float
@@ -67,12 +73,17 @@ class CycleWork:
         self.by_period, self.phase = np.zeros((2, count, inner)) if free else np.zeros((2, 0))
         self.core = CoreCycle(data, self) if native() and self.sparse is None else None
         self.steps: np.ndarray = np.zeros(0)  # lengths of the intervals in time
-        self.along: Any = None  # mesh points, parameter, Jacobians and rates at the Gauss points
-        self.mesh: Any = None  # what is left of the equations between neighbouring mesh points
-        self.kept: Any = None  # by_period and phase, while the closure is turned round
-        self.full: Any = (
-            None  # F_u as a sparse matrix in the place of its blocks, where it has been transposed (loci)
+        self.along: tuple[np.ndarray, float, np.ndarray, np.ndarray] = (
+            NOWHERE  # mesh points, parameter, Jacobians and rates at the Gauss points
         )
+        self.mesh: tuple[np.ndarray, np.ndarray] | None = (
+            None  # what is left of the equations between neighbouring mesh points
+        )
+        self.kept: tuple[np.ndarray, np.ndarray] = (
+            NOTHING  # by_period and phase, while the closure is turned round
+        )
+        # F_u as a sparse matrix in the place of its blocks, where it has been transposed (loci)
+        self.full: csc_array | None = None
         self.closure, self.corner = 1.0, 0.0
 
     def __getitem__(self, i: int) -> np.ndarray:
@@ -264,9 +275,9 @@ def full_matrix(data: Collocated, work: CycleWork) -> np.ndarray:
     return _sparse(data, work).toarray()
 
 
-def _sparse(data: Collocated, work: CycleWork) -> Any:
+def _sparse(data: Collocated, work: CycleWork) -> csc_array:
     """F_u as a sparse matrix, in units of the scales."""
-    from scipy.sparse import coo_array
+    from scipy.sparse import csc_array
 
     if work.full is not None:
         return work.full
@@ -284,7 +295,7 @@ def _sparse(data: Collocated, work: CycleWork) -> Any:
         entries += [(work.by_period, there, last), (work.phase, last, there)]
         entries += [(np.array([work.corner]), last[:1], last[:1])]
     parts = [np.concatenate([np.reshape(entry[k], -1) for entry in entries]) for k in range(3)]
-    return coo_array((parts[0], (parts[1], parts[2])), shape=(size, size)).tocsc()
+    return csc_array((parts[0], (parts[1], parts[2])), shape=(size, size))
 
 
 def flip(data: Collocated, work: CycleWork, sign: float) -> None:
@@ -302,11 +313,11 @@ def flip(data: Collocated, work: CycleWork, sign: float) -> None:
 
 def transpose(data: Collocated, work: CycleWork, column: np.ndarray, other: CycleWork) -> None:
     """The transposed F_u, with another last column, into another workspace."""
-    from scipy.sparse import diags_array
+    from scipy.sparse import csc_array, diags_array
 
     # F_u in the user's units, transposed, in units of the scales once more
     sizes = data.row_scale * data.column_scale
-    other.full = diags_array(1.0 / sizes) @ _sparse(data, work).T @ diags_array(sizes)
+    other.full = csc_array(diags_array(1.0 / sizes) @ _sparse(data, work).T @ diags_array(sizes))
     other.derivative[:] = column
 
 

@@ -7,12 +7,13 @@ from typing import Protocol
 import numpy as np
 from scipy.integrate import RK45
 
+from contvines.shared.floating_point import ROUNDED
+
 from ..problems.functions import NotEvaluable
 from .field import Field
 from .settings import FlowSettings
 
 FIRST = 0.001  # step at first, in times after which a motion has gone its size
-ROUNDING = 64 * np.finfo(float).eps  # a step of this size does not move the time
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 TABLEAU = RK45.A[:, :5], RK45.B, RK45.C, RK45.E
 
@@ -102,7 +103,7 @@ class March:
                 scaled = np.where(whole | ~good, h * factor, self.h[rows])
             self.h[rows] = np.where(np.isfinite(error), scaled, SHRINK * h)
             lost = (np.abs(self.x[rows]) > far * self.size).any(axis=1) | (
-                h < ROUNDING * np.maximum(1.0, np.abs(t))
+                h < ROUNDED * np.maximum(1.0, np.abs(t))
             )
             self.x[rows[lost]] = np.nan
             self.steps += len(rows)

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from .kernels import bordered, linearise
 
+if TYPE_CHECKING:
+    from .cycle_mesh import CycleMesh
+
+Cycles = TypeVar("Cycles", bound="CycleMesh")
+
 SWEEPS = 40
 ROUNDS = 8  # of a mesh that is adapted
 
 
-def solved(problem: Any, u: np.ndarray, p: float) -> np.ndarray | None:
+def solved(problem: CycleMesh, u: np.ndarray, p: float) -> np.ndarray | None:
     """The cycle near a guess at a fixed parameter; None if Newton's method does not converge."""
     n, work = problem.dimension, problem.workspace()
     border, step, tangent = np.zeros(n + 1), np.zeros(n + 1), np.zeros(n + 1)
@@ -33,7 +38,7 @@ def solved(problem: Any, u: np.ndarray, p: float) -> np.ndarray | None:
     return None
 
 
-def settled(problem: Any, u: np.ndarray, p: float) -> tuple[Any, np.ndarray] | None:
+def settled(problem: Cycles, u: np.ndarray, p: float) -> tuple[Cycles, np.ndarray] | None:
     """The cycle near a guess on a mesh that suits it, with its problem; None if Newton's method does not converge."""
     found = solved(problem, u, p)
     for _ in range(ROUNDS):

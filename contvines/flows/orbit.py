@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -15,9 +15,37 @@ from .newton import solved
 from .simulation import integrated, variational
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
+
+    from ..problems.protocol import Problem
+    from .cycle_mesh import CycleMesh
+
 SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
+
+
+class PictureOptions(TypedDict, total=False):
+    """Options of a picture of a cycle; see :func:`contvines.plots.cycles.plot_cycle`."""
+
+    axes: Axes | None
+    figsize: tuple[float, float] | None
+    style: str | Mapping[str, Any] | None
+    coordinates: tuple[int, int]
+
+
+class MotionOptions(TypedDict, total=False):
+    """Options of a cycle in motion; see :func:`contvines.plots.cycles.animate_cycle`."""
+
+    seconds: float
+    rate: int
+    figsize: tuple[float, float]
+    style: str | Mapping[str, Any] | None
+    coordinates: tuple[int, int]
 
 
 class CycleOrbit:
@@ -35,7 +63,7 @@ class CycleOrbit:
     stable : bool
     """
 
-    def __init__(self, problem: Any, u: np.ndarray, p: float) -> None:
+    def __init__(self, problem: CycleMesh, u: np.ndarray, p: float) -> None:
         self._problem, self.u, self.value = problem, u, p
         x, self.period, widths = problem.parts(u, p)
         self.period = float(np.real(self.period))
@@ -52,7 +80,7 @@ class CycleOrbit:
             f"CycleOrbit({values}: {stable}, period {self.period:.10g}, {self._problem.intervals} intervals)"
         )
 
-    def __call__(self, t: Any) -> np.ndarray:
+    def __call__(self, t: ArrayLike) -> np.ndarray:
         """States at times, shape (..., d)."""
         t = np.asarray(t, dtype=float)
         x, _, widths = self._problem.parts(self.u, self.value)
@@ -135,11 +163,11 @@ class CycleOrbit:
         return self._problem.estimated_error(self.u)
 
     # ------------------------------------------------------------------ as a seed
-    def problem(self, parameter: str):
+    def problem(self, parameter: str) -> CycleMesh:
         """The cycles that go on from this one when a parameter varies."""
         return self._problem.against(parameter, self.parameters)
 
-    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+    def seed(self, problem: Problem) -> tuple[np.ndarray, float]:
         """The unknowns, and the value of the parameter that varies."""
         return self.u, self.parameters[problem.parameter]
 
@@ -193,13 +221,13 @@ class CycleOrbit:
         return self._flights(times[: half + 1], x) + self._flights(times[half:], middle)
 
     # ------------------------------------------------------------------ pictures
-    def plot(self, **options: Any):
+    def plot(self, **options: Unpack[PictureOptions]) -> Figure:
         """Phase portrait and time series; see :func:`contvines.plots.cycles.plot_cycle`."""
         from ..plots.cycles import plot_cycle
 
         return plot_cycle(self, **options)
 
-    def animate(self, path: str | Path | None = None, **options: Any):
+    def animate(self, path: str | Path | None = None, **options: Unpack[MotionOptions]) -> FuncAnimation:
         """The cycle in motion, written to a gif, mp4 or html file if a path is given; see :func:`contvines.plots.cycles.animate_cycle`."""
         from ..plots.cycles import animate_cycle
 

@@ -1,18 +1,28 @@
-"""Many starts of a flow, and the equilibria and cycles that they settle on; the contract is that of `contvines.coexistence.population`."""
+"""Many starts of a flow, and the equilibria and cycles that they settle on; the contract is that of `contvines.problems.populations`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+
+from contvines.shared.floating_point import TINY
 
 from ..problems.registry import rebuild
 from .attractors import AtRest, Escaped, Irregular, Stopped
 from .field import Field
+from .flow import Flow
 from .march import March
 from .settings import FlowSettings
+
+if TYPE_CHECKING:
+    from ..problems.algebraic import AlgebraicProblem
+    from ..problems.parameters import ParameterSet
+    from ..problems.protocol import Problem
+    from .cycle_mesh import CycleMesh
+    from .orbit import CycleOrbit
 
 BLOCK, STEPS = (
     200,
@@ -32,7 +42,6 @@ BLOCKS = 20
 FEW = 8  # motions at least, copies of those there are ...
 SIGMAS = 3.0
 RANK = 512 * np.finfo(float).eps  # singular values below this part of the largest one are zero
-TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +51,7 @@ class Settled:
     kind: str
     word: str = ""
     periods: int = 0
-    problem: Any = field(default=None, repr=False)
+    problem: AlgebraicProblem | CycleMesh | None = field(default=None, repr=False)
     u: np.ndarray | None = field(default=None, repr=False)
     exponent: float = float("nan")
     error: float = float("nan")
@@ -73,6 +82,22 @@ class WithVectors:
         return np.hstack([self.field(states, p, t), turned])
 
 
+class PopulatedFlow(Flow, Protocol):
+    """A flow of which many starts are simulated."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def x0(self) -> np.ndarray: ...
+    @property
+    def values(self) -> ParameterSet: ...
+    @property
+    def box(self) -> Sequence[tuple[float, float]] | None: ...
+    def attractor(
+        self, x0: np.ndarray, *, longest: int = 64, doublings: int = 12, **values: float
+    ) -> CycleOrbit: ...
+
+
 class FlowPopulation:
     """Starts in a box of the flow's states.
 
@@ -94,7 +119,7 @@ class FlowPopulation:
 
     def __init__(
         self,
-        flow: Any,
+        flow: PopulatedFlow,
         parameter: str,
         values: dict[str, float],
         box: Sequence[tuple[float, float]] | None = None,
@@ -291,7 +316,7 @@ class FlowPopulation:
         problem = orbit.problem(self.parameter)
         return self._cycle(problem, orbit, p)
 
-    def _cycle(self, problem: Any, orbit: Any, p: float) -> Settled:
+    def _cycle(self, problem: CycleMesh, orbit: CycleOrbit, p: float) -> Settled:
         if self.field.forced:
             curve = orbit(np.arange(problem.rounds) * orbit.period / problem.rounds)
         else:
@@ -300,8 +325,10 @@ class FlowPopulation:
         return Settled("periodic", "cycle", rounds, problem, orbit.u.copy(), state=curve[0], curve=curve)
 
     def _equilibrium(self, x: np.ndarray, p: float) -> Settled:
-        problem = self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p})
-        return Settled("periodic", "equilibrium", 0, problem, x, state=x, curve=x[None])
+        return Settled("periodic", "equilibrium", 0, self._equilibria(p), x, state=x, curve=x[None])
+
+    def _equilibria(self, p: float) -> AlgebraicProblem:
+        return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p})
 
     def _rest(self, x: np.ndarray, p: float) -> np.ndarray | None:
         """The equilibrium next to a state, by Newton's method; None if there is none."""
@@ -357,11 +384,11 @@ class FlowPopulation:
         return Settled(kind, exponent=mean, error=error, state=x[0])
 
     # ------------------------------------------------------------------ what does not attract
-    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+    def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Unstable cycles in chaos are not looked for."""
         return []
 
-    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Any, np.ndarray]]:
+    def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Equilibria, stable or not, to which Newton's method leads from starts."""
         if self.field.forced:
             return []
@@ -375,13 +402,13 @@ class FlowPopulation:
                 and not any((np.abs(x - y) <= self.field.settings.same * self.size).all() for y in found)
             ):
                 found.append(x)
-        return [(self._equilibrium(x, p).problem, x) for x in found]
+        return [(self._equilibria(p), x) for x in found]
 
-    def closed(self, p: float) -> list[tuple[Any, np.ndarray]]:
+    def closed(self, p: float) -> list[tuple[Problem, np.ndarray]]:
         """Motions known in closed form: none."""
         return []
 
-    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Any:
+    def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return rebuild(description)
 

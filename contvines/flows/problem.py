@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 
+from contvines.shared.floating_point import TINY
 from contvines.shared.near_names import hinting
 
+from ..problems.abilities import Populated, Started
 from ..problems.images import image_map
 from ..problems.parameters import ParameterSet
 from ..problems.protocol import Seed
@@ -26,16 +28,38 @@ from .field import Field
 from .names import OF_STATES, checked_names
 from .newton import settled
 from .orbit import CycleOrbit
-from .population import RANK, TINY, FlowPopulation
+from .population import RANK, FlowPopulation, Settled
 from .settings import FlowSettings
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..problems.protocol import BorderPoint
+    from ..problems.protocol import BorderPoint, Problem
+    from .cycle_mesh import CycleMesh
 
 INTERVALS = 40  # of a cycle from data, to begin with
 FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to its slowest point is the one to which it is homoclinic
+
+
+class FlowOptions(TypedDict, total=False):
+    """What may be said of a flow beside its equations; see :class:`FlowProblem`."""
+
+    mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None
+    period: Callable | float | None
+    derivative: Callable | Mapping[str, Callable] | None
+    degree: int
+    error: float | None
+    settings: FlowSettings | Mapping[str, float] | None
+    scale: ArrayLike | None
+    events: Mapping[str, Callable] | None
+    parameter: str
+    name: str
+
+
+class NamedOptions(FlowOptions, total=False):
+    """The same, and names of the states."""
+
+    states: Sequence[str] | None
 
 
 class FlowProblem:
@@ -92,7 +116,7 @@ class FlowProblem:
         x0: Sequence[float] | np.ndarray | float,
         params: float | Mapping[str, float] = 0.0,
         *,
-        mirror: Any = None,
+        mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None = None,
         period: Callable | float | None = None,
         jacobian: Callable | None = None,
         derivative: Callable | Mapping[str, Callable] | None = None,
@@ -157,13 +181,13 @@ class FlowProblem:
     @classmethod
     def from_sympy(
         cls,
-        expressions: Sequence[Any],
-        states: Sequence[Any],
+        expressions: Sequence[object],
+        states: Sequence[object],
         x0: Sequence[float],
         params: Mapping[str, float],
         *,
-        time: Any = None,
-        **options: Any,
+        time: object = None,
+        **options: Unpack[FlowOptions],
     ) -> FlowProblem:
         """A flow from SymPy expressions; its Jacobian is differentiated.
 
@@ -186,8 +210,7 @@ class FlowProblem:
             If a symbol has no value.
         """
         f, jacobian = compiled_expressions(expressions, states, list(params), time)
-        options.setdefault("states", [str(state) for state in states])
-        return cls(f, x0, params, jacobian=jacobian, **options)
+        return cls(f, x0, params, jacobian=jacobian, states=[str(state) for state in states], **options)
 
     def _find_mirror(self) -> None:
         """Whether the mirror image of a forced motion is one at the same time, or half a period later.
@@ -217,18 +240,20 @@ class FlowProblem:
         )
 
     # ------------------------------------------------------------------ as a seed
-    def problem(self, parameter: str | None = None):
+    def problem(self, parameter: str | None = None) -> Equilibria | CycleMesh:
         """Equilibria (cycles, of forced flows) when a parameter varies."""
         parameter = self.values.varying if parameter is None else parameter
         if self._equilibria is not None:
             return self.equilibria(parameter)
         return self.attractor(self.x0).problem(parameter)
 
-    def seed(self, problem: Any) -> tuple[np.ndarray, float]:
+    def seed(self, problem: Started) -> tuple[np.ndarray, float]:
         """The start of such a problem."""
         return problem.u0, problem.p0
 
-    def equilibria(self, parameter: str | None = None, values: Mapping[str, float] | None = None):
+    def equilibria(
+        self, parameter: str | None = None, values: Mapping[str, float] | None = None
+    ) -> Equilibria:
         """The problem of the equilibria.
 
         Raises
@@ -365,8 +390,8 @@ class FlowProblem:
         if name is not None:
             raise Stopped(f"the cycle crosses the event {name}, which stops the motion")
         shorter = cycles.root(u, parameters.start)
-        if shorter is not None:
-            cycles, u = shorter
+        if shorter is not None and isinstance(shorter[0], CycleProblem):
+            cycles, u = shorter[0], shorter[1]
         return CycleOrbit(cycles, u, parameters.start)
 
     def _guess(
@@ -416,24 +441,26 @@ class FlowProblem:
         """What the largest, smallest or mean value of a state is called."""
         return f"{what} {state}"
 
-    def measure_own(self, name: str, problem: Any, u: np.ndarray, p: float) -> float:
+    def measure_own(self, name: str, problem: Problem, u: np.ndarray, p: float) -> float:
         """One of ``own_measures``."""
         raise KeyError(name)
 
-    def simulated_attractors(self, problem: Any, p: float, starts: int) -> list[dict[str, Any]]:
+    def simulated_attractors(self, problem: Problem, p: float, starts: int) -> list[dict[str, Any]]:
         """What starts settle on: "word" and "kind" of each motion, "periods" of the forcing, and "u", the extremes of its states."""
-        population = problem.population(problem.parameter)
+        assert isinstance(problem, Populated)
+        population = problem.population()
         motions, _, _ = population.settle(population.starts(starts, 7, p), p)
         found = []
         for motion in motions:
             entry = {"word": motion.word or None, "periods": motion.periods, "kind": motion.kind}
-            found.append(entry if motion.curve is None else {**entry, "u": extremes(motion.curve)})
+            curve = motion.curve if isinstance(motion, Settled) else None
+            found.append(entry if curve is None else {**entry, "u": extremes(curve)})
         return sorted(found, key=lambda one: (str(one["word"]), one["kind"], one.get("u", [])))
 
-    def known(self, problem: Any, u: np.ndarray, p: float) -> dict[str, Any]:
+    def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:
         """A stable solution as `simulated_attractors` lists it."""
-        if problem.spectrum == "flow":
-            word, periods, curve = "equilibrium", 0, np.asarray(u, dtype=float)[None, : problem.node]
+        if not isinstance(problem, CycleProblem):
+            word, periods, curve = "equilibrium", 0, np.asarray(u, dtype=float)[None, : len(self.x0)]
         else:
             orbit = problem.orbit(u, p)
             times = np.linspace(0.0, orbit.period, 1001)[:-1]
@@ -450,12 +477,13 @@ class FlowProblem:
         """The kind of border at which a motion touches event k."""
         return "event"
 
-    def beyond(self, problem: Any, point: BorderPoint, k: int) -> list[Seed]:
+    def beyond(self, problem: Problem, point: BorderPoint, k: int) -> list[Seed]:
         """The motions that go on where one touches event k: none."""
         return []
 
-    def dead_end(self, problem: Any, point: BorderPoint, k: int) -> str:
+    def dead_end(self, problem: Problem, point: BorderPoint, k: int) -> str:
         """What stops motions at event k, in words."""
+        assert isinstance(problem, Equilibria | CycleProblem)
         x, when = problem.touching(point.u, point.value, k)
         place = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.states, x, strict=True))
         ahead = "" if when is None else f" at t = {when:.6g} of its period"

@@ -9,9 +9,11 @@ the plane.
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from contvines.shared.floating_point import ROUNDED
 
 from ..problems.functions import NotEvaluable
 from . import mesh
@@ -19,8 +21,9 @@ from . import mesh
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from .cycle_mesh import CycleMesh
+
 SWEEPS = 20  # of Newton's method in an interval
-EXACT = 64 * np.finfo(float).eps  # corrections, in units of the scale and of the state: converged to rounding
 QUICK = 0.1  # part of the last correction above which slopes are renewed
 
 
@@ -37,7 +40,7 @@ class ReturnMap:
 
     Parameters
     ----------
-    problem : CycleProblem
+    problem : CycleMesh
     u, p
         A cycle.
 
@@ -49,7 +52,7 @@ class ReturnMap:
         A state on the section is ``start + basis @ y``.
     """
 
-    def __init__(self, problem: Any, u: np.ndarray, p: float) -> None:
+    def __init__(self, problem: CycleMesh, u: np.ndarray, p: float) -> None:
         self.problem, self.rule, self.field, self.p = problem, problem.rule, problem.field, float(p)
         x, period, self.widths = problem.parts(u, p)
         self.period, self.rounds = float(period), problem.rounds
@@ -106,7 +109,7 @@ class ReturnMap:
                 x = step.end
         return Step(x, ahead, slope)
 
-    def _length(self, p: Any) -> Any:
+    def _length(self, p: complex) -> complex:
         return self.period if self.problem.free_period else self.rounds * self.field.length_of_period(p)
 
     def _through(self, x: np.ndarray, guess: np.ndarray, i: int, p: float, derivatives: bool) -> Step:
@@ -114,7 +117,7 @@ class ReturnMap:
         r, count = self.rule, len(x)
         places = self.begins[i] + self.widths[i] * r.points
 
-        def rate(points: np.ndarray, q: Any) -> np.ndarray:
+        def rate(points: np.ndarray, q: complex) -> np.ndarray:
             length = self._length(q)
             times = np.tile(length * places, count) if self.field.forced else None
             return length * self.widths[i] * self.field(points, q, times)
@@ -144,7 +147,7 @@ class ReturnMap:
             speed = self._rates(end, p)
             change = -((end - self.start) @ self.normal) / (speed @ self.normal)
             time = time + change
-            if not (np.abs(change) > EXACT * self.period).any():
+            if not (np.abs(change) > ROUNDED * self.period).any():
                 break
         far = ~(np.abs(time) < 0.5 * self.period)
         nodes = self._solved(x, nodes, time, p, None)
@@ -223,7 +226,7 @@ class ReturnMap:
             change = -np.matmul(inverse, residual.reshape(count, m * d, 1)).reshape(count, m, d)
             nodes = nodes + change
             size = np.abs(change / (self.scale + np.abs(nodes))).max(axis=(1, 2))
-            done = (size < EXACT) | ((size < rounded) & (size > 0.3 * last)) | ~np.isfinite(size)
+            done = (size < ROUNDED) | ((size < rounded) & (size > 0.3 * last)) | ~np.isfinite(size)
             slow, last = bool((size > QUICK * last)[~done].any()), size
             if done.all():
                 break

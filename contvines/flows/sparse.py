@@ -11,8 +11,11 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, splu
 
+from contvines.shared.floating_point import ROUNDED
+
 from ..problems.large.colouring import Colouring
 from ..problems.large.sparse_factors import SuperLUFactors
+from ..problems.settings import LINEAR
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,9 +25,7 @@ if TYPE_CHECKING:
 LARGE = 30  # states from which on entries that are zero are looked for
 DENSE = 0.25  # part of the entries from which on a Jacobian counts as full
 LEADING = 10  # multipliers
-ROUNDING = 64 * np.finfo(float).eps  # relative, of a shift of singular matrices
-ACCURATE = 1e-11  # of multipliers, relative
-SMALL = ROUNDING**0.5  # size of the border rows: they are chosen as pivots last, and the factors stay sparse
+SMALL = ROUNDED**0.5  # size of the border rows: they are chosen as pivots last, and the factors stay sparse
 
 
 def found_sparsity(jacobian: Callable[[np.ndarray], np.ndarray], places: np.ndarray) -> Colouring | None:
@@ -43,7 +44,7 @@ def found_sparsity(jacobian: Callable[[np.ndarray], np.ndarray], places: np.ndar
         pattern = pattern + abs(sp.csc_array(value)).astype(bool).astype(float)
     if pattern.nnz > DENSE * d * d:
         return None
-    return Colouring(pattern, d)
+    return Colouring(sp.csc_array(pattern), d)
 
 
 class SparseEquations:
@@ -83,14 +84,14 @@ class SparseEquations:
         two = np.broadcast_to(self.rule.slopes[None, :, :, None], (self.count, m, m + 1, self.node))
         return np.concatenate([one.reshape(-1), two.reshape(-1)])
 
-    def closed(self, entries: np.ndarray, closure: float) -> Any:
+    def closed(self, entries: np.ndarray, closure: float) -> sp.csc_array:
         """F_u by the values at the nodes: what belongs to the last node of all stands, times the closure, with the first one."""
         last = self.columns >= self.states
         columns = np.where(last, self.columns - self.states, self.columns)
         values = np.where(last, closure * entries, entries)
         return sp.csc_array((values, (self.rows, columns)), shape=(self.states, self.states))
 
-    def opened(self, entries: np.ndarray) -> tuple[Any, Any]:
+    def opened(self, entries: np.ndarray) -> tuple[sp.csc_array, sp.csc_array]:
         """By the values at the first node, and by those at all others: the equations as they stand if the first node is given."""
         first = self.columns < self.node
         start = sp.csc_array(
@@ -104,7 +105,7 @@ class SparseEquations:
 
 
 def solve_bordered(
-    matrix: Any, columns: np.ndarray, rows: np.ndarray, corner: np.ndarray, sides: np.ndarray
+    matrix: sp.csc_array, columns: np.ndarray, rows: np.ndarray, corner: np.ndarray, sides: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """Solve [[matrix, columns], [rows, corner]] x = sides; solutions and the sign of the determinant.
 
@@ -119,10 +120,10 @@ def solve_bordered(
     sides[n:] *= SMALL
     whole = sp.block_array([[matrix, columns], [SMALL * rows, SMALL * corner]], format="csc")
     top = float(np.abs(matrix.data).max(initial=1.0))
-    for shift in (0.0, ROUNDING * top):
+    for shift in (0.0, ROUNDED * top):
         shifted = whole + shift * sp.identity(len(sides), format="csc") if shift else whole
         try:
-            factors = SuperLUFactors(shifted.tocsc(), "COLAMD")
+            factors = SuperLUFactors(sp.csc_array(shifted), "COLAMD")
         except RuntimeError:
             continue
         x = factors.solve(sides)
@@ -167,7 +168,12 @@ def leading_multipliers(
         operator = LinearOperator((d, d), matvec=across, dtype=float)  # type: ignore[call-arg]
         v0 = np.random.default_rng(7).standard_normal(d)
         try:
-            options: dict[str, Any] = {"k": count, "v0": v0, "tol": ACCURATE, "return_eigenvectors": False}
+            options: dict[str, Any] = {
+                "k": count,
+                "v0": v0,
+                "tol": LINEAR.iterated,
+                "return_eigenvectors": False,
+            }
             values = eigs(operator, **options)
         except ArpackNoConvergence as error:
             values = error.eigenvalues

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hin
 
 import numpy as np
 
+from ..bifurcation.kind import Kind
 from ..branches.branch import Branch
 from ..branches.special_point import Later, SpecialPoint
 from ..problems.protocol import Problem
@@ -112,7 +113,14 @@ def _hints(kind: type) -> dict[str, Any]:
     from pathlib import Path  # named in annotations only
 
     return get_type_hints(
-        kind, localns={"Path": Path, "Problem": Problem, "Branch": Branch, "SpecialPoint": SpecialPoint}
+        kind,
+        localns={
+            "Path": Path,
+            "Problem": Problem,
+            "Branch": Branch,
+            "SpecialPoint": SpecialPoint,
+            "Kind": Kind,
+        },
     )
 
 
@@ -121,7 +129,7 @@ def fits(value: object, hint: object) -> bool:
     kind, parts = get_origin(hint) or hint, get_args(hint)
     if kind in (Union, UnionType):
         return any(fits(value, part) for part in parts)
-    if kind is Any or kind is Problem:  # what a file cannot hold is none of its
+    if kind in (Any, Problem, Kind):  # what a file cannot hold is none of its
         return _plain(value)
     if kind is Later:
         return value is None or fits(value, float)

@@ -93,6 +93,7 @@ class Linearisation:
     def left(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
         """(w, g) with F_u^T w + c g = 0 and b.w = 1."""
         self._matrix()
+        assert self.kernels.transpose is not None
         self.kernels.transpose(self.data, self.work, np.ascontiguousarray(c), self.other)
         self.other_F[:], self.line[:-1], self.line[-1] = 0.0, b, 0.0
         self.kernels.bordered(self.data, self.other, self.line, 0.0, self.step, self.tangent)
@@ -102,6 +103,7 @@ class Linearisation:
     def flipped(self) -> Iterator[None]:
         """Within it F_u is that of perturbations that change sign over the period."""
         self._matrix()
+        assert self.kernels.flip is not None
         self.kernels.flip(self.data, self.work, -1.0)
         try:
             yield

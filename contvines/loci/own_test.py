@@ -12,6 +12,7 @@ import numpy as np
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME
 from ..branches.special_point import SpecialPoint
+from ..problems.protocol import Kernels
 from .plane import Plane
 
 if TYPE_CHECKING:
@@ -100,6 +101,7 @@ class WithCondition:
 
     def __init__(self, problem: Problem, kind: Kind) -> None:
         self.plain, self.own_kind = problem, kind
+        assert isinstance(problem.kernels, Kernels)
         self.kernels = replace(problem.kernels, inspect=self._inspect)
 
     def __getattr__(self, name: str) -> Any:
@@ -137,8 +139,12 @@ class WithCondition:
     def _point(self, data: Problem, u: np.ndarray, p: float, work: object, row: np.ndarray) -> PointOfLocus:
         parameters = {**data.parameters, data.parameter: float(p)}
         return PointOfLocus(
-            self.plain, parameters, (u, p), row, lambda: self.plain.kernels.matrix(data, work), data.measures
+            self.plain, parameters, (u, p), row, lambda: self._matrix(data, work), data.measures
         )
+
+    def _matrix(self, data: object, work: object) -> np.ndarray:
+        assert self.kernels.matrix is not None
+        return self.kernels.matrix(data, work)
 
 
 def of_own_kind(point: SpecialPoint) -> bool:
@@ -163,6 +169,6 @@ def with_condition(problem: Problem, kind: Kind | None, label: str) -> WithCondi
         raise ValueError(
             f"{label}: its kind has no condition to follow; Kind(..., locus=lambda point: ...) gives it one, often its test"
         )
-    if problem.kernels.compiled:
+    if not isinstance(problem.kernels, Kernels):
         raise ValueError(f"{label}: kinds of your own are followed for problems in Python only")
     return WithCondition(problem, kind)

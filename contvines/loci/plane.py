@@ -43,6 +43,7 @@ class Plane:
     def at(self, place: Place) -> float:
         """Linearise in the first parameter, unless the plane is there already; returns the largest residual."""
         if place is not self.place:
+            assert self.first.kernels.assign is not None
             self.first.kernels.assign(self.first.data, self.second.data, float(place.q))
             self.place, self._row = place, None
             self.residual = self.first.at(place.u, place.p)

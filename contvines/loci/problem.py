@@ -9,11 +9,10 @@ import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
-from ..core.library import address
 from ..core.records import pack
-from ..core.table import TableKernels, native_table
+from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
-from ..problems.protocol import Kernels, Problem, ProblemDefaults
+from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, Workspace
 from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
@@ -36,7 +35,7 @@ class Data(NamedTuple):
 
     first: object
     second: object
-    calls: Kernels | TableKernels
+    calls: KernelFunctions
     kind: int
     which: int
     multipliers: int
@@ -49,8 +48,8 @@ class Work(NamedTuple):
     """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`. ``memory`` is the struct `Work` of native/loci.hpp."""
 
     residual: np.ndarray
-    base: Sequence[np.ndarray]
-    trial: Sequence[np.ndarray]
+    base: Workspace
+    trial: Workspace
     base_F: np.ndarray
     base_Q: np.ndarray
     trial_F: np.ndarray
@@ -170,8 +169,8 @@ class LocusProblem(ProblemDefaults):
         self.natural = has_natural_units(problem)
         about = self.condition, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
         self.data = Data(self.first.data, self.second.data, self.first.kernels, *about)
-        if self.compiled:
-            places = address(self.first.data.memory), address(self.second.data.memory)
+        if isinstance(kernels, TableKernels):
+            places = memory_of(self.first.data), memory_of(self.second.data)
             self.data = self.data._replace(memory=pack(kernels.table, *places, *about))
         shift = problem.period_shift
         if shift is not None and np.any(shift):
@@ -215,7 +214,7 @@ class LocusProblem(ProblemDefaults):
         if not self.compiled:
             return work
         arrays = [part for part in work[:-1] if isinstance(part, np.ndarray)]
-        sizes = n, self.dimension, len(work.masked), address(base.memory), address(trial.memory)
+        sizes = n, self.dimension, len(work.masked), memory_of(base), memory_of(trial)
         return work._replace(memory=pack(*sizes, *arrays, len(work.row)))
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:

@@ -11,8 +11,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from matplotlib.figure import Figure
+    from scipy.sparse import csc_array
 
-    from .protocol import BorderPoint, Problem, Seed
+    from .populations import Population
+    from .protocol import BorderPoint, Problem, Seed, Workspace
 
 
 @runtime_checkable
@@ -41,11 +43,21 @@ class Rough(Protocol):
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray: ...
 
 
+class Section(Protocol):
+    """Motions seen once per period; see the contract of :mod:`contvines.circles.section`."""
+
+    @property
+    def names(self) -> tuple[str, ...]: ...
+    def through(self, u: np.ndarray) -> np.ndarray: ...
+    def rounds(self, u: np.ndarray) -> np.ndarray: ...
+    def step(self, x: np.ndarray) -> np.ndarray: ...
+
+
 @runtime_checkable
 class Sectioned(Protocol):
     """Its motions can be simulated period by period; see :mod:`contvines.circles.section`."""
 
-    def section(self, p: float) -> Any: ...
+    def section(self, p: float) -> Section: ...
 
 
 @runtime_checkable
@@ -70,9 +82,9 @@ def notation_of(*things: object) -> dict[str, str]:
 
 @runtime_checkable
 class Populated(Protocol):
-    """Many starts can be simulated; see :mod:`contvines.coexistence.population`."""
+    """Many starts can be simulated; see :mod:`contvines.problems.populations`."""
 
-    def population(self, over: str | None = None, **parameters: float) -> Any: ...
+    def population(self, over: str | None = None, **parameters: float) -> Population: ...
 
 
 @runtime_checkable
@@ -100,7 +112,7 @@ class Resolved(Protocol):
 class Limited(Protocol):
     """Of what ``orbit`` returned: takes the multipliers that a branch has in the limit, where its own equations are singular."""
 
-    def with_multipliers(self, multipliers: np.ndarray) -> Any: ...
+    def with_multipliers(self, multipliers: np.ndarray) -> object: ...
 
 
 @runtime_checkable
@@ -123,7 +135,7 @@ class Provable(Protocol):
 
     def prove(
         self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
-    ) -> Any: ...
+    ) -> object: ...
 
     def prove_branch(
         self,
@@ -132,14 +144,14 @@ class Provable(Protocol):
         marks: Sequence[int] = (),
         within: tuple[float, float] | None = None,
         special: Mapping[int, BorderPoint] | None = None,
-    ) -> Any: ...
+    ) -> object: ...
 
 
 @runtime_checkable
 class Blurred(Protocol):
     """Tells by how much rounding of its linearisation moves a raw eigenvalue."""
 
-    def blur(self, work: Any) -> float: ...
+    def blur(self, work: Workspace) -> float: ...
 
 
 @runtime_checkable
@@ -149,7 +161,7 @@ class Doubtful(Protocol):
     `rounding`: of an entry relative to it. None where nobody knows.
     """
 
-    def doubts(self, work: Any, rounding: float) -> Any: ...
+    def doubts(self, work: Workspace, rounding: float) -> np.ndarray | csc_array | None: ...
 
 
 @runtime_checkable
@@ -162,21 +174,25 @@ class Nearing(Protocol):
     many: bool
     signed: bool
 
-    def closer(self) -> Any: ...
+    def closer(self) -> Problem: ...
 
 
-@runtime_checkable
-class Doubling(Protocol):
-    """In other pieces it has cycles of twice the length."""
+class Returns(Protocol):
+    """A return map near a cycle, in coordinates of the section: states = ``basis`` x."""
 
-    def doubled_with(self, pieces: Any) -> Problem: ...
+    basis: np.ndarray
+    inverse: np.ndarray
+    node: int
+
+    def __call__(self, points: np.ndarray, /) -> np.ndarray: ...
+    def varied(self, points: np.ndarray, /) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
 
 
 @runtime_checkable
 class Returning(Protocol):
     """Its solutions are fixed points of return maps, ``return_map(u, p)``; see :mod:`contvines.flows.returns`."""
 
-    def return_map(self, u: np.ndarray, p: float) -> Any: ...
+    def return_map(self, u: np.ndarray, p: float) -> Returns: ...
 
 
 @runtime_checkable

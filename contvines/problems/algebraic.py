@@ -11,8 +11,9 @@ from contvines.shared.near_names import hinting
 
 from .callables import CallableProblem
 from .conditions import Conditions
+from .dense import DenseWork
 from .derivatives import Differentiated
-from .functions import readonly
+from .functions import Operator, Sparse, readonly
 from .images import image_map, images_of, smallest_image
 from .nearness import NEAREST
 from .outputs import Outputs
@@ -26,8 +27,9 @@ from .spectra import WATCHED, reference_of, rounding, vectors_of, watched, witho
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+    from scipy.sparse import csc_array
 
-    from .dense import DenseWork
+    from .interpreted import Linearised
     from .large.sparse_work import SparseWork
     from .protocol import BorderPoint
 
@@ -100,14 +102,14 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None = None,
         name: str = "algebraic",
         scale: ArrayLike | None = None,
-        symmetries: Sequence[Any] = (),
+        symmetries: Sequence[Callable[[np.ndarray], ArrayLike] | ArrayLike] = (),
         conditions: Sequence[Callable] = (),
         switches: Mapping[str, Callable] | None = None,
         leading: int = 10,
         shift: float = 0.0,
         preconditioner: Callable | None = None,
         outputs: Mapping[str, Callable] | None = None,
-        sparsity: Any = None,
+        sparsity: ArrayLike | Sparse | None = None,
     ) -> None:
         if spectrum not in ("none", "flow"):
             raise ValueError(f'spectrum = {spectrum!r} must be "none" or "flow"; for maps use MapProblem')
@@ -203,7 +205,9 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             return self.equations(u, p)[0]
         return self.functions.value(u, p)
 
-    def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, Any, np.ndarray]:
+    def equations(
+        self, u: np.ndarray, p: float
+    ) -> tuple[np.ndarray, np.ndarray | csc_array | Operator, np.ndarray]:
         """F, dF/du, dF/dp."""
         f, u = self.functions, readonly(u)
         if self.preconditioner is not None:
@@ -212,14 +216,15 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             return self.conditions.equations(u, p, f, self.values)
         return f.value(u, p), f.jacobian(u, p), f.derivative(u, p)
 
-    inverse: Callable | None = None
+    inverse: np.ndarray | Operator | None = None
+    reference: np.ndarray | csc_array | None = None
     mixed_rows = True
 
-    def preconditioner_at(self) -> Any:
+    def preconditioner_at(self) -> np.ndarray | Operator | None:
         """The user's approximation of the inverse of dF/du where the equations were evaluated last, or None."""
         return self.inverse
 
-    def raw_spectrum(self, work: DenseWork | SparseWork) -> np.ndarray:
+    def raw_spectrum(self, work: Linearised) -> np.ndarray:
         """Eigenvalues of dF/du, in units of the typical rate; those watched for branch points, where there is no spectrum."""
         if not self.n_multipliers:
             return np.zeros(0)
@@ -228,16 +233,18 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
                 if self.close:
                     return self.algebra.nearest_eigenvalues(self, work)
                 return ALL_ZERO - self.algebra.distance_to_singular(self, work)
-            if self.reference is None:
+            assert isinstance(work, DenseWork)
+            if not isinstance(self.reference, np.ndarray):
                 self.reference = reference_of(work.jacobian, *self.sizes())
             return watched(work.jacobian, self.reference)
         rate = 1.0 if self.scales is None else self.scales.rate
         return self._eigenvalues(work) / rate
 
-    def _eigenvalues(self, work: Any) -> np.ndarray:
-        if self.functions.structure != "dense":
+    def _eigenvalues(self, work: Linearised) -> np.ndarray:
+        if not isinstance(work, DenseWork):
             from .large import sparse
 
+            assert isinstance(work, sparse.SparseWork)
             return sparse.leading(self, work, self.n_multipliers, self.shift)
         if self.conditions is not None:
             return self.conditions.eigenvalues(work.jacobian)
@@ -245,15 +252,16 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
 
     def blur(self, work: DenseWork | SparseWork) -> float:
         """By how much rounding moves a raw eigenvalue."""
-        if self.functions.structure == "operator":
+        matrix = work.jacobian
+        if isinstance(matrix, Operator):
             return 0.0
-        rate, matrix = 1.0 if self.scales is None else self.scales.rate, work.jacobian
+        rate = 1.0 if self.scales is None else self.scales.rate
         return rounding(matrix[: self.node, : self.node], self.sizes()[1][: self.node]) / rate
 
     def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray:
         """Eigenvectors of dF/du as columns, in the order of eigenvalues that are known (inverse iteration where it is sparse)."""
         matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
-        if self.functions.structure == "dense":
+        if isinstance(matrix, np.ndarray):
             every = values if len(values) else np.linalg.eigvals(matrix)
             return vectors_of(matrix, every)
         from .large import sparse
@@ -290,7 +298,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
     def with_pieces(self, pieces: Pieces) -> AlgebraicProblem:
         """The same problem in another piece."""
         other = self.against(self.parameter)
-        other.pieces, other.functions = pieces, self.functions.of(*self._wrapped(pieces))
+        other.pieces, other.functions = pieces, self.functions_in(pieces)
         other.reference = None
         return other
 

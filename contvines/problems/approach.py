@@ -8,22 +8,30 @@ belongs, or nowhere. The step lengths are those of Deuflhard, Newton methods for
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 
-NEAR = 1e-3  # relative size of a correction from which on full steps are safe
-SHORTEST = 1e-6  # part of a step
+from .protocol import Equations
+from .settings import SCALES
+
 STEPS = 80
-FELT = 1e-4  # an unknown of typical size zero is moved by less than this part of its own size
 
 
-def approach(problem: Any, u: np.ndarray, p: float) -> np.ndarray | None:
+class RoughProblem(Equations, Protocol):
+    """A problem whose equations can be evaluated without their derivatives, and bend over known lengths (`contvines.problems.abilities.Rough`)."""
+
+    @property
+    def lengths(self) -> np.ndarray: ...
+    def residuals(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | None:
     """A point near the solution at this parameter value to which damped Newton's method leads; None where it leads nowhere.
 
     Parameters
     ----------
-    problem : problem made of Python callables
+    problem : RoughProblem
     u : ndarray, shape (N,)
     p : float
 
@@ -33,7 +41,7 @@ def approach(problem: Any, u: np.ndarray, p: float) -> np.ndarray | None:
         Of shape (N,), so near that full steps converge; `u` itself where they do from there.
     """
     work, kernels, n = problem.workspace(), problem.kernels, len(u)
-    border, scale = np.zeros(n + 1), np.maximum(problem.lengths, FELT * np.abs(u))
+    border, scale = np.zeros(n + 1), np.maximum(problem.lengths, SCALES.barely * np.abs(u))
     border[n] = 1.0
 
     def size(correction: np.ndarray) -> float:
@@ -56,14 +64,14 @@ def approach(problem: Any, u: np.ndarray, p: float) -> np.ndarray | None:
         length = size(step)
         if not length < math.inf:
             return None
-        if length < NEAR:
+        if length < SCALES.near:
             return u
         while True:
-            if damping < SHORTEST:
+            if damping < SCALES.shortest:
                 return None
             trial = u + damping * step
-            work.residual[:] = _value(problem, trial, p)
-            simplified = correction()[0] if np.isfinite(work.residual).all() else np.full(n, np.nan)
+            work[0][:] = _value(problem, trial, p)
+            simplified = correction()[0] if np.isfinite(work[0]).all() else np.full(n, np.nan)
             if size(simplified) < (1.0 - 0.25 * damping) * length and linearised(trial):
                 ahead, there = correction()
                 if there * sign >= 0.0:
@@ -80,7 +88,7 @@ def approach(problem: Any, u: np.ndarray, p: float) -> np.ndarray | None:
     return None
 
 
-def _value(problem: Any, u: np.ndarray, p: float) -> np.ndarray:
+def _value(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray:
     """F, or not a number where it cannot be evaluated."""
     with np.errstate(all="ignore"):
         try:

@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .settings import DERIVATIVES
+
 POINTS = 24  # on the line, each time it is looked at more closely
 ROUNDS = 7
 NOISY = 20.0  # times the noise, second differences say nothing
-CLEAR = 1e-3  # change of a slope, relative to what a row changes by, that makes a kink
 
 
 class Break(NamedTuple):
@@ -51,7 +52,7 @@ def find_break(
         k = int(np.argmax(second)) + 1
         step = float(t[1] - t[0])
         low, high = t[max(k - 2, 0)], t[min(k + 2, POINTS)]
-    if step < 1e-13 * max(abs(low), abs(high)):
+    if step < DERIVATIVES.roundoff * max(abs(low), abs(high)):
         return None
     left, right = values[max(k - 3, 0)], values[min(k + 3, POINTS)]
     if k < 4 or k > POINTS - 4:
@@ -60,8 +61,8 @@ def find_break(
     after = (right - values[k + 2]) / (t[min(k + 3, POINTS)] - t[k + 2])
     leap = np.abs(values[k + 2] - values[k - 2]) - 4.0 * step * np.maximum(np.abs(before), np.abs(after))
     row = int(np.argmax(leap))
-    if leap[row] > 1e-6:
+    if leap[row] > DERIVATIVES.leap:
         return Break("jump", float(t[k]), row)
     bend = np.abs(after - before)
     row = int(np.argmax(bend))
-    return Break("kink", float(t[k]), row) if bend[row] > CLEAR else None
+    return Break("kink", float(t[k]), row) if bend[row] > DERIVATIVES.kink else None

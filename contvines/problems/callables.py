@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from copy import copy
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from contvines.shared.floating_point import ROUNDED
 from contvines.shared.near_names import did_you_mean
 
 from . import dense
@@ -16,30 +18,28 @@ from .checks import disagreement, empty_row, refuse_derivatives
 from .derivatives import Differentiated
 from .equivariance import refuse_asymmetry
 from .extents import weighed
-from .functions import NotEvaluable
+from .functions import NotEvaluable, Operator
 from .nearness import side
 from .parameters import ParameterSet
-from .pieces import Pieces
+from .pieces import Pieced, Pieces
 from .protocol import ProblemDefaults
 from .scales import Scales
+from .settings import DERIVATIVES
 
 if TYPE_CHECKING:
     from types import ModuleType
 
+    from scipy.sparse import csc_array
+
     from .dense import DenseWork
+    from .images import Image
     from .large.sparse_work import SparseWork
     from .protocol import Kernels
 
-NOTICED = 1e-13  # noise of the unknowns below this is roundoff
-# relative accuracy of a value that is found to roundoff, for each unknown: brackets may be narrower than that
-ROUNDING = 64 * 2.0**-53
 TERMS = 62  # roundings of more unknowns than this cancel
-WORST = 1e-4  # more noise than this is not believed
-NEXT = 1e-3  # how far beyond the end of a branch given derivatives are looked at, too
-FELT = 1e-6  # more noise than this may be why a branch ends
 
 
-class CallableProblem(ProblemDefaults):
+class CallableProblem(ProblemDefaults, ABC):
     """A problem whose equations are Python callables.
 
     Attributes
@@ -73,20 +73,22 @@ class CallableProblem(ProblemDefaults):
     u0: np.ndarray
     given_scale: np.ndarray | None = None
     scales: Scales | None = None
-    reference: np.ndarray | None = None
+    reference: np.ndarray | csc_array | None = None
     many = False
     close = False
     trouble = ""
     unsolved = False
-    _side: tuple[Any, np.ndarray] | None = None
+    _side: tuple[Scales | None, np.ndarray] | None = None
 
     given: dict[str, Any]
     pieces: Pieces
-    generators: Any = ()
-    symmetric_for: Any = ()
+    generators: Sequence[tuple[str, Image]] = ()
+    symmetric_for: set[tuple[Hashable, ...]]
     mixed_rows = False
 
-    def _wrapped(self, pieces: Pieces) -> tuple[Any, Any, Any]:
+    def _wrapped(
+        self, pieces: Pieces
+    ) -> tuple[Callable, Callable | None, Callable | Mapping[str, Callable] | None]:
         """The equations and their given derivatives in a piece.
 
         Raises
@@ -107,7 +109,17 @@ class CallableProblem(ProblemDefaults):
                 if not callable(f) and (f is not None or key == "F"):
                     text = f"a {type(f).__name__}" if hasattr(f, "shape") or isinstance(f, list) else repr(f)
                     raise ValueError(f"{place} = {text} must be a function of (u, p)")
-        return tuple(pieces.wrap(self.given[key], key) for key in ("F", "jacobian", "derivative"))  # type: ignore[return-value]
+        jacobian, derivative = self.given["jacobian"], self.given["derivative"]
+        if isinstance(derivative, Mapping):
+            slopes = {name: pieces.wrap(f, "derivative") for name, f in derivative.items()}
+        else:
+            slopes = None if derivative is None else pieces.wrap(derivative, "derivative")
+        wrapped = None if jacobian is None else pieces.wrap(jacobian, "jacobian")
+        return pieces.wrap(self.given["F"], "F"), wrapped, slopes
+
+    def functions_in(self, pieces: Pieces) -> Differentiated:
+        """The equations with their derivatives in other pieces."""
+        return self.functions.of(*self._wrapped(pieces))
 
     def closer(self) -> Self:
         """The same problem, watched by its eigenvalues."""
@@ -151,12 +163,21 @@ class CallableProblem(ProblemDefaults):
         self.data = self
         return self
 
-    # ------------------------------------------------------------------ scales
-    node: int
-
+    # ------------------------------------------------------------------ the equations
+    @abstractmethod
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
         """F alone."""
-        raise TypeError("a problem made of callables says what its equations are")
+
+    @abstractmethod
+    def margins(self, u: np.ndarray, p: float) -> np.ndarray:
+        """Switches with the signs of the pieces: positive inside."""
+
+    @abstractmethod
+    def with_pieces(self, pieces: Pieces) -> Pieced:
+        """The same problem in other pieces."""
+
+    # ------------------------------------------------------------------ scales
+    node: int
 
     def amplitude(self, direction: np.ndarray) -> float:
         """Length of a direction as normal forms measure it: Euclidean, over the unknowns (over the first point of a cycle)."""
@@ -219,7 +240,8 @@ class CallableProblem(ProblemDefaults):
         self, work: DenseWork | SparseWork, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Lengths of unknowns of which nothing else is known, from a linearisation at (u, p); and which are known then."""
-        if self.functions.structure != "dense":
+        jacobian = work.jacobian
+        if not isinstance(jacobian, np.ndarray):
             return lengths, known
 
         def beside(v: np.ndarray) -> np.ndarray:
@@ -228,7 +250,7 @@ class CallableProblem(ProblemDefaults):
             except NotEvaluable:
                 return np.full(self.dimension, np.nan)
 
-        return weighed(beside, work.jacobian, lengths, known)
+        return weighed(beside, jacobian, lengths, known)
 
     def rates(self, work: DenseWork | SparseWork) -> list[float]:
         """Sizes of the eigenvalues of dF/du, where they are wanted and can be obtained cheaply."""
@@ -246,7 +268,9 @@ class CallableProblem(ProblemDefaults):
         work.residual[:] = np.tile(self.functions.noise, copies)
         self.kernels.bordered(self, work, border, 0.0, step, tangent)
         moved = float((np.abs(step[:n]) / scale).max())
-        return min(moved, WORST) if np.isfinite(moved) and moved > NOTICED else 0.0
+        return (
+            min(moved, DERIVATIVES.believed) if np.isfinite(moved) and moved > DERIVATIVES.roundoff else 0.0
+        )
 
     # ------------------------------------------------------------------ algebra
     @property
@@ -283,30 +307,34 @@ class CallableProblem(ProblemDefaults):
 
     def uncertainty(self) -> float:
         """Relative accuracy of what was evaluated last: of derivatives by differences, of noisy equations, and of rounding."""
-        errors, least = self.functions.errors, max(self.noise, ROUNDING * (2 + min(self.dimension, TERMS)))
+        errors, least = (
+            self.functions.errors,
+            max(self.noise, 0.5 * ROUNDED * (2 + min(self.dimension, TERMS))),
+        )
         if self.scales is None or not errors.any():
             return least
         scale = self.scales.unknowns[: len(errors)]
         return max(float((errors * scale).max() / self.scales.rows.max()), least)
 
-    def doubts(self, work: DenseWork | SparseWork, rounding: float) -> Any:
+    def doubts(self, work: DenseWork | SparseWork, rounding: float) -> np.ndarray | csc_array | None:
         """Bounds of the errors of the entries of (F_u, F_p), shape (N, N + 1): rounding, and what differences are known to.
 
         A sparse matrix of a sparse problem, None of one without a matrix.
         """
-        if self.functions.structure == "operator":
+        matrix = work.jacobian
+        if isinstance(matrix, Operator):
             return None
         n, rows = self.dimension, self.sizes()[0]
         errors = np.resize(self.functions.errors, n)
-        if self.functions.structure == "sparse":
+        if not isinstance(matrix, np.ndarray):
             from scipy.sparse import csc_array, diags_array, hstack
 
-            inner = rounding * abs(work.jacobian)
+            inner = rounding * abs(matrix)
             if errors.any():
                 ones = (inner != 0.0).astype(float)
                 inner = inner + diags_array(rows / rows.max()) @ ones @ diags_array(errors)
-            return hstack([inner, rounding * csc_array(np.abs(work.derivative)[:, None])])
-        found = rounding * np.abs(np.column_stack([work.jacobian, work.derivative]))
+            return csc_array(hstack([inner, rounding * csc_array(np.abs(work.derivative)[:, None])]))
+        found = rounding * np.abs(np.column_stack([matrix, work.derivative]))
         found[:, :n] += rows[:, None] / rows.max() * errors
         return found
 
@@ -322,7 +350,7 @@ class CallableProblem(ProblemDefaults):
         """
         if not evaluable:
             return self.trouble
-        for beyond in (0.0, NEXT):
+        for beyond in (0.0, DERIVATIVES.aside):
             wrong = self.check(u + beyond * tangent[:-1], p + beyond * float(tangent[-1]))
             if wrong is not None:
                 return wrong
@@ -336,7 +364,7 @@ class CallableProblem(ProblemDefaults):
             except NotEvaluable:
                 return np.full(self.dimension, np.nan)
 
-        for reach in (0.05, 2e-3):
+        for reach in (0.05, 0.002):
             with np.errstate(all="ignore"):
                 noise = np.zeros(self.dimension)
                 noise[:] = np.resize(self.functions.noise, self.dimension)
@@ -347,11 +375,11 @@ class CallableProblem(ProblemDefaults):
                 if found.kind == "jump":
                     return f"the equations jump {where}"
                 return f"the equations have a kink {where}; switches= would select their pieces"
-        if self.noise > FELT:
+        if self.noise > DERIVATIVES.felt:
             j = int(np.argmax(self.functions.noise))
             return (
                 f"{self.functions.name} has noise of {self.functions.noise[j]:.1g} in row {j}, which moves the solution by "
-                f"{self.noise:.1g} of its size{' or more' if self.noise >= WORST else ''}: it may be too much for a branch to be followed"
+                f"{self.noise:.1g} of its size{' or more' if self.noise >= DERIVATIVES.believed else ''}: it may be too much for a branch to be followed"
             )
         return ""
 

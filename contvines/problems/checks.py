@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from math import prod
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .derivatives import AGREE, Differentiated
+from .derivatives import Differentiated
 from .differences import along
-from .functions import NotEvaluable, as_matrix
+from .functions import NotEvaluable, Operator, Sparse, as_matrix
 from .scales import Scales
+from .settings import DERIVATIVES
 
-ROUNDING = 1e-12  # part of a row's size that is rounding, where the derivatives themselves vanish, as at branch points
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 
 def disagreement(
@@ -61,7 +63,7 @@ def empty_row(functions: Differentiated, u: np.ndarray, p: float) -> str | None:
     """A sentence on an entry of f that is zero at the start and all round it, and so is no equation; None if there is none."""
     draw = np.random.default_rng(8)
     zero, name = functions.value(u, p) == 0.0, functions.parameters.varying
-    for reach in (1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0):  # far, too: an equation may be flat where it starts
+    for reach in (10.0**k for k in range(-3, 3)):  # far, too: an equation may be flat where it starts
         step, shift = (
             reach * functions.lengths * draw.uniform(-1.0, 1.0, len(u)),
             reach * draw.uniform(-1.0, 1.0),
@@ -88,11 +90,10 @@ def _wrong_derivative(
     if functions.given_slope is None:
         return None
     n, name = len(u), functions.parameters.varying
-    given = functions.given_slope.raw(u, p)
-    shape = tuple(getattr(given, "shape", ()))
-    if shape != (n, n) or n == 1:
-        given = functions.given_slope.flat(given, u, p)
-        shape = given.shape
+    raw = functions.given_slope.raw(u, p)
+    matrix = isinstance(raw, np.ndarray | Sparse | Operator) and n > 1 and raw.shape == (n, n)
+    given = np.zeros(0) if matrix else functions.given_slope.flat(raw, u, p)
+    shape = (n, n) if matrix else given.shape
     if shape != (n,):
         hint = (
             f"; the Jacobian by the unknowns is given as jacobian=, the derivative by {name} as derivative="
@@ -101,11 +102,13 @@ def _wrong_derivative(
     line = functions.quietly(lambda t: functions.value(u, p + t), n)
     near = along(line, functions.parameter_length(u, p), functions.noise)
     gap = (
-        np.abs(given - near.value) - AGREE * np.maximum(np.abs(given), np.abs(near.value)) - 10.0 * near.error
+        np.abs(given - near.value)
+        - DERIVATIVES.agree * np.maximum(np.abs(given), np.abs(near.value))
+        - 10.0 * near.error
     )
-    gap -= 1e-9 * np.abs(near.value).max()
+    gap -= DERIVATIVES.faint * np.abs(near.value).max()
     if scales is not None:
-        gap -= ROUNDING * scales.rows / scales.parameter
+        gap -= DERIVATIVES.rounded * scales.rows / scales.parameter
     if not np.isfinite(near.value).all() or not (gap > 0.0).any():
         return None
     i = int(np.argmax(gap))
@@ -129,12 +132,12 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
         return None
     product = matrix @ direction
     rows = np.abs(near.value)
-    if hasattr(matrix, "toarray") or isinstance(matrix, np.ndarray):
+    if not isinstance(matrix, Operator):
         rows = np.maximum(rows, np.asarray(abs(matrix) @ np.abs(direction)).reshape(-1))
-    gap = np.abs(product - near.value) - AGREE * rows - 10.0 * near.error
+    gap = np.abs(product - near.value) - DERIVATIVES.agree * rows - 10.0 * near.error
     if scales is not None:
-        gap -= ROUNDING * scales.rows * float(np.abs(direction / scales.unknowns).max())
-    if np.isfinite(product).all() and not (gap > 1e-9 * rows.max()).any():
+        gap -= DERIVATIVES.rounded * scales.rows * float(np.abs(direction / scales.unknowns).max())
+    if np.isfinite(product).all() and not (gap > DERIVATIVES.faint * rows.max()).any():
         return None
     i = int(np.argmax(np.where(np.isfinite(gap), gap, np.inf)))
     where = f"at {functions.parameters.varying} = {p:.10g}"
@@ -147,7 +150,7 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
     turned = ""
     if (
         isinstance(matrix, np.ndarray)
-        and (np.abs(matrix.T @ direction - near.value) <= AGREE * rows + 10.0 * near.error).all()
+        and (np.abs(matrix.T @ direction - near.value) <= DERIVATIVES.agree * rows + 10.0 * near.error).all()
     ):
         turned = "; it seems to be transposed"
     return (
@@ -157,16 +160,15 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
 
 
 def _wrong_entry(
-    functions: Differentiated, matrix: Any, u: np.ndarray, p: float, i: int
+    functions: Differentiated, matrix: np.ndarray | csc_array | Operator, u: np.ndarray, p: float, i: int
 ) -> tuple[int, float, float] | None:
     """Of a row the entry that is most wrong: its column, the given number and the one by differences."""
     n = len(u)
-    if isinstance(matrix, np.ndarray):
-        row = matrix[i]
-    elif hasattr(matrix, "tocsr"):
-        row = np.asarray(matrix.tocsr()[[i]].todense()).reshape(-1)
-    else:
+    if isinstance(matrix, Operator):
         return None
+    row = (
+        matrix[i] if isinstance(matrix, np.ndarray) else np.asarray(matrix.tocsr()[[i]].todense()).reshape(-1)
+    )
     columns = range(n) if n <= 400 else [int(j) for j in np.flatnonzero(row)]
     worst, result = 0.0, None
     for j in columns:

@@ -45,7 +45,7 @@ class Conditions:
             return np.array([np.asarray(g(u, p)).reshape(-1)[0] for g in given])
 
         self.functions = functions.of(together, None, None, "conditions", len(given))
-        gradient = self.functions.jacobian(u, functions.parameters.start)
+        gradient = self.functions.dense_jacobian(u, functions.parameters.start)
         sizes = np.linalg.norm(gradient, axis=1)
         if not (np.isfinite(sizes).all() and (sizes > 0.0).all()):
             raise ValueError(
@@ -64,9 +64,9 @@ class Conditions:
         n, own, amounts = self.node, u[: self.node], u[self.node :]
         self.functions.parameters = values
         jacobian = np.zeros((n + self.count, n + self.count))
-        jacobian[:n, :n] = functions.jacobian(own, p)
+        jacobian[:n, :n] = functions.dense_jacobian(own, p)
         jacobian[:n, n:] = self.directions
-        jacobian[n:, :n] = self.functions.jacobian(own, p)
+        jacobian[n:, :n] = self.functions.dense_jacobian(own, p)
         return (
             np.append(functions.value(own, p) + self.directions @ amounts, self.functions.value(own, p)),
             jacobian,

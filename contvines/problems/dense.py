@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
+
+from contvines.shared.floating_point import LEAST
 
 from .abilities import Nearing
 from .blas import dot, position
@@ -19,6 +22,7 @@ from .spectra import reference_of, watched
 if TYPE_CHECKING:
     from .interpreted import Equations
     from .protocol import Problem
+    from .scales import Scales
 
 # solves and hands out the factors (scipy's getrs starts threads for the smallest matrices); 1 / largest entry of each row
 FACTORISE_AND_SOLVE, ROWS = get_lapack_funcs(("gesv", "geequ"), dtype=np.float64)
@@ -29,7 +33,7 @@ class Units:
     """What the entries of the table of a workspace are multiplied with, made anew when the scales of a problem change."""
 
     def __init__(self) -> None:
-        self.scales: Any = self
+        self.scales: Scales | Units | None = self  # none yet
         self.table = self.columns = self.negative = self.rows = np.ones(0)
 
     def take(self, data: Equations, work: DenseWork) -> None:
@@ -45,7 +49,8 @@ class Units:
             work.table[:, -1] = data.side
 
 
-class DenseWork(NamedTuple):
+@dataclass(eq=False, slots=True)
+class DenseWork:
     """F, F_u, F_p, and room for the bordered matrix with its right-hand sides.
 
     F_u, F_p and F are parts of ``table``, whose last row is zero: (F_u, F_p | F, 0). A third right-hand side is watched where it is
@@ -73,6 +78,9 @@ class DenseWork(NamedTuple):
     ones: np.ndarray
     parts: np.ndarray
     units: Units
+
+    def __getitem__(self, i: int) -> np.ndarray:
+        return (self.residual, self.jacobian, self.derivative)[i]
 
 
 def dense_workspace(n: int, watched: bool = False) -> DenseWork:
@@ -166,7 +174,7 @@ def _least(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:
     if not np.isfinite(matrix).all():
         return np.full(sides.shape, np.nan)
     left, values, right = np.linalg.svd(matrix)
-    values = np.maximum(values, 1e-18 * max(values[0], 1e-200))
+    values = np.maximum(values, LEAST * values[0])
     with np.errstate(all="ignore"):
         return right.T @ ((left.T @ sides) / values[:, None])
 
@@ -195,7 +203,7 @@ def distance_to_singular(data: Equations, work: DenseWork) -> float:
 
 def nearest_eigenvalues(data: Equations, work: DenseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
-    if data.reference is None:
+    if not isinstance(data.reference, np.ndarray):
         rows, units = data.sizes()
         data.reference = reference_of(work.jacobian, rows, units)
     return nearest(watched(work.jacobian, data.reference))
@@ -206,7 +214,13 @@ def matrix(data: Equations, work: DenseWork) -> np.ndarray:
     return work.jacobian.copy()
 
 
-def flip(data: Any, work: DenseWork, sign: float) -> None:
+class Cyclic(Protocol):
+    """What `flip` reads of the problem of the cycles of a map."""
+
+    def turn_closure(self, jacobian: np.ndarray, sign: float) -> None: ...
+
+
+def flip(data: Cyclic, work: DenseWork, sign: float) -> None:
     """Turn the closure of a cycle round (sign = -1), and back (sign = 1); see the protocol."""
     data.turn_closure(work.jacobian, sign)
 

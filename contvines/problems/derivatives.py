@@ -5,25 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from copy import copy
 from time import thread_time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
+from contvines.shared.floating_point import COMPLEX_STEP
+
 from .differences import Difference, along, bend, noise_of, roughness
 from .extents import measured, of_parameter
-from .functions import NotEvaluable, UserFunction, as_matrix
+from .functions import NotEvaluable, Operator, Sparse, UserFunction, as_matrix
 from .parameters import ParameterSet
+from .settings import DERIVATIVES
 
 if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
     from .large.colouring import Colouring
 
-COMPLEX_STEP = 1e-40
-AGREE = 1e-6  # relative difference at which the complex step counts as wrong
-SMOOTH = 1e-12  # noise below this part of a function's change is roundoff
-STEEP = 1e-4  # ... what seems to be a step above this part is a steep piece of it
 BESIDE = (-0.37, 0.41)  # lengths aside where noise is there as well
-BRIEF = 1e-4  # seconds of a call that is not measured twice
 
 
 class Differentiated:
@@ -87,7 +87,7 @@ class Differentiated:
         begin = thread_time()
         value = self.checked_value(u, p)
         cost = thread_time() - begin
-        if cost > BRIEF:  # the first call may do more than the others
+        if cost > DERIVATIVES.brief:  # the first call may do more than the others
             begin = thread_time()
             value = self.checked_value(u, p)
             cost = min(cost, thread_time() - begin)
@@ -124,7 +124,12 @@ class Differentiated:
         return other
 
     def of(
-        self, f: Callable, jacobian: Callable | None, derivative: Any, name: str | None = None, rows: int = 0
+        self,
+        f: Callable,
+        jacobian: Callable | None,
+        derivative: Callable | Mapping[str, Callable] | None,
+        name: str | None = None,
+        rows: int = 0,
     ) -> Differentiated:
         """The same measurements for a similar callable.
 
@@ -150,13 +155,12 @@ class Differentiated:
         """
         if self.given_matrix is not None:
             matrix = as_matrix(self.given_matrix.raw(u, self.parameters.start), len(u))
-            self.structure = (
-                "sparse" if hasattr(matrix, "tocsc") else "operator" if hasattr(matrix, "matvec") else "dense"
-            )
-            if self.structure == "operator" and not preconditioned:
+            self.structure = "dense" if isinstance(matrix, np.ndarray) else "sparse"
+            if isinstance(matrix, Operator):
                 from .large.written_out import worth_it
 
-                self.structure = "sparse" if worth_it(matrix, len(u)) else "operator"
+                written = not preconditioned and worth_it(matrix, len(u))
+                self.structure = "sparse" if written else "operator"
         elif self.sparsity is not None:
             self.structure = "sparse"
         return self.structure
@@ -171,9 +175,10 @@ class Differentiated:
                 value = self._value.flat(given, u, p)
         except NotEvaluable as error:
             raise ValueError(f"{error}, {where}") from error
-        if np.ndim(given) > 1:
+        shape = given.shape if isinstance(given, Sparse | Operator) else np.shape(given)
+        if shape is not None and len(shape) > 1:
             raise ValueError(
-                f"{self.name} returns numbers in shape {np.shape(given)}; they are needed in a row, of shape ({len(u)},)"
+                f"{self.name} returns numbers in shape {shape}; they are needed in a row, of shape ({len(u)},)"
             )
         if len(value) != len(u):
             raise ValueError(
@@ -190,14 +195,13 @@ class Differentiated:
         """f(u, p) as float array."""
         return self._value(u, p)
 
-    def jacobian(self, u: np.ndarray, p: float) -> Any:
+    def jacobian(self, u: np.ndarray, p: float) -> np.ndarray | csc_array | Operator:
         """df/du, shape (n, n), as an array, or as it was given if that is sparse or a LinearOperator."""
         n = len(u)
         if self.given_matrix is not None:
             self.errors = self.exact
             given = as_matrix(self.given_matrix.raw(u, p), n)
-            written = self.structure == "sparse" and hasattr(given, "matvec")
-            if written:
+            if self.structure == "sparse" and isinstance(given, Operator):
                 from .large.written_out import written_out
 
                 return written_out(given, n)
@@ -217,7 +221,13 @@ class Differentiated:
         self.errors = worst
         return result
 
-    def _coloured(self, sparsity: Colouring, u: np.ndarray, p: float) -> Any:
+    def dense_jacobian(self, u: np.ndarray, p: float) -> np.ndarray:
+        """df/du where it is an array."""
+        found = self.jacobian(u, p)
+        assert isinstance(found, np.ndarray)
+        return found
+
+    def _coloured(self, sparsity: Colouring, u: np.ndarray, p: float) -> csc_array:
         """The sparse Jacobian, with as many differences as there are groups of columns."""
         n = len(u)
         worst = np.zeros(n)
@@ -305,15 +315,17 @@ class Differentiated:
         direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))
         line = self.quietly(lambda t: self._value(u + t * direction, p), len(u))
         with np.errstate(all="ignore"):
-            noise = noise_of(line, 1e-6)
+            noise = noise_of(line, DERIVATIVES.spacing)
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
-            floor = SMOOTH * np.maximum(change, 1e-3 * change.max(initial=0.0))
+            floor = DERIVATIVES.rounded * np.maximum(change, 0.001 * change.max(initial=0.0))
             if (noise > floor).any():  # that of one place alone, as at the root of |u|, is a singularity
-                beside = [noise_of(lambda t, s=s: line(s + t), 1e-6) for s in BESIDE]
+                beside = [noise_of(lambda t, s=s: line(s + t), DERIVATIVES.spacing) for s in BESIDE]
                 noise = np.where((noise > floor) & (np.max(beside, axis=0) <= floor), 0.0, noise)
             # between the stairs of a staircase neighbouring samples tell nothing
             steps = roughness(line)
-            noise = np.where((noise <= floor) & (steps > floor) & (steps < STEEP * change), steps, noise)
+            noise = np.where(
+                (noise <= floor) & (steps > floor) & (steps < DERIVATIVES.steep * change), steps, noise
+            )
             rough = noise > floor
         if np.isfinite(noise).all() and np.isfinite(change).all():
             self.grain, self.noise = noise, np.where(rough, noise, 0.0)
@@ -321,7 +333,7 @@ class Differentiated:
     def _complex_step_works(self, u: np.ndarray, p: float) -> bool:
         """Whether imaginary parts are derivatives: compared with differences along a direction beside the start."""
         rng = np.random.default_rng(0)
-        u = u + 1e-3 * self.lengths * rng.standard_normal(len(u))
+        u = u + DERIVATIVES.aside * self.lengths * rng.standard_normal(len(u))
         direction = self.lengths * rng.standard_normal(len(u))
         slope = 0.7 * self.parameter_length(u, p)
         try:
@@ -336,5 +348,5 @@ class Differentiated:
             return False
         if len(exact) != len(u) or not np.isfinite(exact).all():
             return False
-        rows = np.abs(near.value) + 1e-9 * np.abs(near.value).max(initial=0.0)
-        return bool(np.all(np.abs(exact - near.value) <= AGREE * rows + 10.0 * near.error))
+        rows = np.abs(near.value) + DERIVATIVES.faint * np.abs(near.value).max(initial=0.0)
+        return bool(np.all(np.abs(exact - near.value) <= DERIVATIVES.agree * rows + 10.0 * near.error))

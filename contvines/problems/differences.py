@@ -8,12 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-STEP = 6e-3  # part of a length: roundoff eps/STEP and truncation STEP^6/140 meet near 1e-14
+from contvines.shared.floating_point import EPSILON
+
+from .settings import DERIVATIVES
+
+STEP = 0.006  # part of a length: roundoff eps/STEP and truncation STEP^6/140 meet near 1e-14
 # sixth-order central difference: weights of f(x + k h) - f(x - k h), Fornberg, Math. Comp. 51 (1988) 699, table 1
 SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0)
 FOURTH = (2.0 / 3.0, -1.0 / 12.0)
-EPS = float(np.finfo(float).eps)
-GOOD = 1e-13  # relative error at which a difference is taken without trying a smaller step
 FACTOR = 64.0  # between the lengths that are tried by `bend`
 ASIDE = 1.37  # ratio of two lengths at which slopes are compared
 HALVINGS = 5  # of the factor between two of them, to find where f has bent
@@ -22,7 +24,7 @@ CLOSER = 20  # halvings after which a continuous function has hardly changed any
 REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
 
 # stretches over which samples are compared with polynomials, as parts of a length; samples on each; degree
-STRETCHES, SAMPLES, DEGREE = (0.1, 0.02, 4e-3, 8e-4), 20, 8
+STRETCHES, SAMPLES, DEGREE = (0.1, 0.02, 0.004, 0.0008), 20, 8
 
 Line = Callable[[float], np.ndarray]
 
@@ -55,7 +57,7 @@ def central(f: Line, h: float, noise: float | np.ndarray = 0.0) -> Difference:
         sixth = (SIXTH[0] * odd[0] + SIXTH[1] * odd[1] + SIXTH[2] * odd[2]) / h
         fourth = (FOURTH[0] * odd[0] + FOURTH[1] * odd[1]) / h
         size = np.maximum(np.abs(ahead[0]), np.abs(back[0]))
-        truncation, roundoff = 0.01 * np.abs(sixth - fourth), (noise + EPS * size) / h
+        truncation, roundoff = 0.01 * np.abs(sixth - fourth), (noise + EPSILON * size) / h
     settled = bool(truncation.max(initial=0.0) <= roundoff.max(initial=0.0))
     return Difference(sixth, truncation + roundoff, settled)
 
@@ -79,7 +81,7 @@ def along(f: Line, length: float, noise: float | np.ndarray = 0.0) -> Difference
     """
     found = best = central(f, STEP * length, noise)
     least = _worst(best)
-    if _relative(best) <= GOOD or (best.settled and not np.any(np.asarray(noise) > 0.0)):
+    if _relative(best) <= DERIVATIVES.roundoff or (best.settled and not np.any(np.asarray(noise) > 0.0)):
         return best
     rough = bool(np.any(np.asarray(noise) > 0.0))
     h, worse = (16.0 if rough else 0.125) * STEP * length, 0
@@ -90,7 +92,7 @@ def along(f: Line, length: float, noise: float | np.ndarray = 0.0) -> Difference
             best, least, worse = found, error, 0
         elif np.isfinite(error):
             worse += 1
-        if _relative(best) <= GOOD or worse == 3 or found.settled:
+        if _relative(best) <= DERIVATIVES.roundoff or worse == 3 or found.settled:
             break
         h *= 0.125
     return best
@@ -130,14 +132,14 @@ def bend(f: Line, guess: float, enough: int = REACH, noise: float | np.ndarray =
     with np.errstate(all="ignore"):
         here = f(0.0)
         felt = 30.0 * np.broadcast_to(noise, here.shape)
-        floor = 1e3 * EPS * np.abs(here) + felt
+        floor = DERIVATIVES.cancelled * EPSILON * np.abs(here) + felt
         lengths = guess * FACTOR ** np.arange(-enough, enough + 1.0)
         odd = np.array([0.5 * (f(t) - f(-t)) for t in lengths])
         beside = np.array([0.5 * (f(ASIDE * t) - f(-ASIDE * t)) for t in lengths]) / (
             ASIDE * lengths[:, None]
         )
         even = np.array([0.5 * (f(t) + f(-t)) - here for t in lengths])
-        seen = np.abs(odd) > floor + 1e3 * EPS * np.fmin.reduce(np.abs(odd), axis=0)
+        seen = np.abs(odd) > floor + DERIVATIVES.cancelled * EPSILON * np.fmin.reduce(np.abs(odd), axis=0)
         slope = odd / lengths[:, None]
         # where rounding makes stairs of f, or it is a power, it is not linear
         seen &= np.abs(slope - beside) <= 0.05 * np.abs(slope)
@@ -231,7 +233,7 @@ def noise_of(f: Line, spacing: float, tries: int = 5) -> np.ndarray:
     before, _ = _table(f, spacing)
     found, falling = before, np.ones(before.shape, dtype=bool)
     for _ in range(tries):
-        spacing *= 1e-3
+        spacing *= 0.001
         here, still = _table(f, spacing)
         falling &= ~still  # between two stairs, or two numbers of the machine, there is nothing to be seen
         less = here < 0.03 * before
@@ -321,11 +323,11 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float, enough: int 
     with np.errstate(all="ignore"):
         here, there = f(0.0, 0.0), f(0.0, 1.0)
         direct = np.abs(there - here)
-        plain = direct > 1e3 * EPS * np.maximum(np.abs(here), np.abs(there))
+        plain = direct > DERIVATIVES.cancelled * EPSILON * np.maximum(np.abs(here), np.abs(there))
 
         def both(t: float) -> tuple[np.ndarray, np.ndarray]:
             low, high = f(t, 0.0), f(t, 1.0)
-            floor = 1e6 * EPS * np.max([np.abs(low), np.abs(high), direct], axis=0)
+            floor = DERIVATIVES.mixed * EPSILON * np.max([np.abs(low), np.abs(high), direct], axis=0)
             return np.abs((high - low) - (there - here)), floor
 
         for t in guess * FACTOR ** np.arange(-enough, enough + 1.0):

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from .functions import NotEvaluable
 from .images import Image, linear_part
+from .settings import IDENTITY
 
-REACHES = (1e-2, 0.1, 0.4, 1.0)  # of the states tried, in lengths over which the equations bend
+if TYPE_CHECKING:
+    from .derivatives import Differentiated
+    from .parameters import ParameterSet
+    from .pieces import Pieces
+
+REACHES = (0.01, 0.1, 0.4, 1.0)  # of the states tried, in lengths over which the equations bend
 ALIKE = 2  # in so many more states all unknowns move alike: random ones of a field are all stiffness
-AGREE = 1e-7  # disagreement, relative to a row, that is no matter
-ROUNDING = 1e-13  # ... relative to its largest size at the states tried: large terms may cancel
-NOISY = 30.0  # ... in units of the noise of a row
+NOISY = 30.0  # disagreement in units of the noise of a row that is no matter
 MIXED = 60  # unknowns up to which any constant matrix may stand between the rows of a state and of its image
 MORE = 6  # states more than such a matrix needs, which try it
 
@@ -36,7 +40,31 @@ class Asymmetry(NamedTuple):
     p: float
 
 
-def refuse_asymmetry(problem: Any) -> None:
+class Symmetrical(Protocol):
+    """A problem whose images are said to be symmetries of it."""
+
+    @property
+    def values(self) -> ParameterSet: ...
+    @property
+    def functions(self) -> Differentiated: ...
+    @property
+    def pieces(self) -> Pieces: ...
+    @property
+    def generators(self) -> Sequence[tuple[str, Image]]: ...
+    @property
+    def symmetric_for(self) -> set[tuple[Hashable, ...]]: ...
+    @property
+    def mixed_rows(self) -> bool: ...
+    @property
+    def node(self) -> int: ...
+    @property
+    def u0(self) -> np.ndarray: ...
+    @property
+    def p0(self) -> float: ...
+    def functions_in(self, pieces: Pieces) -> Differentiated: ...
+
+
+def refuse_asymmetry(problem: Symmetrical) -> None:
     """Refuse a mirror or a symmetry of which the equations know nothing, once for each choice of parameters.
 
     Parameters
@@ -102,31 +130,48 @@ def asymmetry(
     states, n = _states(*start, *lengths), len(start[0])
     wanted = [next(states) for _ in range(len(REACHES) + ALIKE)]
 
-    def seen(u: np.ndarray, p: float) -> tuple[np.ndarray, float, Any, Any]:
-        return u, p, _finite(values, u, p), _finite(values, image(u), p)
-
-    pairs = [seen(u, p) for u, p in wanted]
-    tried = [pair for pair in pairs if pair[2] is not None and pair[3] is not None]
-    lost = [pair for pair in pairs if (pair[2] is None) != (pair[3] is None)]
+    tried, lost = _tried(values, image, wanted)
     if len(lost) > len(tried):
-        return Asymmetry(-1, np.nan, np.nan, np.nan, *lost[0][:2])
+        return Asymmetry(-1, np.nan, np.nan, np.nan, *lost[0])
     if not tried:
         return None
     worst = _worst(tried, linear_part(image, n), noise)
     if worst is None or not (mixed and n <= MIXED):
         return worst
-    pairs = [seen(u, p) for u, p in (next(states) for _ in range(n + MORE))]
-    tried += [pair for pair in pairs if pair[2] is not None and pair[3] is not None]
+    tried += _tried(values, image, [next(states) for _ in range(n + MORE)])[0]
     return None if len(tried) > n and _constant(tried, noise) else worst
 
 
-def _in_pieces(problem: Any) -> Values:
+class Pair(NamedTuple):
+    """F at a state and at its image."""
+
+    u: np.ndarray
+    p: float
+    here: np.ndarray
+    there: np.ndarray
+
+
+def _tried(
+    values: Values, image: Image, states: Sequence[tuple[np.ndarray, float]]
+) -> tuple[list[Pair], list[tuple[np.ndarray, float]]]:
+    """F at states and at their images, and the states at which only one of both can be evaluated."""
+    tried, lost = [], []
+    for u, p in states:
+        here, there = _finite(values, u, p), _finite(values, image(u), p)
+        if here is not None and there is not None:
+            tried.append(Pair(u, p, here, there))
+        elif here is not None or there is not None:
+            lost.append((u, p))
+    return tried, lost
+
+
+def _in_pieces(problem: Symmetrical) -> Values:
     """The equations, each state in its own piece."""
     pieces = problem.pieces
     if not pieces.count:
         return problem.functions.value
     pieces = pieces.repeated(1, 1)
-    functions = problem.functions.of(*problem._wrapped(pieces))
+    functions = problem.functions_in(pieces)
 
     def value(u: np.ndarray, p: float) -> np.ndarray:
         pieces.choose(u, p)
@@ -157,27 +202,27 @@ def _finite(values: Values, u: np.ndarray, p: float) -> np.ndarray | None:
     return found if np.isfinite(found).all() else None
 
 
-def _worst(tried: list[Any], turn: Image, noise: np.ndarray) -> Asymmetry | None:
+def _worst(tried: list[Pair], turn: Image, noise: np.ndarray) -> Asymmetry | None:
     """The largest disagreement with the image of F."""
-    expected = [turn(here) for _, _, here, _ in tried]
+    expected = [turn(pair.here) for pair in tried]
     sizes = [
-        np.maximum(np.abs(there), np.abs(other)) for (*_, there), other in zip(tried, expected, strict=True)
+        np.maximum(np.abs(pair.there), np.abs(other)) for pair, other in zip(tried, expected, strict=True)
     ]
-    allowed = ROUNDING * np.max(sizes, axis=0) + NOISY * (noise + np.abs(turn(noise)))
+    allowed = IDENTITY.cancelled * np.max(sizes, axis=0) + NOISY * (noise + np.abs(turn(noise)))
     worst = None
     for (u, p, _, there), other, size in zip(tried, expected, sizes, strict=True):
         gap = np.abs(there - other)
         with np.errstate(all="ignore"):
-            relative = np.where(gap > AGREE * size + allowed, gap / size, 0.0)
+            relative = np.where(gap > IDENTITY.same * size + allowed, gap / size, 0.0)
         row = int(np.argmax(relative))
         if relative[row] > (0.0 if worst is None else worst.relative):
             worst = Asymmetry(row, float(there[row]), float(other[row]), float(relative[row]), u, p)
     return worst
 
 
-def _constant(tried: list[Any], noise: np.ndarray) -> bool:
+def _constant(tried: list[Pair], noise: np.ndarray) -> bool:
     """Whether one constant matrix makes F at the images from F at the states."""
-    here, there = (np.array([pair[side] for pair in tried]) for side in (2, 3))
+    here, there = np.array([pair.here for pair in tried]), np.array([pair.there for pair in tried])
     sizes = np.maximum(np.abs(here).max(axis=0), np.abs(there).max(axis=0))
     sizes[sizes == 0.0] = 1.0
     here, there = here / sizes, there / sizes
@@ -185,5 +230,5 @@ def _constant(tried: list[Any], noise: np.ndarray) -> bool:
     weights[weights == 0.0] = 1.0  # near states are small, and tell as much
     matrix = np.linalg.lstsq(here / weights[:, None], there / weights[:, None], rcond=None)[0]
     mixing = 1.0 + np.abs(matrix).sum(axis=0)
-    allowed = AGREE * mixing * weights[:, None] + NOISY * mixing * float((noise / sizes).max())
+    allowed = IDENTITY.same * mixing * weights[:, None] + NOISY * mixing * float((noise / sizes).max())
     return bool((np.abs(here @ matrix - there) <= allowed).all())

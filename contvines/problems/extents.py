@@ -7,14 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .differences import EPS, FACTOR, HALVINGS, REACH, bend, coupling
+from contvines.shared.floating_point import ROUNDED
+
+from .differences import FACTOR, HALVINGS, REACH, bend, coupling
 
 EACH = 64  # up to so many unknowns each one's length is measured; of more, one for all
 PAIRS = 12  # up to so many, couplings between two of them are looked at
 FEW = 2  # lengths tried on either side where the function is slow
-ROUNDING = 64 * EPS  # of what others change in an equation: less is not felt
 BESIDE = 2.0**-17  # part of the parameter by which it is changed to see its terms
-HUGE = 20  # times 1 / `ROUNDING` in a row: from the smallest number to the largest
+HUGE = 20  # times 1 / `ROUNDED` in a row: from the smallest number to the largest
 PATIENCE = 0.5  # seconds that measuring lengths may take
 
 Values = Callable[[np.ndarray], np.ndarray]
@@ -115,9 +116,9 @@ def of_rounding(f: Values, u: np.ndarray, terms: float | np.ndarray = 0.0) -> np
 
         # zero may be another solution: twice the unknown is asked for as well
         changes = np.array([np.maximum(change(j, 0.0), change(j, 2.0)) for j in range(len(u))])
-        floor = ROUNDING * np.maximum(changes.max(axis=0), terms)
+        floor = ROUNDED * np.maximum(changes.max(axis=0), terms)
         for j in np.flatnonzero((u != 0.0) & (changes <= floor).all(axis=1)):
-            found[j] = any((change(int(j), ROUNDING**-k) > floor).any() for k in range(1, HUGE))
+            found[j] = any((change(int(j), ROUNDED**-k) > floor).any() for k in range(1, HUGE))
     return found
 
 

@@ -3,13 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
 from .parameters import ParameterSet
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from scipy.sparse import csc_array
+
 FLOAT = np.dtype(np.float64)
+
+
+@runtime_checkable
+class Sparse(Protocol):
+    """A matrix of scipy.sparse, in any format."""
+
+    @property
+    def shape(self) -> tuple[int, ...] | None: ...
+    def tocsc(self) -> csc_array: ...
+    def toarray(self) -> np.ndarray: ...
+
+
+@runtime_checkable
+class Operator(Protocol):
+    """A matrix that is known by its products alone, as scipy's LinearOperator."""
+
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    def matvec(self, x: np.ndarray, /) -> np.ndarray: ...
+    def __matmul__(self, x: np.ndarray, /) -> np.ndarray: ...
 
 
 class NotEvaluable(ArithmeticError):
@@ -35,11 +59,13 @@ class UserFunction:
     parameters : ParameterSet
     """
 
-    def __init__(self, f: Callable[..., Any], name: str, parameters: ParameterSet) -> None:
+    def __init__(
+        self, f: Callable[..., ArrayLike | Sparse | Operator], name: str, parameters: ParameterSet
+    ) -> None:
         self.f, self.name, self.parameters = f, name, parameters
         self.alone = not parameters.named
 
-    def raw(self, u: np.ndarray, p: complex) -> Any:
+    def raw(self, u: np.ndarray, p: complex) -> ArrayLike | Sparse | Operator:
         """What f returns, whatever it is.
 
         Raises
@@ -74,13 +100,13 @@ class UserFunction:
             raise NotEvaluable(f"{self.name} returns None; numbers are needed")
         if type(value) is np.ndarray and value.dtype == FLOAT:
             return value.flatten()
-        linear: Any = value if hasattr(value, "toarray") or hasattr(value, "matvec") else None
-        if hasattr(linear, "toarray") and (len(linear.shape) == 1 or min(linear.shape) <= 1):
-            value = linear.toarray()
-        elif linear is not None:
-            raise NotEvaluable(
-                f"{self.name} returns a matrix of shape {linear.shape}; numbers in a row are needed"
-            )
+        if not isinstance(value, (list, tuple, np.ndarray)) and isinstance(value, Sparse | Operator):
+            shape = value.shape or (0,)
+            if not (isinstance(value, Sparse) and (len(shape) == 1 or min(shape) <= 1)):
+                raise NotEvaluable(
+                    f"{self.name} returns a matrix of shape {value.shape}; numbers in a row are needed"
+                )
+            value = value.toarray()
         try:
             result = np.array(value)
             if result.dtype.kind == "c":
@@ -95,8 +121,8 @@ class UserFunction:
         return result.reshape(-1)
 
 
-def as_matrix(given: Any, n: int) -> Any:
-    """What a user's jacobian returned, as a float array, a sparse matrix or a LinearOperator of shape (n, n).
+def as_matrix(given: object, n: int) -> np.ndarray | csc_array | Operator:
+    """What a user's jacobian returned, as a float array, a sparse matrix (csc) or a LinearOperator of shape (n, n).
 
     Raises
     ------
@@ -105,10 +131,10 @@ def as_matrix(given: Any, n: int) -> Any:
     """
     if type(given) is np.ndarray and given.dtype == FLOAT and given.shape == (n, n):
         return given.copy()
-    if hasattr(given, "tocsc") or hasattr(given, "matvec"):
+    if isinstance(given, Sparse | Operator):
         if given.shape != (n, n):
             raise NotEvaluable(f"jacobian returns shape {given.shape}; ({n}, {n}) is needed")
-        return given
+        return given.tocsc() if isinstance(given, Sparse) else given
     if given is None:
         raise NotEvaluable(f"jacobian returns None; a matrix of shape ({n}, {n}) is needed")
     try:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .settings import IDENTITY
+
 if TYPE_CHECKING:
     from _typeshed import SupportsRichComparison
     from numpy.typing import ArrayLike
@@ -86,7 +88,7 @@ def images_of(
     while todo:
         element = todo.pop()
         image = element(probe)
-        if any(np.abs(image - other).max() < 1e-9 for other in known):
+        if any(np.abs(image - other).max() < IDENTITY.image for other in known):
             continue
         known.append(image)
         elements.append(element)
@@ -103,7 +105,7 @@ def smallest_image(u: np.ndarray, images: list[Callable], scale: np.ndarray) -> 
     best = u
     for image in images:
         other = image(u)
-        different = np.flatnonzero(np.abs(other - best) > 1e-7 * (scale + np.abs(best)))
+        different = np.flatnonzero(np.abs(other - best) > IDENTITY.same * (scale + np.abs(best)))
         if len(different) and other[different[0]] < best[different[0]]:
             best = other
     return best

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+    from .functions import Operator
     from .parameters import ParameterSet
     from .scales import Scales
+
+
+@runtime_checkable
+class Linearised(Protocol):
+    """The workspace of problems made of Python callables: F, F_u and F_p."""
+
+    @property
+    def residual(self) -> np.ndarray: ...
+    @property
+    def jacobian(self) -> np.ndarray | csc_array | Operator: ...
+    @property
+    def derivative(self) -> np.ndarray: ...
 
 
 class Equations(Protocol):
@@ -16,7 +31,7 @@ class Equations(Protocol):
 
     values: ParameterSet
     scales: Scales | None
-    reference: Any
+    reference: np.ndarray | csc_array | None
     trouble: str
     unsolved: bool
 
@@ -24,14 +39,16 @@ class Equations(Protocol):
     def parameter(self) -> str: ...
     @property
     def side(self) -> np.ndarray: ...
-    def preconditioner_at(self) -> Any: ...
-    def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, Any, np.ndarray]: ...
+    def preconditioner_at(self) -> np.ndarray | Operator | None: ...
+    def equations(
+        self, u: np.ndarray, p: float
+    ) -> tuple[np.ndarray, np.ndarray | csc_array | Operator, np.ndarray]: ...
     def sizes(self) -> tuple[np.ndarray, np.ndarray]: ...
-    def raw_spectrum(self, work: Any) -> np.ndarray: ...
+    def raw_spectrum(self, work: Linearised) -> np.ndarray: ...
     def margins(self, u: np.ndarray, p: float) -> np.ndarray: ...
 
 
-def inspect(data: Equations, u: np.ndarray, p: float, work: object, row: np.ndarray) -> None:
+def inspect(data: Equations, u: np.ndarray, p: float, work: Linearised, row: np.ndarray) -> None:
     """Raw spectrum of the linearisation, then the margins of problems that have any."""
     spectrum = data.raw_spectrum(work)
     m = 2 * len(spectrum)

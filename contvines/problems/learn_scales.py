@@ -7,13 +7,20 @@ but the sizes.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from .approach import approach
+from contvines.shared.floating_point import TINY
+
+from .approach import RoughProblem, approach
 from .extents import of_parameter, of_rounding
 from .scales import Scales, in_fields
+from .settings import SCALES
+
+if TYPE_CHECKING:
+    from .dense import DenseWork
+    from .large.sparse_work import SparseWork
 
 STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
 FEW = 6
@@ -21,18 +28,31 @@ LONGEST = 0.5  # step, in the metric
 TURNED = 3.0  # sum of the angles between tangents at which enough was seen: a straight branch says nothing of scales
 TURN = 0.6  # largest angle between tangents
 SLOW = 0.2  # part of its range by which the parameter moves while the unknowns double theirs, on branches that do not run away
-MOVES = 1e-2  # an unknown that moves by less than this part of the length over which the equations bend stays where it is
-BARELY = 1e-4  # ... where they do not bend, of its size
-BEYOND = 1e12  # times the start: a length that is longer is rounding
-ROUNDING, MOST = (
-    1e-12,
-    64,
-)  # of the other unknowns, and of what an equation feels: smaller is rounding; so many are asked about
-FAINT = 1e-6  # an unknown that began at zero and got no further than this part of its length was moved by what CLOSE leaves
-CLOSE = 1e-7  # corrections at which a point is good enough
-SETTLED = 1e-3  # a step of Newton's method less than this, relative to the scale, is one at a solution
-SMALLEST_BEND = 1e-4
+MOST = 64  # unknowns of which is asked whether rounding has moved them
 SAMPLES = 4  # points at which eigenvalues are looked at
+
+
+class Unscaled(RoughProblem, Protocol):
+    """A problem whose scales are to be learned.
+
+    ``bends`` tells whether the equations bend in each unknown, ``known`` whether its length says anything.
+    """
+
+    @property
+    def u0(self) -> np.ndarray: ...
+    @property
+    def p0(self) -> float: ...
+    @property
+    def bends(self) -> np.ndarray: ...
+    @property
+    def known(self) -> np.ndarray: ...
+    def workspace(self) -> DenseWork | SparseWork: ...
+    def row_sizes(self, work: DenseWork | SparseWork, scale: np.ndarray, width: float) -> np.ndarray: ...
+    def rates(self, work: DenseWork | SparseWork) -> list[float]: ...
+    def noise_at(self, work: DenseWork | SparseWork, scale: np.ndarray, border: np.ndarray) -> float: ...
+    def weighed(
+        self, work: DenseWork | SparseWork, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]: ...
 
 
 class Scout:
@@ -40,22 +60,22 @@ class Scout:
 
     Parameters
     ----------
-    problem : Problem
-        With ``lengths`` (N,), over which its equations bend, ``bends`` (N,), whether they do, and ``known`` (N,), whether the
-        length says anything.
+    problem : Unscaled
     within : (float, float)
     given : ndarray, optional
         Scales of the unknowns where the user has given them.
     """
 
-    def __init__(self, problem: Any, within: tuple[float, float], given: np.ndarray | None = None) -> None:
+    def __init__(
+        self, problem: Unscaled, within: tuple[float, float], given: np.ndarray | None = None
+    ) -> None:
         self.problem, self.within, self.n = problem, within, int(problem.dimension)
         self.width = within[1] - within[0]
         self.kernels, self.work = problem.kernels, problem.workspace()
         # a bend over less than this share of the unknown itself is rounding
-        self.first = np.maximum(problem.lengths, SMALLEST_BEND * np.abs(np.asarray(problem.u0, dtype=float)))
+        self.first = np.maximum(problem.lengths, SCALES.barely * np.abs(np.asarray(problem.u0, dtype=float)))
         start = np.abs(np.asarray(problem.u0, dtype=float))
-        far = (start > 0.0) & (self.first > BEYOND * start)
+        far = (start > 0.0) & (SCALES.rounding * self.first > start)
         if far.any():
             u0, p0 = np.asarray(problem.u0, dtype=float), float(problem.p0)
             terms = of_parameter(lambda p: problem.residuals(u0, p), p0)
@@ -94,10 +114,10 @@ class Scout:
             )
             size = float((np.abs(step[:-1]) / (self.scale + np.abs(z[:-1]))).max())
             size = max(size, abs(float(step[-1])) / self.width)
-            if not math.isfinite(size) or (sweep > 3 and size > 2.0 * before and size > SETTLED):
+            if not math.isfinite(size) or (sweep > 3 and size > 2.0 * before and size > SCALES.near):
                 return None
             z += step
-            if size < CLOSE or (size < SETTLED and size > 0.3 * before):
+            if size < SCALES.close or (size < SCALES.near and size > 0.3 * before):
                 return (z, tangent) if np.isfinite(tangent).all() else None
             before = size
         return None
@@ -143,7 +163,7 @@ class Scout:
         free = ~known & (rates[:-1] > 0.0) & self._confirmed(tangent)[:-1]
         if moving.any() and free.any():
             way = float((sizes[moving] / rates[moving]).min())
-            self.first = np.where(free, np.maximum(rates[:-1] * way, 1e-300), self.first)
+            self.first = np.where(free, np.maximum(rates[:-1] * way, TINY), self.first)
         self.first, told = self.problem.weighed(self.work, z[:-1], float(z[-1]), self.first, known | free)
         self.known, self.scale = known | (told & ~free), self.first.copy()
 
@@ -196,12 +216,12 @@ class Scout:
     def _rounding(self, size: np.ndarray) -> dict[int, float]:
         """Unknowns so small that no equation feels them, which are zeros moved by rounding; and how large one must be to be felt."""
         found: dict[int, float] = {}
-        for j in np.flatnonzero((size > 0.0) & (size < ROUNDING * size.max()))[:MOST]:
+        for j in np.flatnonzero((size > 0.0) & (size < SCALES.rounding * size.max()))[:MOST]:
             unit = np.zeros(self.n)
             unit[j] = 1.0
             felt = self.problem.row_sizes(self.work, unit, 0.0)
             reach = np.divide(self.rows, felt, out=np.full(self.n, np.inf), where=felt > 0.0).min()
-            if np.isfinite(reach) and size[j] < ROUNDING * reach:
+            if np.isfinite(reach) and size[j] < SCALES.rounding * reach:
                 found[int(j)] = float(reach)
         return found
 
@@ -214,18 +234,18 @@ class Scout:
         bends, first = np.asarray(self.problem.bends), self.first
         sure = bends | self.known
         # a zero that rounding has moved has no size of its own
-        least = np.where(np.asarray(self.problem.u0) == 0.0, FAINT, 1.0 / BEYOND)
+        least = np.where(np.asarray(self.problem.u0) == 0.0, SCALES.faint, SCALES.rounding)
         own = np.where(size > np.where(sure, least * first, 0.0), size, first)
         moved = extent[:-1] > np.where(
-            bends, MOVES * np.minimum(first, own), BARELY * np.where(sure, first, own)
+            bends, SCALES.moves * np.minimum(first, own), SCALES.barely * np.where(sure, first, own)
         )
         rest = np.where(sure, first, np.where(size > 0.0, size, 1.0))
         for j, reach in lost.items():
             moved[j], rest[j] = False, first[j] if sure[j] else reach
         seen = np.where(bends, np.maximum(extent[:-1], np.minimum(first, 2.0 * extent[:-1])), extent[:-1])
-        own = np.maximum(np.where(moved, seen, rest), 1e-4 * size)
-        far = (extent[:-1] > 1e-2 * size) | (np.where(bends, extent[:-1], 0.0) > first)
-        travelled = bool(np.any(far)) or bool(extent[-1] > 1e-3 * self.width)
+        own = np.maximum(np.where(moved, seen, rest), SCALES.barely * size)
+        far = (extent[:-1] > SCALES.moves * size) | (np.where(bends, extent[:-1], 0.0) > first)
+        travelled = bool(np.any(far)) or bool(extent[-1] > SCALES.travelled * self.width)
         if not travelled:  # nothing was learned: the unknowns' own sizes, and the whole interval
             own = np.where(size > 0.0, size, 1.0)
         unknowns = in_fields(own) if given is None else given
@@ -237,13 +257,12 @@ class Scout:
         return Scales(unknowns, unit, rows, rate, self.noise, tuple(int(i) for i in untold))
 
 
-def learn(problem: Any, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:
+def learn(problem: Unscaled, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:
     """Scales of a problem within an interval.
 
     Parameters
     ----------
-    problem : Problem
-        With ``u0``, ``p0``, ``lengths``, ``bends``, ``row_sizes`` and ``rates``.
+    problem : Unscaled
     within : (float, float)
     given : ndarray, optional
         Scales of the unknowns where the user has given them.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
@@ -20,16 +20,16 @@ from .pieces import Pieces
 from .protocol import Embedding, Seed, Symmetry
 from .registry import addresses, find_callables
 from .scales import flat_start, given_scale
-from .simulated import SimulatedMap
+from .settings import IDENTITY
+from .simulated import MapSection, SimulatedMap
 from .spectra import without_roundoff
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from .dense import DenseWork
+    from .interpreted import Linearised
+    from .populations import Population
     from .protocol import BorderPoint
-
-SAME = 1e-7  # points closer than this, relative to 1 + the largest coordinate, are one
 
 
 class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
@@ -116,14 +116,15 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         self.dimension = d * self.cycle
         self.n_multipliers = d
         self.pieces = Pieces(switches, self.values, flat.reshape(-1, d))
-        self.functions = self.functions.of(*self._wrapped(self.pieces))
+        self.functions = self.functions_in(self.pieces)
         self.n_margins = self.pieces.count
         self.outputs = Outputs(outputs, self.values)
         self.node_scale = given_scale(scale, d)
         self.given_scale = None if self.node_scale is None else np.tile(self.node_scale, self.cycle)
         self.data = self
         self.mirror = None if mirror is None else image_map(mirror, d)
-        self.generators, self.symmetric_for = [("mirror", self.mirror)][: mirror is not None], set()
+        self.generators = [] if self.mirror is None else [("mirror", self.mirror)]
+        self.symmetric_for = set()
         self._check_start(flat[:d])
         self._find_symmetries()
         self.describe()  # its callables are known by their addresses from now on
@@ -133,7 +134,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         nodes = [first]
         for _ in range(self.cycle - 1):
             self.pieces = Pieces(self.pieces.given, self.values, nodes[-1][None, :])
-            functions = self.functions.of(*self._wrapped(self.pieces))
+            functions = self.functions_in(self.pieces)
             nodes.append(functions.checked_value(nodes[-1], self.p0))
         return np.concatenate(nodes)
 
@@ -204,7 +205,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         for i in range(n):
             self.pieces.current = i
             residual[i] = self.functions.value(nodes[i], p) - following[i]
-            jacobian[i, :, i, :] = self.functions.jacobian(nodes[i], p)
+            jacobian[i, :, i, :] = self.functions.dense_jacobian(nodes[i], p)
             derivative[i] = self.functions.derivative(nodes[i], p)
             jacobian[i, :, (i + 1) % n, :] -= np.eye(d)
         return residual.reshape(-1), jacobian.reshape(n * d, n * d), derivative.reshape(-1)
@@ -214,10 +215,12 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         n, d = self.cycle, self.node
         jacobian.reshape(n, d, n, d)[n - 1, :, 0, :] -= 2.0 * sign * np.eye(d)
 
-    def raw_spectrum(self, work: DenseWork) -> np.ndarray:
+    def raw_spectrum(self, work: Linearised) -> np.ndarray:
         """Multipliers: eigenvalues of the product of the Jacobians along the cycle."""
         n, d = self.cycle, self.node
-        blocks = work.jacobian.reshape(n, d, n, d)
+        jacobian = work.jacobian
+        assert isinstance(jacobian, np.ndarray)
+        blocks = jacobian.reshape(n, d, n, d)
         product = np.eye(d)
         for i in range(n):
             step = blocks[i, :, i, :]
@@ -268,7 +271,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         nodes, n = np.asarray(u, dtype=float).reshape(self.cycle, self.node), self.cycle
         signs = self.pieces.signs.reshape(n, -1)
         own = np.ones(self.node) if self.scales is None else self.scales.unknowns[: self.node]
-        scale = SAME * (own + np.abs(nodes).max(axis=0))
+        scale = IDENTITY.same * (own + np.abs(nodes).max(axis=0))
         root = next(
             r
             for r in range(1, n + 1)
@@ -298,7 +301,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         direction = np.append(np.tile(tangent[:-1], 2), tangent[-1])
         return [Embedding(self._with_cycle(doubled, p, self.pieces.repeated(2)), doubled, direction, kind)]
 
-    def canonical(self, u: np.ndarray, p: float) -> tuple[Any, np.ndarray]:
+    def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
         """The shortest cycle of which u is a repetition, of its rotations and mirror images the smallest."""
         nodes, scale = self._shortest(u)
         root, n = len(nodes), self.cycle
@@ -310,8 +313,14 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         pieces = min(tuple(np.roll(signs, -first, axis=0).reshape(-1).tolist()) for first in range(n))
         return ("cycle", root, self.node, pieces), min(turned, key=in_order(np.tile(scale, root)))
 
+    def section(self, p: float) -> MapSection:
+        """Its motions, once per period of the cycle."""
+        return MapSection(self, p)
+
     @hinting
-    def population(self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None):
+    def population(
+        self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None
+    ) -> Population:
         """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
         problem = self if over in (None, self.parameter) else self.against(str(over))
         from ..coexistence.maps import MapPopulation

@@ -14,21 +14,33 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from copy import copy
 from inspect import signature
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
-from .abilities import Doubling
 from .functions import NotEvaluable, UserFunction
 from .parameters import ParameterSet
-from .protocol import Seed
+from .protocol import Problem, Seed, margin_of
+from .settings import IDENTITY
 
 if TYPE_CHECKING:
     from .protocol import BorderPoint
 
-NOTHING = 1e-3  # margins below this part of their change over a small step vanish
+
+class Pieced(Problem, Protocol):
+    """A problem whose equations have pieces."""
+
+    def margins(self, u: np.ndarray, p: float) -> np.ndarray: ...
+    def with_pieces(self, pieces: Pieces) -> Pieced: ...
+
+
+@runtime_checkable
+class Doubling(Protocol):
+    """In other pieces it has cycles of twice the length."""
+
+    def doubled_with(self, pieces: Pieces) -> Pieced: ...
 
 
 class UnknownSwitch(KeyError):
@@ -46,7 +58,7 @@ class Signs(dict[str, int]):
         raise UnknownSwitch(f"there is no switch {name!r}{hint}; the problem has {', '.join(self)}")
 
 
-def _takes_signs(call: Callable[..., Any]) -> bool:
+def _takes_signs(call: Callable) -> bool:
     """Whether a function can be called with three arguments; one that does not tell is believed."""
     try:
         signature(call).bind(None, None, None)
@@ -117,25 +129,22 @@ class Pieces:
         """The signs as text: a group for each node, ``+-|--``."""
         return "|".join("".join("+" if sign > 0 else "-" for sign in node) for node in self.signs)
 
-    def wrap(self, f: Any, name: str = "F") -> Any:
-        """A function, or a mapping of functions, (u, p, sign) as one of (u, p), in the piece of the current node.
+    def wrap(self, f: Callable, name: str = "F") -> Callable:
+        """A function (u, p, sign) as one of (u, p), in the piece of the current node.
 
         Raises
         ------
         ValueError
             If it does not take the signs; `name` is what it is called then.
         """
-        if f is None or not self.switches:
+        if not self.switches:
             return f
-        if isinstance(f, Mapping):
-            return {key: self.wrap(part, name) for key, part in f.items()}
-        call: Callable[..., Any] = f
-        if not _takes_signs(call):
+        if not _takes_signs(f):
             raise ValueError(
                 f"{name} cannot be called as {name}(u, p, sign): with switches= it must take a third argument, a mapping from "
                 f"their names ({', '.join(self.given)}) to +1 or -1"
             )
-        return lambda u, p: call(u, p, self._current_signs())
+        return lambda u, p: f(u, p, self._current_signs())
 
     def _current_signs(self) -> dict[str, int]:
         return Signs(zip(self.given, (int(sign) for sign in self.signs[self.current])))
@@ -169,7 +178,7 @@ class Pieces:
         other.signs = np.tile(self.signs[:of], (times, 1))
         return other
 
-    def beyond(self, problem: Any, point: BorderPoint) -> list[Seed]:
+    def beyond(self, problem: Pieced, point: BorderPoint) -> list[Seed]:
         """What leaves a border: the solution of the piece next door, and of maps the cycle of twice the length.
 
         Parameters
@@ -179,10 +188,10 @@ class Pieces:
         point : SpecialPoint
             Its tangent points out of the piece.
         """
-        j = point.margin_index
-        assert j is not None
-        seeds = []
-        candidates = [(problem.with_pieces(self.turned(j)), point.u, False)]
+        j, seeds = margin_of(point), []
+        candidates: list[tuple[Pieced, np.ndarray, bool]] = [
+            (problem.with_pieces(self.turned(j)), point.u, False)
+        ]
         if isinstance(problem, Doubling):
             candidates.append((problem.doubled_with(self.turned(j, 2)), np.tile(point.u, 2), True))
         for other, u, flip in candidates:
@@ -198,7 +207,7 @@ class Pieces:
         return seeds
 
 
-def _inward(problem: Any, u: np.ndarray, p: float, j: int) -> np.ndarray | None:
+def _inward(problem: Pieced, u: np.ndarray, p: float, j: int) -> np.ndarray | None:
     """The tangent at a border point along which margin j grows, and all that vanish with it; None if there is none."""
     n = problem.dimension
     work, step, tangent = problem.workspace(), np.zeros(n + 1), np.zeros(n + 1)
@@ -211,11 +220,13 @@ def _inward(problem: Any, u: np.ndarray, p: float, j: int) -> np.ndarray | None:
         return None
     size = float(np.abs(tangent).max())
     unit = 1.0 if problem.scales is None else float(problem.scales.unknowns.max())
-    h = 1e-5 * max(unit, float(np.abs(np.append(u, p)).max())) / size
+    h = IDENTITY.step * max(unit, float(np.abs(np.append(u, p)).max())) / size
     ahead, back = (problem.margins(u + s * h * tangent[:-1], p + s * h * tangent[-1]) for s in (1.0, -1.0))
     growth = ahead - back
     if not abs(growth[j]) > 0.0:
         return None
     side = np.sign(growth[j])
-    vanishing = np.abs(ahead + back) <= NOTHING * np.abs(growth)  # of a doubled cycle one in either half
+    vanishing = np.abs(ahead + back) <= IDENTITY.vanishes * np.abs(
+        growth
+    )  # of a doubled cycle one in either half
     return side * tangent if (side * growth[vanishing] > 0.0).all() else None

@@ -7,7 +7,7 @@ if this program has made a problem from them already; else they are imported onl
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -140,7 +140,7 @@ def addresses(given: Mapping[str, Any]) -> tuple[dict[str, Any], bool]:
     return where, all(place is not None for place in found)
 
 
-def find_callables(where: Any, trust: bool) -> dict[str, Any] | None:
+def find_callables(where: Mapping[str, object] | Sequence[object], trust: bool) -> dict[str, Any] | None:
     """The callables whose addresses a description holds; None where one of them is not at hand.
 
     At hand is what this program has made a problem from; with ``trust``, what can be imported.
@@ -176,11 +176,13 @@ def _find(where: str, trust: bool) -> Callable | None:
         return known
     module, _, name = where.partition(":")
     try:
-        found: Any = import_module(module)
+        found: object = import_module(module)
         for part in name.split("."):
             found = getattr(found, part)
     except (ImportError, AttributeError, ValueError) as error:
         raise ValueError(f"the function {where!r} that the file names cannot be imported ({error})") from None
+    if not callable(found):
+        raise ValueError(f"the function {where!r} that the file names is none")
     return found
 
 

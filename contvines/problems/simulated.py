@@ -2,15 +2,34 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from .functions import NotEvaluable
 from .scales import Scales
+from .settings import SIMULATION
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from .derivatives import Differentiated
+    from .pieces import Pieces
+    from .populations import Population
+
+
+class Iterated(Protocol):
+    """What is read of the problem of a map's cycles."""
+
+    @property
+    def functions(self) -> Differentiated: ...
+    @property
+    def pieces(self) -> Pieces: ...
+    @property
+    def node(self) -> int: ...
+    @property
+    def cycle(self) -> int: ...
+    def functions_in(self, pieces: Pieces) -> Differentiated: ...
 
 
 class MapSection:
@@ -22,12 +41,12 @@ class MapSection:
     p : float
     """
 
-    def __init__(self, problem: Any, p: float) -> None:
+    def __init__(self, problem: Iterated, p: float) -> None:
         self.problem, self.p = problem, float(p)
         self.pieces = problem.pieces.repeated(1, 1)
         self.functions = problem.functions
         if self.pieces.count:
-            self.functions = problem.functions.of(*problem._wrapped(self.pieces))
+            self.functions = problem.functions_in(self.pieces)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -62,12 +81,8 @@ class MapSection:
 class SimulatedMap:
     """What a MapProblem says of its motions."""
 
-    population: Callable[..., Any]
+    population: Callable[..., Population]
     cycle: int
-
-    def section(self, p: float) -> MapSection:
-        """Its motions, once per period of the cycle."""
-        return MapSection(self, p)
 
     def simulated_attractors(self, p: float, starts: int = 24) -> list[dict[str, Any]]:
         """What starts round the cycle settle on at a parameter value: "word", "periods" and "kind" of each motion."""
@@ -130,18 +145,18 @@ class SimulatedFlow:
 
         with np.errstate(all="ignore"):
             if not rate(0.0, u).any():  # at rest to the last bit, stable or not
-                u = u + BESIDE * size * (-1.0) ** np.arange(len(u))
+                u = u + SIMULATION.beside * size * (-1.0) ** np.arange(len(u))
             speed = float((np.abs(rate(0.0, u)) / size).max())
             span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
-            small: Any = 1e-10 * size
-            solver = LSODA(rate, 0.0, u, np.inf, rtol=1e-8, atol=small)
+            tolerances: dict[str, Any] = {"rtol": SIMULATION.relative, "atol": SIMULATION.absolute * size}
+            solver = LSODA(rate, 0.0, u, np.inf, **tolerances)
             rest, since = u, 0.0  # where the motion was, and when
             for _ in range(PATIENCE):
                 solver.step()
                 x = solver.y
-                if solver.status == "failed" or not float((np.abs(x) / size).max()) < FAR:
+                if solver.status == "failed" or not float((np.abs(x) / size).max()) < SIMULATION.far:
                     return "escapes", u
-                if float((np.abs(x - rest) / size).max()) > STILL:
+                if float((np.abs(x - rest) / size).max()) > SIMULATION.still:
                     rest, since = x.copy(), solver.t
                 elif solver.t - since > span:
                     return "equilibrium", x.copy()
@@ -151,12 +166,9 @@ class SimulatedFlow:
 PATIENCE = 4000  # steps of the integration of one start
 SPREAD = 2.0  # of the starts, in sizes of the unknowns
 LARGEST = 60  # unknowns of equations that are integrated
-BESIDE = 1e-3  # of its size: so far beside an equilibrium a motion begins that would begin on it
-FAR = 1e4  # times its size: escaped
-STILL = 1e-5  # distance, relative to the size, that counts as rest
 
 
 def _one(a: dict[str, Any], b: dict[str, Any], size: np.ndarray) -> bool:
     if a["kind"] != b["kind"]:
         return False
-    return "u" not in a or bool((np.abs(np.subtract(a["u"], b["u"])) < 1e-3 * size).all())
+    return "u" not in a or bool((np.abs(np.subtract(a["u"], b["u"])) < SIMULATION.beside * size).all())

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import matrix_balance
 
-REAL = (
-    1e-9  # an imaginary part below this part of the largest eigenvalue is roundoff: a double real eigenvalue
-)
+from .settings import LINEAR
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
 WATCHED = (
     20  # unknowns up to which the eigenvalues of problems without a spectrum are watched for branch points
 )
@@ -18,11 +20,11 @@ WATCHED = (
 def without_roundoff(values: np.ndarray) -> np.ndarray:
     """Eigenvalues in which the two halves of a double real one, parted by roundoff, are real."""
     values = np.asarray(values, dtype=complex)
-    tiny = np.abs(np.imag(values)) <= REAL * np.abs(values).max(initial=0.0)
+    tiny = np.abs(np.imag(values)) <= LINEAR.real * np.abs(values).max(initial=0.0)
     return np.where(tiny, np.real(values) + 0.0j, values)
 
 
-def rounding(matrix: Any, units: np.ndarray) -> float:
+def rounding(matrix: np.ndarray | csc_array, units: np.ndarray) -> float:
     """By how much rounding of the entries of a matrix moves its eigenvalues, if these are well conditioned.
 
     Half a unit in the last place of the largest sum of a row, in the units of the unknowns or as they are, or, of an array, as LAPACK
@@ -56,6 +58,6 @@ def watched(jacobian: np.ndarray, reference: np.ndarray) -> np.ndarray:
 def reference_of(jacobian: np.ndarray, rows: np.ndarray, unknowns: np.ndarray) -> np.ndarray:
     """The inverse of a Jacobian, or where it is nearly singular what brings its rows and columns to one size."""
     scaled = jacobian * unknowns / rows[:, None]
-    if np.linalg.cond(scaled) < 1e8:
+    if np.linalg.cond(scaled) < LINEAR.conditioned:
         return np.linalg.inv(jacobian)
     return np.diag(unknowns / rows)

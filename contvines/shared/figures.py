@@ -40,11 +40,7 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
     import matplotlib as mpl
     from matplotlib.style import context, library
 
-    default: Any = mpl.rcParamsDefault
-    # reading the backend would choose one, which imports pyplot
-    settings: Any = mpl.rcParams
-    names = [name for name in settings if not name.startswith("backend") and name in default]
-    own = {name: settings[name] for name in names if settings[name] != default[name]}
+    own = _changed(mpl.rcParams, mpl.rcParamsDefault)
     chosen: list[Any] = (
         list(map(str.strip, style.split(","))) if isinstance(style, str) else [dict(style or {})]
     )
@@ -59,6 +55,12 @@ def styled(style: str | Mapping[str, Any] | None = None) -> Iterator[None]:
                     f"choose from {', '.join(sorted(STYLES))}, a style of matplotlib's, or the path of a style sheet."
                 ) from None
         yield
+
+
+def _changed(settings: Mapping[Any, object], default: Mapping[Any, object]) -> dict[str, object]:
+    """The settings that are not the defaults; reading the backend would choose one, which imports pyplot."""
+    names = [name for name in settings if not name.startswith("backend") and name in default]
+    return {name: settings[name] for name in names if settings[name] != default[name]}
 
 
 def shrinking(width: float) -> float:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-ROUNDING = 1e-14  # beside numbers of order one this is zero
+from .floating_point import ROUNDED
+
 ROUNDING_APART = 1e-6  # beside what is to be told apart this is zero
-PART = 1e-3  # of an interval, which can be told apart in tables
-WHOLE = 1e6  # numbers below it have no exponent
+PART = 0.001  # of an interval, which can be told apart in tables
+WHOLE = 1_000_000.0  # numbers below it have no exponent
 DIGITS = 4  # that mean something to who reads a table; files and JSON have all
 
 
 def number_text(value: float, digits: int = 10, unit: float = 1.0) -> str:
     """A number with so many digits; what is only rounding beside ``unit`` is 0."""
-    return "0" if abs(value) <= ROUNDING * abs(unit) else f"{value:.{digits}g}"
+    return "0" if abs(value) <= ROUNDED * abs(unit) else f"{value:.{digits}g}"
 
 
 def figures(value: float, apart: float = 0.0) -> str:
@@ -30,7 +31,7 @@ def figures(value: float, apart: float = 0.0) -> str:
     size = abs(value)
     if not math.isfinite(value):
         return str(value)
-    if size <= max(ROUNDING, ROUNDING_APART * apart):
+    if size <= max(ROUNDED, ROUNDING_APART * apart):
         return "0"
     whole = math.floor(math.log10(size)) + 1
     digits = max(DIGITS, whole + math.ceil(-math.log10(apart)) if apart > 0.0 else 0)
@@ -59,7 +60,7 @@ def figures_in(within: tuple[float, float], others: Sequence[float] = ()) -> Cal
     known = sorted(others)
 
     def text(value: float) -> str:
-        gaps = [abs(value - other) for other in known if abs(value - other) > ROUNDING * abs(value)]
+        gaps = [abs(value - other) for other in known if abs(value - other) > ROUNDED * abs(value)]
         return figures(value, min([apart, *(0.5 * gap for gap in gaps)]))
 
     return text

@@ -127,7 +127,7 @@ class _Worker:
     def __init__(self, work: Callable[..., Any]) -> None:
         from multiprocessing import get_context
 
-        context: Any = get_context("fork" if may_be_copied() else "spawn")
+        context = get_context("fork") if may_be_copied() else get_context("spawn")
         self.connection, other = context.Pipe()
         self.process = context.Process(target=_serve, args=(other, work))
         self.process.start()

@@ -108,8 +108,10 @@ class Forms:
         else:
             here = self.u * self.units
             problem.kernels.linearise(problem.data, here, self.p, self.work)
-            problem.kernels.flip(problem.data, self.work, -1.0)
-            self.K = 0.5 * (self.J - self._in_units(problem.kernels.matrix(problem.data, self.work)))
+            kernels = problem.kernels
+            assert kernels.flip is not None and kernels.matrix is not None
+            kernels.flip(problem.data, self.work, -1.0)
+            self.K = 0.5 * (self.J - self._in_units(kernels.matrix(problem.data, self.work)))
             embedding = problem.offspring(problem.flip_kind, here, self.p, np.zeros(self.n + 1), -1.0 + 0.0j)[
                 0
             ]
@@ -141,6 +143,7 @@ class Forms:
         here = np.ascontiguousarray(u) if self._plain else u * self._units_of(len(u))
         if not math.isfinite(kernels.linearise(data, here, self.p, work)):
             return None
+        assert kernels.matrix is not None
         return self._in_units(kernels.matrix(data, work))
 
     # ------------------------------------------------------------------ open ends

@@ -18,6 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from ...problems.large.sparse_work import SparseWork
 from ...shared.floating_point import ROUNDED
 from ..settings import NORMAL_FORMS
 from .coefficients import Coefficient, in_phase
@@ -56,9 +57,10 @@ def sparse_lyapunov(problem: Problem, u: np.ndarray, p: float, critical: complex
     rate = 1.0 if scales is None else float(scales.rate)
     work, data = problem.workspace(), problem.data
 
-    def jacobian(v: np.ndarray) -> sp.csr_array | None:
+    def jacobian(v: np.ndarray) -> sp.csc_array | None:
         known = math.isfinite(problem.kernels.linearise(data, v * units, p, work))
-        return work.jacobian if known else None
+        assert isinstance(work, SparseWork)
+        return work.matrix if known else None
 
     here = u / units
     base = jacobian(here)

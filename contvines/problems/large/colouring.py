@@ -6,11 +6,16 @@ Curtis, Powell and Reid, On the estimation of sparse Jacobian matrices, J. Inst.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.optimize._numdiff import group_columns
+
+from ..functions import Sparse
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 class Colouring:
@@ -33,8 +38,8 @@ class Colouring:
         If it has another shape.
     """
 
-    def __init__(self, pattern: Any, n: int) -> None:
-        matrix = pattern if hasattr(pattern, "tocsc") else sp.csc_array(np.asarray(pattern))
+    def __init__(self, pattern: ArrayLike | Sparse, n: int) -> None:
+        matrix = pattern if isinstance(pattern, Sparse) else sp.csc_array(np.asarray(pattern))
         if matrix.shape != (n, n):
             raise ValueError(f"sparsity has shape {matrix.shape}; ({n}, {n}) is needed")
         matrix = sp.csc_matrix(matrix, copy=True)
@@ -49,7 +54,7 @@ class Colouring:
         self.groups = min(tries, key=lambda groups: int(groups.max(initial=-1)))
         self.count = int(self.groups.max(initial=-1)) + 1
 
-    def jacobian(self, along: Callable[[np.ndarray], np.ndarray]) -> Any:
+    def jacobian(self, along: Callable[[np.ndarray], np.ndarray]) -> sp.csc_array:
         """The matrix, from products with the sums of its columns in each group.
 
         Parameters
@@ -59,4 +64,4 @@ class Colouring:
         """
         sums = np.array([along(self.groups == group) for group in range(self.count)])
         data = sums[self.groups[self.columns], self.indices]
-        return sp.csc_matrix((data, self.indices, self.indptr), shape=(self.n, self.n))
+        return sp.csc_array((data, self.indices, self.indptr), shape=(self.n, self.n))

@@ -11,25 +11,19 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import diags_array
+from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import LinearOperator, gmres
 
+from ..settings import LINEAR
 from .nearest_eigenvalues import nearest_sparse
 
 if TYPE_CHECKING:
-    from ..interpreted import Equations
-    from .sparse_work import SparseWork
+    from ..interpreted import Equations, Linearised
 
-ACCURATE = 1e-11  # relative residual
-ENOUGH = 1e-4  # ... that will do where rounding or the patience below allows no more
-SINGULAR = 1e-12  # ... for each unit by which the solution is larger than the side
 RESTART, ALL = 80, 300  # vectors kept; as many as there are unknowns where these are few
 CYCLES = 40  # restarts at most
-ROUGH = 1e-6  # ... of a number that says only how near a singular matrix is
 GAIN = 0.5  # a cycle has to shrink the residual at least that much ...
 IDLE = 4  # ... or it is over after so many that do not
-ASIDE = 1e-9  # shift of a matrix that is singular to the last bit
-CORNER = 1e-8  # part of its terms below which the preconditioner's Schur complement is rounding
 
 Linear = Callable[[np.ndarray], np.ndarray]
 
@@ -79,7 +73,7 @@ def restarted(
 
 def solved(gap: float, growth: float) -> bool:
     """Whether a relative residual will do: more is lost to rounding the larger the solution is relative to the side."""
-    return gap < ENOUGH + SINGULAR * growth
+    return gap < LINEAR.tolerated + LINEAR.growth * growth
 
 
 class Bordered:
@@ -93,7 +87,7 @@ class Bordered:
     border : ndarray, shape (N + 1,)
     """
 
-    def __init__(self, data: Equations, work: SparseWork, border: np.ndarray) -> None:
+    def __init__(self, data: Equations, work: Linearised, border: np.ndarray) -> None:
         rows, units = data.sizes()
         width = 1.0 if data.scales is None else data.scales.parameter
         self.work, self.inverse = work, data.preconditioner_at()
@@ -113,7 +107,7 @@ class Bordered:
         column = np.ravel(self.inverse @ self.work.derivative) / self.columns[:-1] * self.columns[-1]
         part = float(self.border[:-1] @ column)
         corner = float(self.border[-1]) - part
-        fine = np.isfinite(corner) and abs(corner) > CORNER * (abs(part) + abs(float(self.border[-1])))
+        fine = np.isfinite(corner) and abs(corner) > LINEAR.border * (abs(part) + abs(float(self.border[-1])))
         return (column, corner) if fine else (None, 1.0)
 
     def product(self, x: np.ndarray) -> np.ndarray:
@@ -143,9 +137,13 @@ class Bordered:
 
 
 def iterate(
-    data: Equations, work: SparseWork, border: np.ndarray, sides: np.ndarray
-) -> tuple[np.ndarray, float]:
-    """Solutions of the bordered system; the sign of the determinant is not known.
+    data: Equations,
+    work: Linearised,
+    border: np.ndarray,
+    sides: np.ndarray,
+    tangent: np.ndarray | None,
+) -> tuple[np.ndarray, Bordered]:
+    """Solutions of the bordered system, and the system itself; the last `tangent` is a guess of the next one.
 
     NaN where GMRES does not converge, which the problem is told. `work` has F_u and F_p.
     """
@@ -155,18 +153,16 @@ def iterate(
     for k in range(2):
         if not np.any(sides[:, k]):
             continue
-        guess = _like_before(work.tangent, border, sides) if k == 1 else None
-        for matrix.shift in (0.0, ASIDE):
-            found, gap = matrix.solve(sides[:, k], guess, ACCURATE)
+        guess = _like_before(tangent, border, sides) if k == 1 else None
+        for matrix.shift in (0.0, LINEAR.aside):
+            found, gap = matrix.solve(sides[:, k], guess, LINEAR.iterated)
             if solved(gap, matrix.growth):
                 break
         else:
             data.unsolved = True
             found = np.full(len(found), np.nan)
         result[:, k] = found
-    work.tangent = result[:, 1] if np.isfinite(result[:, 1]).all() else None
-    work.eliminated = matrix
-    return result, 1.0
+    return result, matrix
 
 
 def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarray) -> np.ndarray | None:
@@ -177,15 +173,15 @@ def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarr
     return tangent * (sides[-1, 1] / along) if along != 0.0 else None
 
 
-def distance_to_singular(data: Equations, work: SparseWork) -> float | None:
+def distance_to_singular(data: Equations, matrix: Bordered) -> float | None:
     """How near the bordered matrix of the last solution is to a singular one: |M^-1 b| / |M^-1 M^-1 b|; see :mod:`contvines.problems.nearness`.
 
     Without a sign of the determinant this is all that tells a branch point, so that one application of the inverse, in which a null
     vector may have a small share by chance, is not enough. None where GMRES does not converge.
     """
-    matrix, side, sizes = work.eliminated, data.side, []
+    side, sizes = data.side, []
     for _ in range(2):
-        found, gap = matrix.solve(side, None, ROUGH)
+        found, gap = matrix.solve(side, None, LINEAR.rough)
         if not solved(gap, matrix.growth):
             return None
         found = found / matrix.columns
@@ -197,7 +193,7 @@ def distance_to_singular(data: Equations, work: SparseWork) -> float | None:
 class Inverse:
     """(F_u - shift)^-1, by GMRES, in the place of factors; the shift in units of rows and unknowns, or as eigenvalues of F_u have it."""
 
-    def __init__(self, data: Equations, work: SparseWork, shift: float, plain: bool = False) -> None:
+    def __init__(self, data: Equations, work: Linearised, shift: float, plain: bool = False) -> None:
         self.rows, self.columns = data.sizes()
         self.jacobian, self.inverse = work.jacobian, data.preconditioner_at()
         self.shift = shift * (self.columns if plain else self.rows)
@@ -214,19 +210,19 @@ class Inverse:
     def solve(self, side: np.ndarray) -> np.ndarray:
         """The inverse applied to a vector."""
         right = self._precondition(np.ravel(side))
-        found, gap = restarted(lambda x: self._precondition(self._product(x)), right, None, ACCURATE)
+        found, gap = restarted(lambda x: self._precondition(self._product(x)), right, None, LINEAR.iterated)
         size = float(np.linalg.norm(right))
         self.unsolved |= not solved(gap, float(np.linalg.norm(found)) / size if size > 0.0 else 0.0)
         return found * self.columns
 
 
-def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
+def nearest_eigenvalues(data: Equations, work: Linearised) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to the sizes of rows and unknowns; shifted where it is singular."""
     rows, units = data.sizes()
     values = np.zeros(0)
-    for shift in (0.0, ASIDE):
+    for shift in (0.0, LINEAR.aside):
         inverse = Inverse(data, work, shift)
-        values = nearest_sparse(inverse, diags_array(rows / units)) + shift
+        values = nearest_sparse(inverse, csc_array(diags_array(rows / units)), len(rows)) + shift
         if np.isfinite(values).all() and not inverse.unsolved:
             break
     return values

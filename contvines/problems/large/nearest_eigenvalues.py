@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs
 
 from ..nearness import NEAREST
+from ..settings import LINEAR
 from ..spectra import without_roundoff
 
-ACCURATE = 1e-8  # of eigenvalues
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 
-def nearest_sparse(factors: Any, reference: Any) -> np.ndarray:
+class Solving(Protocol):
+    """Factors of a matrix, or what solves with it in another way."""
+
+    def solve(self, sides: np.ndarray, /) -> np.ndarray: ...
+
+
+def nearest_sparse(factors: Solving | None, reference: csc_array, n: int) -> np.ndarray:
     """The NEAREST eigenvalues to zero of reference^-1 F_u, from factors of F_u: the inverses of the largest of F_u^-1 reference.
 
     Parameters
     ----------
     factors
         Of F_u; None where that is singular.
-    reference : sparse matrix
+    reference : sparse matrix, shape (n, n)
+    n : int
     """
-    n = reference.shape[0]
     if factors is None:
         return np.zeros(NEAREST, dtype=complex)
     operator = LinearOperator((n, n), matvec=lambda x: factors.solve(reference @ x), dtype=float)  # type: ignore[call-arg]
@@ -31,7 +39,7 @@ def nearest_sparse(factors: Any, reference: Any) -> np.ndarray:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
-            options: dict[str, Any] = {"v0": start, "tol": ACCURATE, "return_eigenvectors": False}
+            options: dict[str, Any] = {"v0": start, "tol": LINEAR.eigenvalues, "return_eigenvectors": False}
             found = eigs(operator, k=NEAREST, **options)
         except ArpackNoConvergence as error:
             found = np.asarray(error.eigenvalues)

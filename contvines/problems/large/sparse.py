@@ -17,26 +17,22 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, splu
 
-from ..functions import NotEvaluable
+from ..functions import NotEvaluable, Operator
 from ..interpreted import assign, inspect
 from ..nearness import distance
 from ..protocol import Kernels
+from ..settings import LINEAR
 from . import matrix_free
 from .nearest_eigenvalues import nearest_sparse
-from .sparse_factors import SuperLUFactors
+from .sparse_factors import Factors, SuperLUFactors
 from .sparse_loci import flip, matrix, transpose
-from .sparse_work import SparseWork
+from .sparse_work import Elimination, SparseWork
 
 if TYPE_CHECKING:
     from ..interpreted import Equations
     from ..protocol import Problem
 
-REFINED = 1e-13  # relative residual of the bordered system at which a solution is good
-ENOUGH = 1e-9  # ... at which it will do
-SMALL = 1e-8  # size of the last row where the bordered matrix is factorised
-NEARLY = 1e-11  # ... with the factors of an earlier Jacobian
-CLOSE, SWEEPS = 1e-2, 8  # refinement with those has to gain two digits each time, so many times at most
-EIGENVALUES = 1e-8  # relative accuracy of the leading eigenvalues
+SWEEPS = 8  # of refinement with the factors of an earlier Jacobian
 
 
 def workspace(problem: Problem) -> SparseWork:
@@ -48,9 +44,9 @@ def workspace(problem: Problem) -> SparseWork:
 
 def row_sizes(work: SparseWork, scale: np.ndarray) -> np.ndarray:
     """Largest change of each equation when an unknown changes by its scale."""
-    if not sp.issparse(work.jacobian):
+    if isinstance(work.jacobian, Operator):
         return np.abs(work.jacobian @ scale)
-    return np.asarray(abs(work.jacobian).multiply(scale[None, :]).max(axis=1).todense()).reshape(-1)
+    return np.asarray(abs(work.matrix).multiply(scale[None, :]).max(axis=1).todense()).reshape(-1)
 
 
 def linearise(data: Equations, u: np.ndarray, p: float, work: SparseWork) -> float:
@@ -66,8 +62,9 @@ def linearise(data: Equations, u: np.ndarray, p: float, work: SparseWork) -> flo
             work.near = work.factors
         work.factors, work.failed = None, False
         total = float(derivative.sum())
-        if sp.issparse(jacobian):
-            jacobian = jacobian.tocsc().astype(float)
+        assert not isinstance(jacobian, np.ndarray)
+        if not isinstance(jacobian, Operator):
+            jacobian = sp.csc_array(jacobian, dtype=float, copy=True)
             total += float(jacobian.data.sum())
         work.jacobian = jacobian
         sizes = np.abs(residual)
@@ -76,24 +73,26 @@ def linearise(data: Equations, u: np.ndarray, p: float, work: SparseWork) -> flo
 
 
 # ---------------------------------------------------------------------- factors
-def _factorise(work: SparseWork) -> Any:
+def _factorise(work: SparseWork) -> Factors | None:
     """Factors of F_u, or None where it is singular."""
     if work.factors is None and not work.failed:
         work.near = None  # two sets of factors are never kept at once
         try:
-            work.factors = work.method.factorise(work.jacobian)
+            work.factors = work.method.factorise(work.matrix)
         except RuntimeError:
             work.failed = True
     return work.factors
 
 
-def _border_matrix(work: SparseWork, border: np.ndarray, factor: float) -> Any:
-    return sp.bmat(
-        [
-            [work.jacobian, work.derivative[:, None]],
-            [factor * border[None, :-1], np.array([[factor * border[-1]]])],
-        ],
-        format="csc",
+def _border_matrix(work: SparseWork, border: np.ndarray, factor: float) -> sp.csc_array:
+    return sp.csc_array(
+        sp.bmat(
+            [
+                [work.matrix, work.derivative[:, None]],
+                [factor * border[None, :-1], np.array([[factor * border[-1]]])],
+            ],
+            format="csc",
+        )
     )
 
 
@@ -105,16 +104,16 @@ def _product(work: SparseWork, border: np.ndarray, x: np.ndarray) -> np.ndarray:
 def _eliminate(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float] | None:
     """Block elimination with refinement, if that will do with the factors of an earlier Jacobian; None where it is not accurate."""
     if work.factors is None and work.near is not None:
-        found = _refined(work, work.near, border, sides, CLOSE, SWEEPS, NEARLY)
+        found = _refined(work, work.near, border, sides, LINEAR.gain, SWEEPS, LINEAR.kept)
         if found is not None:
             return found
     factors = _factorise(work)
-    return None if factors is None else _refined(work, factors, border, sides, 0.5, 4, ENOUGH)
+    return None if factors is None else _refined(work, factors, border, sides, 0.5, 4, LINEAR.enough)
 
 
 def _refined(
     work: SparseWork,
-    factors: Any,
+    factors: Factors,
     border: np.ndarray,
     sides: np.ndarray,
     shrink: float,
@@ -152,13 +151,13 @@ def _refined(
         x[:-1, 1] = -column * x[-1, 1]
         size = np.abs(sides).max(axis=0)
         size[size == 0.0] = 1.0
-        scale = float(np.abs(work.jacobian.data).max(initial=0.0))
+        scale = float(np.abs(work.matrix.data).max(initial=0.0))
         before = error = math.inf
         for _ in range(sweeps):
             rest = sides - _product(work, border, x)
             rough = np.abs(rest).max(axis=0) / np.maximum(size, scale * np.abs(x).max(axis=0))
             error = float(rough.max())
-            if not error > REFINED or not error < shrink * before:
+            if not error > LINEAR.refined or not error < shrink * before:
                 break
             before = error
             more = factors.solve(rest[:-1])
@@ -167,17 +166,17 @@ def _refined(
             x[:-1] += more - np.outer(column, low)
         if not error < enough:
             return None
-    work.eliminated = factors, border.copy(), column, corner
+    work.eliminated = Elimination(factors, border.copy(), column, corner)
     return x, factors.sign * math.copysign(1.0, float(corner))
 
 
 def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, float]:
     """The bordered matrix factorised as a whole."""
-    top = float(np.abs(work.jacobian.data).max(initial=1.0))
-    factor = SMALL * top / float(np.abs(border).max())
+    top = float(np.abs(work.matrix.data).max(initial=1.0))
+    factor = LINEAR.border * top / float(np.abs(border).max())
     scaled = sides.copy()
     scaled[-1] *= factor
-    for shift in (0.0, 1e-14 * top):
+    for shift in (0.0, LINEAR.shift * top):
         matrix = _border_matrix(work, border, factor)
         if shift:
             matrix = (matrix + shift * sp.identity(len(border), format="csc")).tocsc()
@@ -199,8 +198,10 @@ def bordered(
     sides = np.zeros((len(border), 2))
     sides[:-1, 0] = -work.residual
     sides[-1] = n, 1.0
-    if not sp.issparse(work.jacobian):
-        solution, sign = matrix_free.iterate(data, work, border, sides)
+    if isinstance(work.jacobian, Operator):
+        solution, work.iterated = matrix_free.iterate(data, work, border, sides, work.tangent)
+        work.tangent = solution[:, 1] if np.isfinite(solution[:, 1]).all() else None
+        sign = 1.0
     else:
         work.eliminated = None
         found = _eliminate(work, border, sides)
@@ -212,11 +213,11 @@ def bordered(
 # ---------------------------------------------------------------------- eigenvalues
 def distance_to_singular(data: Equations, work: SparseWork) -> float:
     """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`contvines.problems.nearness`. Without refinement: it is a rough number."""
-    if work.eliminated is None:
-        return work.distance
-    if not sp.issparse(work.jacobian):
-        found = matrix_free.distance_to_singular(data, work)
+    if work.iterated is not None:
+        found = matrix_free.distance_to_singular(data, work.iterated)
         work.distance = work.distance if found is None else found
+        return work.distance
+    if work.eliminated is None:
         return work.distance
     factors, border, column, corner = work.eliminated
     with np.errstate(all="ignore"):
@@ -229,12 +230,15 @@ def distance_to_singular(data: Equations, work: SparseWork) -> float:
 
 def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
-    if not sp.issparse(work.jacobian):
+    if isinstance(work.jacobian, Operator):
         return matrix_free.nearest_eigenvalues(data, work)
-    if data.reference is None:
+    factors, reference = _factorise(work), data.reference
+    if reference is None:
         rows, units = data.sizes()
-        data.reference = sp.diags_array(rows / units) if _factorise(work) is None else work.jacobian
-    return nearest_sparse(_factorise(work), data.reference)
+        reference = sp.csc_array(sp.diags_array(rows / units)) if factors is None else work.matrix
+        data.reference = reference
+    assert not isinstance(reference, np.ndarray)
+    return nearest_sparse(factors, reference, len(work.residual))
 
 
 def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.ndarray:
@@ -256,17 +260,22 @@ def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.n
     """
     matrix, n = work.jacobian, len(work.residual)
     if count >= n - 1:
-        values = np.linalg.eigvals(matrix.toarray() if sp.issparse(matrix) else matrix @ np.eye(n))
+        values = np.linalg.eigvals(matrix @ np.eye(n) if isinstance(matrix, Operator) else matrix.toarray())
         order = np.argsort(np.abs(values - shift), kind="stable")
         return values[order][:count]
     start = np.random.default_rng(5).standard_normal(n)
-    options: dict[str, Any] = {"k": count, "v0": start, "tol": EIGENVALUES, "return_eigenvectors": False}
+    options: dict[str, Any] = {
+        "k": count,
+        "v0": start,
+        "tol": LINEAR.eigenvalues,
+        "return_eigenvectors": False,
+    }
     solve = eigs
-    if sp.issparse(matrix):
+    if not isinstance(matrix, Operator):
         factors = _factorise(work) if shift == 0.0 else None
         if (abs(matrix - matrix.T)).max() == 0.0:
             solve = eigsh
-        options["sigma"] = shift if shift != 0.0 or factors is not None else 1e-12 * abs(matrix).max()
+        options["sigma"] = shift if shift != 0.0 or factors is not None else LINEAR.shift * abs(matrix).max()
         if factors is not None:
             options["OPinv"] = LinearOperator((n, n), matvec=factors.solve, dtype=float)  # type: ignore[call-arg]
     elif data.preconditioner_at() is not None:
@@ -288,7 +297,7 @@ def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.n
     return np.append(values, np.full(count - len(values), values[np.argmin(np.real(values))]))
 
 
-def eigenvectors(matrix: Any, values: np.ndarray) -> np.ndarray:
+def eigenvectors(matrix: sp.csc_array | Operator, values: np.ndarray) -> np.ndarray:
     """Unit eigenvectors as columns, for eigenvalues that are known, by inverse iteration.
 
     Raises
@@ -296,15 +305,15 @@ def eigenvectors(matrix: Any, values: np.ndarray) -> np.ndarray:
     ValueError
         If the matrix is a LinearOperator.
     """
-    if not sp.issparse(matrix):
+    if isinstance(matrix, Operator):
         raise ValueError(
             "a matrix-free Jacobian has no factors, so eigenvectors cannot be obtained from its eigenvalues"
         )
-    n = matrix.shape[0]
+    n = len(matrix.indptr) - 1
     size = float(abs(matrix).max())
     columns = []
     for k, value in enumerate(np.asarray(values, dtype=complex)):
-        near = value + 1e-10 * size * (1.0 + 0.3j)
+        near = value + LINEAR.beside * size * (1.0 + 0.3j)
         factors = splu((matrix - near * sp.identity(n)).tocsc().astype(complex))
         vector = np.random.default_rng(k).standard_normal(n).astype(complex)
         for _ in range(3):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -41,7 +40,7 @@ class SuperLUFactors:
 
     dear = True  # making them costs far more than a solution with them
 
-    def __init__(self, matrix: Any, ordering: str) -> None:
+    def __init__(self, matrix: sp.csc_array, ordering: str) -> None:
         self.inner = splu(matrix, permc_spec=ordering)
         self.nnz = int(self.inner.nnz)
 
@@ -81,9 +80,9 @@ class Band:
     places: tuple[np.ndarray, np.ndarray] = field(repr=False, default=(np.zeros(0, int), np.zeros(0, int)))
 
     @classmethod
-    def of(cls, matrix: Any) -> Band | None:
+    def of(cls, matrix: sp.csc_array) -> Band | None:
         """For the pattern of a matrix, in its own order or that of Cuthill and McKee; None where the band is wide."""
-        n = matrix.shape[0]
+        n = len(matrix.indptr) - 1
         columns = np.repeat(np.arange(n), np.diff(matrix.indptr))
         rows = matrix.indices
         best = None
@@ -101,7 +100,7 @@ class Band:
                 best = cls(rows, matrix.indptr, order, below, above, (below + above + i - j, j))
         return best
 
-    def fits(self, matrix: Any) -> bool:
+    def fits(self, matrix: sp.csc_array) -> bool:
         """Whether a matrix has this pattern."""
         return np.array_equal(matrix.indptr, self.indptr) and np.array_equal(matrix.indices, self.indices)
 
@@ -122,9 +121,9 @@ class BandFactors:
 
     dear = False
 
-    def __init__(self, matrix: Any, band: Band) -> None:
+    def __init__(self, matrix: sp.csc_array, band: Band) -> None:
         self.band, self.nnz = band, band.entries
-        table = np.zeros((2 * band.below + band.above + 1, matrix.shape[0]), order="F")
+        table = np.zeros((2 * band.below + band.above + 1, len(matrix.indptr) - 1), order="F")
         table[band.places] = matrix.data
         self.table, self.pivots, info = BAND_FACTORISE(table, band.below, band.above, overwrite_ab=1)
         if info != 0:
@@ -148,6 +147,9 @@ class BandFactors:
         return -1.0 if odd % 2 else 1.0
 
 
+Factors = SuperLUFactors | BandFactors
+
+
 @dataclass
 class Method:
     """How the matrices of one problem are factorised; found out at the first one."""
@@ -155,7 +157,7 @@ class Method:
     ordering: str = ""
     band: Band | None = None
 
-    def factorise(self, matrix: Any) -> Any:
+    def factorise(self, matrix: sp.csc_array) -> Factors:
         """Factors of a matrix (csc).
 
         Raises

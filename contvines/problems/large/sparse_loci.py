@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..functions import Operator
 from ..nearness import LARGEST
 
 if TYPE_CHECKING:
@@ -19,20 +20,16 @@ def flip(data: Equations, work: SparseWork, sign: float) -> None:
 
 def transpose(data: Equations, work: SparseWork, column: np.ndarray, other: SparseWork) -> None:
     """The transposed Jacobian, with another last column, into another workspace."""
-    from scipy.sparse import issparse
-
-    if not issparse(work.jacobian):
+    if isinstance(work.jacobian, Operator):
         raise ValueError(
             "loci need the transposed Jacobian: give it as an array or a sparse matrix, not as a LinearOperator"
         )
-    other.jacobian, other.factors, other.failed = work.jacobian.T.tocsc(), None, False
+    other.jacobian, other.factors, other.failed = work.matrix.T.tocsc(), None, False
     other.derivative[:] = column
 
 
 def matrix(data: Equations, work: SparseWork) -> np.ndarray:
     """F_u as it stands in a workspace, dense."""
-    from scipy.sparse import issparse
-
-    if len(work.residual) > LARGEST or not issparse(work.jacobian):
+    if len(work.residual) > LARGEST or isinstance(work.jacobian, Operator):
         raise ValueError(f"it needs the matrix of F_u, of up to {LARGEST} unknowns")
-    return work.jacobian.toarray()
+    return work.matrix.toarray()

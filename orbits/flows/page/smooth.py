@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from contvines.flows import FlowProblem
+from contvines.flows.cycles import CycleProblem
+from contvines.flows.equilibria import Equilibria
 from contvines.flows.files import problem_of
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
@@ -30,7 +32,7 @@ from orbits.words.word import Word
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from contvines.flows.cycles import CycleProblem
+    from contvines.flows.flow import Problem
     from orbits.machines.page.machine import Machine
 
 SAMPLES = (
@@ -119,9 +121,13 @@ class WithoutEvents(FlowProblem):
         """Measures of the machine beside those of any flow."""
         return tuple(name for name in measures.names(self.machine) if name not in (*self.of_states, "period"))
 
-    def measure_own(self, name: str, problem: CycleProblem, u: np.ndarray, p: float) -> float:
+    def measure_own(self, name: str, problem: Problem, u: np.ndarray, p: float) -> float:
         """One of these; an equilibrium has the values of a motion that lasts no time."""
-        nodes = self.node(problem, u, p)[None] if problem.spectrum == "map" else np.append(np.nan, u)[None]
+        nodes = (
+            self.node(problem, u, p)[None]
+            if isinstance(problem, CycleProblem)
+            else np.append(np.nan, u)[None]
+        )
         params = np.array(
             [{**problem.parameters, problem.parameter: p}[key] for key in self.machine.parameter_names]
         )
@@ -145,15 +151,17 @@ class WithoutEvents(FlowProblem):
             over, **{name: value for name, value in values.items() if name != over}
         )
 
-    def simulated_attractors(self, problem: CycleProblem, p: float, starts: int) -> list[dict[str, Any]]:
+    def simulated_attractors(self, problem: Problem, p: float, starts: int) -> list[dict[str, Any]]:
         """What the machine settles on."""
         return self._orbits(problem, p).simulated_attractors(p)
 
-    def known(self, problem: CycleProblem, u: np.ndarray, p: float) -> dict[str, Any]:
+    def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:
         """A stable motion as `simulated_attractors` lists it."""
         rest = {"word": None, "periods": 0, "kind": "rest"}
         return (
-            rest if problem.spectrum == "flow" else {"word": self.word.text, "periods": 1, "kind": "periodic"}
+            rest
+            if isinstance(problem, Equilibria)
+            else {"word": self.word.text, "periods": 1, "kind": "periodic"}
         )
 
     # ------------------------------------------------------------------ borders
@@ -161,9 +169,9 @@ class WithoutEvents(FlowProblem):
         """That of the contact whose guard becomes zero."""
         return border_kind(self.word, self.contacts[k])
 
-    def beyond(self, problem: CycleProblem, point: Any, k: int) -> list[Any]:
+    def beyond(self, problem: Problem, point: Any, k: int) -> list[Any]:
         """What goes on from a cycle that touches a contact, as the contacts' rules have it."""
-        if problem.spectrum == "flow":
+        if not isinstance(problem, CycleProblem):
             return []
         orbits, p = self._orbits(problem, float(point.value)), float(point.value)
         u, p = on_border(orbits.equations, self.node(problem, point.u, p), p, self.contacts[k])
@@ -176,7 +184,7 @@ class WithoutEvents(FlowProblem):
             orbits.beyond(SimpleNamespace(u=u, value=p, tangent=tangent, margin_index=self.contacts[k]))
         )
 
-    def dead_end(self, problem: CycleProblem, point: Any, k: int) -> str:
+    def dead_end(self, problem: Problem, point: Any, k: int) -> str:
         """Where the contact is touched."""
         return (
             super()
@@ -185,7 +193,7 @@ class WithoutEvents(FlowProblem):
             .replace(" stops the motion: it", " is touched: its guard")
         )
 
-    def _orbits(self, problem: CycleProblem, p: float) -> Any:
+    def _orbits(self, problem: Problem, p: float) -> Any:
         """The same motions as orbits with the word ""."""
         from orbits.problem import OrbitProblem
 
