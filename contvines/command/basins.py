@@ -6,10 +6,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from contvines.command.amounts import inside
-from contvines.command.frame import JsonOption, PlotOption, SizeOption, StudyArgument, check_plot, draw, tell
+from contvines.command.frame import (
+    JsonOption,
+    PlotOption,
+    SizeOption,
+    StudyArgument,
+    check_plot,
+    draw,
+    load_file,
+    tell,
+)
 
 if TYPE_CHECKING:
-    from ..graph.graph import Graph
+    pass
 
 
 def basins(
@@ -49,7 +58,7 @@ def basins(
     starts = population(asked)
     units = getattr(starts, "units", {})
     value = inside("--at", at, asked.parameter, asked.within, units, f"{study}: [continue] within")
-    graph: Graph | None = None if saddles is None else contvines.load(saddles)
+    graph = None if saddles is None else load_file(saddles)
     found = contvines.basins(starts, at=value, plane=plane, points=points, saddles=graph)
     tell(found, found.to_dict() if json else None)
     draw(plot, lambda: found.plot(figsize=size))

@@ -104,14 +104,14 @@ def calibrate(
         check_shaken(read, names)
     model, guesses = _guesses(read, names)
     bounds = _limits(limits or [], names, model)
-    path: Any = impacts or sweep
     try:
         if impacts is not None:
             found, places = _from_impacts(read, model, impacts, guesses, bounds, release, confidence)
         else:
-            found, places = _from_sweep(read, model, path, guesses, bounds, measure, confidence)
+            assert sweep is not None
+            found, places = _from_sweep(read, model, sweep, guesses, bounds, measure, confidence)
     except ValueError as error:
-        sentence = str(error).rstrip(".")
+        sentence, path = str(error).rstrip("."), impacts or sweep
         raise ValueError(
             sentence + "." if sentence.startswith(str(path)) else f"{path}: {sentence}."
         ) from None
@@ -253,7 +253,7 @@ def _from_impacts(
     params = model.vector(study.loose)
     length, unit, _, second = scales(model, params)
     (times,) = measured(path, (Column("time", second),))
-    start = study.state
+    start = study.named_state
     if release is not None:
         displacement = length_on_line(release, "--release", unit) / length
         if "damping" not in model.parameter_names:
@@ -287,6 +287,7 @@ def _from_sweep(
     from contvines.plots.style import axis_label
     from orbits.attractors.observation import measure_names
     from orbits.design.calibration import from_sweep
+    from orbits.machines.physical.machine import Physical
 
     known = measure_names(model)
     over, name = study.parameter, measure or next(name for name in known if name.startswith("max_"))
@@ -299,7 +300,7 @@ def _from_sweep(
     unit = model.units.get(name, "")
     own = model.units.get(over, "")
     values, heights = measured(path, (Column(over, own), Column("response", unit)))
-    if own and study.sort is Sort.PHYSICAL:
+    if own and isinstance(model, Physical):
         for row, value in enumerate(values, 1):
             _, refusal = number_of(
                 model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}"

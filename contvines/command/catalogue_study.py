@@ -3,10 +3,18 @@
 from pathlib import Path
 from typing import Any
 
-from contvines.command.schema import UnknownModel, catalogue_model, expected_value, given, number
+from contvines.command.schema import (
+    UnknownModel,
+    catalogue_model,
+    expected_value,
+    given,
+    model_section,
+    number,
+)
 from contvines.command.study_data import Sort, Study, without_word, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
 from contvines.shared.near_names import did_you_mean
+from orbits.machines.base import Model
 from orbits.machines.building import build
 from orbits.machines.catalogue import NAMES, PAGES, STRUCTURE, model_class
 from orbits.machines.parameters import CONTACT_TIME
@@ -28,7 +36,7 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
     file = validated(catalogue_model(name), data)
     machine = model_class(name)
     entries = {entry.name: entry for entry in machine.settable}
-    values = {**given(file.model, entries), **given(file.start, entries)}
+    values = {**given(model_section(file), entries), **given(file.start, entries)}
     parameters = {key: float(values[key]) for key in entries if key in values}
 
     def refusal(parameter: str, value: float) -> str:
@@ -57,13 +65,13 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
     loose = {key: value for key, value in parameters.items() if key not in machine.field_names()}
     own = {key: value for key, value in parameters.items() if key not in loose}
     try:
-        made = build({"name": name, **own, **given(file.model, [CONTACT_TIME.name])})
+        made = build({"name": name, **own, **given(model_section(file), [CONTACT_TIME.name])})
     except ValueError as error:
         raise StudyError(f"[model] {error}") from error
     return built(Study.of(path, Sort.CATALOGUE, name, parameters, file, model=made, loose=loose))
 
 
-def _without_machine(data: dict[str, Any], model: Any, name: Any) -> list[str]:
+def _without_machine(data: dict[str, Any], model: object, name: object) -> list[str]:
     """What is wrong with a study of which nobody knows whose it is."""
     names = f'{", ".join(repr(known) for known in (*NAMES, *PAGES, STRUCTURE))}, or a machine of your own, "FILE.py:NAME"'
     if name is not None:
@@ -79,7 +87,7 @@ def _without_machine(data: dict[str, Any], model: Any, name: Any) -> list[str]:
     return [wrong]
 
 
-def wrong_guess(guess: list[list[float]] | None, machine: Any) -> list[str]:
+def wrong_guess(guess: list[list[float]] | None, machine: Model | type[Model]) -> list[str]:
     """Nodes of a guess with the wrong count of numbers."""
     names = machine.node_names
     return [

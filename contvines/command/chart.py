@@ -133,13 +133,14 @@ def chart_of(
     target: Path,
     quiet: bool,
     source: dict[str, Any] | None,
-):
+) -> "Chart":
     """The chart of a diagram: from its file if that is finished, computed else; `source` is kept for `contvines rerun`."""
+    from contvines.loci.chart import Chart
     from contvines.loci.charting import chart as make
     from contvines.store import Store
 
     fingerprint = fingerprint_of(graph, over, ends, virtual)
-    found = finished_of(target, fingerprint, quiet, problems=False)
+    found = finished_of(Chart, target, fingerprint, quiet, problems=False)
     if found is not None:
         say(f"{target} holds the finished chart; nothing to compute.", quiet)
         return found
@@ -153,7 +154,7 @@ def chart_of(
 
 def _diagram(
     file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, fresh: bool
-) -> tuple[Any, Path, str, tuple[float, float]]:
+) -> tuple["Graph", Path, str, tuple[float, float]]:
     """The diagram to chart, made first if a study is given, its file, and what to chart it over."""
     from contvines.command.study import is_database, read_study
 

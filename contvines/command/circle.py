@@ -37,8 +37,8 @@ def circle(
 ) -> None:
     """Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up."""
     check_plot(plot, size)
-    graph = load_file(file, trust, charts=True)
-    special = getattr(graph, "special", {})
+    graph = load_file(file, trust)
+    special = graph.special
     if label not in special:
         known = ", ".join(name for name, point in special.items() if point.kind == "neimark-sacker")
         raise ValueError(

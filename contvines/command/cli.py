@@ -9,7 +9,7 @@ import gc
 import re
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -67,7 +67,7 @@ def main(arguments: list[str] | None = None) -> None:
     except Exception as error:
         if debug:
             raise
-        explain: Any = getattr(error, "show", None)
+        explain = getattr(error, "show", None)
         if callable(explain):  # the line itself cannot be understood
             from contvines.command.refusals import refusal
 

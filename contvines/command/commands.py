@@ -4,7 +4,7 @@ from importlib import import_module
 from typing import Any
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperOption
 from typer.main import get_command
 
 COMMANDS = {
@@ -94,8 +94,8 @@ class Command(TyperCommand):
         for k, name in enumerate(args):
             if name == "--":
                 break
-            option: Any = options.get(name)
-            if option is None or option.is_flag or option.count:
+            option = options.get(name)
+            if not isinstance(option, TyperOption) or option.is_flag or option.count:
                 continue
             follows = next((word for word in args[k + 1 : k + 1 + option.nargs] if word in options), None)
             if follows:
@@ -105,11 +105,13 @@ class Command(TyperCommand):
         return super().parse_args(ctx, args)
 
 
-def command(name: str) -> Any:
+def command(name: str) -> TyperCommand:
     """The sub-command of a name, with all its options."""
     own = typer.Typer(add_completion=False, rich_markup_mode=None)
     own.command(name, cls=Command)(getattr(import_module(f"contvines.command.{COMMANDS[name][0]}"), name))
-    return get_command(own)
+    found = get_command(own)
+    assert isinstance(found, TyperCommand)
+    return found
 
 
 class Listed(TyperCommand):
@@ -119,7 +121,7 @@ class Listed(TyperCommand):
         """The whole sentence, which goes on in further lines of the list."""
         return str(self.help)
 
-    def make_context(self, info_name: Any, args: Any, parent: Any = None, **extra: Any) -> Any:
+    def make_context(self, info_name: str | None, args: list[str], parent: Any = None, **extra: Any) -> Any:
         return command(str(self.name)).make_context(info_name, args, parent=parent, **extra)
 
 

@@ -122,7 +122,7 @@ def _settled(study: Study):
     from orbits.design import Family
 
     orbit = Family(
-        study.model, loose=study.loose, over=study.parameter, within=study.within, state=study.state
+        study.model, loose=study.loose, over=study.parameter, within=study.within, state=study.named_state
     )({})
     amount = orbit.model.amount(study.parameter, orbit.params)
     unit = study.model.units.get(study.parameter, "")
@@ -145,7 +145,7 @@ def _asked(study: Study) -> dict[str, Any]:
     return {"depth": study.depth, "virtual": study.virtual, "settings": study.settings, "kinds": kinds}
 
 
-def run_diagram(study: Study, seed: Any, **options: Any) -> "Graph":
+def run_diagram(study: Study, seed: object, **options: Any) -> "Graph":
     """The automatic diagram of a study from its first orbit; options as for `contvines.diagram`."""
     import contvines
 
@@ -153,7 +153,7 @@ def run_diagram(study: Study, seed: Any, **options: Any) -> "Graph":
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
 
-def run_atlas(study: Study, seed: Any, **options: Any) -> "Graph":
+def run_atlas(study: Study, seed: object, **options: Any) -> "Graph":
     """The atlas of a study's starts; options as for `contvines.atlas`."""
     import contvines
 

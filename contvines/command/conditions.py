@@ -60,7 +60,7 @@ def without_tables(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, floa
     return plain, conditions, tuple(tables)
 
 
-def _conditions(given: Any) -> dict[str, float]:
+def _conditions(given: object) -> dict[str, float]:
     if not isinstance(given, dict):
         raise StudyError(
             f"conditions = {given!r} is not a section; write [conditions] on a line of its own, temperature = 45 below."

@@ -15,15 +15,20 @@ from contvines.command.study_data import Sort, Study
 from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from orbits.design.figures import Design
+    from orbits.numbers import Reals
 
 DAMPING = 0.9  # the reduced model has none; the coupled model's default
 HALF_WIDTH = 0.02  # metres, of a dimensionless machine without a scale
 LEVELS = 10  # contours of a map, about
 DECADES = 8.0  # how many times the largest number is the smallest where contours go by decades
+MM = 1000.0  # of a metre
 
 
 def machine(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
@@ -124,7 +129,7 @@ def assumptions(study: Study, cavity: float | None, natural_frequency: float | N
         found["acceleration"] = f"gravity is {Design.acceleration:g} m/s^2"
         if cavity is None and natural_frequency is None:
             found["half_width"] = (
-                f"the half-width of the cavity is {1e3 * HALF_WIDTH:g} mm, because the study is dimensionless; all lengths "
+                f"the half-width of the cavity is {MM * HALF_WIDTH:g} mm, because the study is dimensionless; all lengths "
                 "are proportional to it; --half-width METRES or --natural-frequency HERTZ gives the machine's own"
             )
     if "damping" not in (study.model.parameter_names if study.sort is Sort.PHYSICAL else study.parameters):
@@ -138,7 +143,7 @@ def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, 
         (
             "half-width of cavity",
             "b",
-            1e3 * design.cavity,
+            MM * design.cavity,
             "mm",
             "assumed; wall to wall is 2 b" if "half_width" in assumed else "wall to wall is 2 b",
         ),
@@ -156,7 +161,7 @@ def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, 
     ]
     for line in design.figures():
         length = line.unit == "m"
-        value = float(line.value) * (1e3 if length else 1.0)
+        value = float(line.value) * (MM if length else 1.0)
         given.append(
             (line.name, line.symbol, value, "mm" if length else line.unit.replace("1", ""), line.meaning)
         )
@@ -204,13 +209,13 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     b = np.linspace(0.35, 2.0, 201) * b0
     columns = (
         (mu, "friction", mu0, r"friction $\mu$", 1.0),
-        (b, "cavity", b0, "half-width $b$ [mm]", 1e3),
+        (b, "cavity", b0, "half-width $b$ [mm]", MM),
     )
     with styled():
         size = size or (10.5, 6.6)
         figure = new_figure(figsize=size)
         if "half_width" in assumed:
-            figure.suptitle(f"lengths for an assumed half-width $b$ = {1e3 * b0:g} mm", fontsize="small")
+            figure.suptitle(f"lengths for an assumed half-width $b$ = {MM * b0:g} mm", fontsize="small")
         if min(size[0] / 6.0, size[1] / 4.0) < 1.0:
             axes = figure.add_subplot()
             _bounds(axes, design, columns[0], 1.9)
@@ -233,7 +238,7 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
             )
             bottom[column].axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
         over = design.with_(friction=mu[None, :], cavity=b[:, None])
-        _map(top[2], mu, b, over.upper_bound * 1e3, (mu0, b0), r"upper bound $q_{1,\max}$ [mm]")
+        _map(top[2], mu, b, over.upper_bound * MM, (mu0, b0), r"upper bound $q_{1,\max}$ [mm]")
         _map(bottom[2], mu, b, over.operating_ratio, (mu0, b0), r"operating ratio $\xi$")
         bottom[2].set_xlabel(r"friction $\mu$")
     return figure
@@ -247,20 +252,18 @@ def _bounds(axes: Axes, design: Design, over: tuple[Any, str, float, str, float]
     line = design.with_(**{name: axis})
     low, high = np.broadcast_to(line.activation_threshold, axis.shape), line.upper_bound
     stick = np.broadcast_to(line.sticking_limit(), axis.shape)
-    axes.fill_between(
-        axis * unit, 1e3 * low, 1e3 * high, color="#dbe6f1", lw=0, label="two symmetric impacts"
-    )
+    axes.fill_between(axis * unit, MM * low, MM * high, color="#dbe6f1", lw=0, label="two symmetric impacts")
     for values, color, style, label in (
         (low, "#0b3c6f", "-", r"activation threshold $q_{1,\min}$"),
         (high, "#0b3c6f", (0, (5, 2.2)), r"upper bound $q_{1,\max}$"),
         (stick, "#b5121b", (0, (1, 1.6)), r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$"),
     ):
-        axes.plot(axis * unit, 1e3 * values, color=color, ls=style, label=label)
-    axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05e3 * room * max(np.max(high), np.max(stick))))
+        axes.plot(axis * unit, MM * values, color=color, ls=style, label=label)
+    axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05 * MM * room * max(np.max(high), np.max(stick))))
     axes.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
 
 
-def _round_levels(low: float, high: float) -> Any:
+def _round_levels(low: float, high: float) -> Sequence[float]:
     """Round values from below the lowest number to above the highest: in even steps, by decades (1, 2, 5) where they differ much."""
     from matplotlib.ticker import LogLocator, MaxNLocator
 
@@ -269,18 +272,21 @@ def _round_levels(low: float, high: float) -> Any:
     return MaxNLocator(nbins=LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
 
 
-def _map(panel: Any, mu: Any, b: Any, values: Any, here: tuple[float, float], title: str) -> None:
+def _map(
+    panel: Axes, mu: np.ndarray, b: np.ndarray, values: Reals, here: tuple[float, float], title: str
+) -> None:
     """A quantity over friction and half-width, as contours."""
     import numpy as np
 
+    values = np.asarray(values)
     known = values[np.isfinite(values)]  # elastic walls without friction: no threshold, no ratio
     if known.size and known.max() > 1.001 * known.min():
         levels = _round_levels(float(known.min()), float(known.max()))
         shown = np.ma.masked_invalid(values)
-        panel.contourf(mu, 1e3 * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
-        lines = panel.contour(mu, 1e3 * b, shown, levels=levels, colors="#0b3c6f", linewidths=0.9)
+        panel.contourf(mu, MM * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
+        lines = panel.contour(mu, MM * b, shown, levels=levels, colors="#0b3c6f", linewidths=0.9)
         panel.clabel(lines, fmt="%.3g", fontsize=7.5)
-    panel.plot(here[0], 1e3 * here[1], "o", color="#b5121b")
+    panel.plot(here[0], MM * here[1], "o", color="#b5121b")
     panel.set(ylabel="half-width $b$ [mm]", title=title)
     panel.grid(False)
 

@@ -9,6 +9,7 @@ from typing import Any
 import typer
 
 from contvines.command.frame import JsonOption, tell
+from contvines.continuation.settings import Settings
 from contvines.shared.extras import pip_install
 
 EXTRAS = {
@@ -20,8 +21,6 @@ EXTRAS = {
     "report": ("plotly",),
 }
 """Modules that each extra of pyproject.toml brings."""
-
-AGREES = 1e-9  # relative; the fold is solved to roundoff, whatever the processor
 
 
 def doctor(json: JsonOption = False) -> None:
@@ -79,7 +78,7 @@ def self_test() -> dict[str, Any]:
     folds = [point.value for point in graph.special.values() if point.kind == "fold"]
     found = min(folds, key=lambda value: abs(value - expected), default=math.nan)
     return {
-        "passed": bool(abs(found - expected) < AGREES * expected),
+        "passed": bool(abs(found - expected) < Settings.located * expected),
         "found": float(found),
         "closed_form": expected,
     }

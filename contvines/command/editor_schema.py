@@ -1,9 +1,12 @@
 """`contvines schema`: the JSON Schema of studies, from which editors complete and check them."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel
 
 DIALECT = "http://json-schema.org/draft-07/schema#"  # what the TOML plugins of editors read
 
@@ -141,19 +144,20 @@ def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
     return made | {"title": title, "required": ["model", *made["required"]]}
 
 
-def inlined(model: Any) -> dict[str, Any]:
+def inlined(model: type[BaseModel]) -> dict[str, Any]:
     """The schema of a pydantic model without references, and without the null that TOML does not have."""
     made = model.model_json_schema(by_alias=True)
     shared = made.pop("$defs", {})
 
-    def told(value: object) -> Any:
+    def told(value: object) -> object:
         if isinstance(value, list):
             return [told(entry) for entry in value]
-        if not isinstance(value, dict):
-            return value
-        kept = {k: told(v) for k, v in value.items() if not _said_already(k, v)}
+        return told_of(value) if isinstance(value, dict) else value
+
+    def told_of(value: dict[str, Any]) -> dict[str, Any]:
+        kept: dict[str, Any] = {k: told(v) for k, v in value.items() if not _said_already(k, v)}
         if "$ref" in kept:
-            kept = told(shared[kept.pop("$ref").rpartition("/")[2]]) | kept
+            kept = told_of(shared[kept.pop("$ref").rpartition("/")[2]]) | kept
         choices = [entry for entry in kept.get("anyOf", ()) if entry != {"type": "null"}]
         if len(choices) == 1:
             kept = choices[0] | {k: v for k, v in kept.items() if k != "anyOf"}
@@ -161,7 +165,7 @@ def inlined(model: Any) -> dict[str, Any]:
             kept["anyOf"] = choices
         return kept
 
-    return told(made)
+    return told_of(made)
 
 
 def _said_already(key: str, value: object) -> bool:
@@ -171,12 +175,14 @@ def _said_already(key: str, value: object) -> bool:
     )
 
 
-def _with_units(value: object) -> Any:
+def _with_units(value: dict[str, Any]) -> dict[str, Any]:
     """Lists of numbers become lists of numbers or of text with a unit."""
-    if isinstance(value, list):
-        return [_with_units(entry) for entry in value]
-    if not isinstance(value, dict):
-        return value
     if value.get("items") == {"type": "number"}:
         return value | {"items": {"type": ["number", "string"]}}
-    return {k: v if k == "guess" else _with_units(v) for k, v in value.items()}
+    return {k: v if k == "guess" else _part_with_units(v) for k, v in value.items()}
+
+
+def _part_with_units(value: object) -> object:
+    if isinstance(value, list):
+        return [_part_with_units(entry) for entry in value]
+    return _with_units(value) if isinstance(value, dict) else value

@@ -66,8 +66,10 @@ def export(
     if to is not Format.auto:
         check_target(target, ending)
     measures = to in (Format.csv, Format.mat, Format.auto, Format.xpp)
+    from contvines.loci.chart import Chart
+
     graph = load_file(file, trust, measures, charts=True)
-    if hasattr(graph, "loci"):
+    if isinstance(graph, Chart):
         from contvines.export.charts import export_chart
 
         typer.echo(str(export_chart(graph, to.value, target)))

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, overload
 
 import typer
 
@@ -12,6 +12,7 @@ from contvines.text_table import fitted
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
+    from ..loci.chart import Chart
 
 StudyArgument = Annotated[
     Path, typer.Argument(metavar="STUDY.toml", help="A study: model, start, what to continue.")
@@ -171,7 +172,10 @@ def working(note: str, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
         yield progress
 
 
-def finished_of(target: Path, fingerprint: str, quiet: bool, *, problems: bool) -> Any:
+R = TypeVar("R", "Graph", "Chart")
+
+
+def finished_of(kind: type[R], target: Path, fingerprint: str, quiet: bool, *, problems: bool) -> R | None:
     """The finished result of a run in its file; None if the run is still to be done, or to be gone on with.
 
     Raises
@@ -186,7 +190,10 @@ def finished_of(target: Path, fingerprint: str, quiet: bool, *, problems: bool) 
     with Store.open(target) as store:
         store.require(fingerprint)
         if store.finished:
-            return store.graph(problems=problems)
+            found = store.graph(problems=problems)
+            if not isinstance(found, kind):
+                raise ValueError(f"{target}: this file holds another result; choose another name with -o.")
+            return found
         say(f"{target} is unfinished: going on after {store.records} finished pieces of work.", quiet)
         return None
 
@@ -195,12 +202,27 @@ MOST_NAMED = 24  # labels in one sentence
 
 
 # ---------------------------------------------------------------------- results
-def load_file(file: Path, trust: bool = False, problems: bool = True, charts: bool = False) -> Any:
+@overload
+def load_file(
+    file: Path, trust: bool = False, problems: bool = True, charts: Literal[False] = False
+) -> "Graph": ...
+
+
+@overload
+def load_file(
+    file: Path, trust: bool = False, problems: bool = True, *, charts: Literal[True]
+) -> "Graph | Chart": ...
+
+
+def load_file(
+    file: Path, trust: bool = False, problems: bool = True, charts: bool = False
+) -> "Graph | Chart":
     """The graph of a file, or its chart where the verb takes charts."""
+    from contvines.graph.graph import Graph
     from contvines.store import load
 
     graph = load(file, problems=problems, trust=trust)
-    if not charts and not hasattr(graph, "special"):
+    if not charts and not isinstance(graph, Graph):
         raise ValueError(f"{file}: this file holds a chart; give one that `contvines diagram` has made.")
     return graph
 
@@ -228,17 +250,18 @@ def refuse_detached(graph: "Graph", *labels: str) -> None:
             raise ValueError(without_problem(label, None if branch is None else branch.description))
 
 
-def refuse_unfinished(graph: "Graph", file: Path) -> None:
+def refuse_unfinished(graph: "Graph | Chart", file: Path) -> None:
     """Work on a result begins when that is finished."""
     if not graph.finished:
         raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
 
 
-def say_state(graph: "Graph", file: Path, problems: bool = True) -> None:
+def say_state(graph: "Graph | Chart", file: Path, problems: bool = True) -> None:
     """Branches that were loaded as numbers only, and why; whether the run goes on."""
+    from contvines.graph.graph import Graph
     from contvines.problems.registry import without_problem
 
-    for branch in graph.branches.values() if problems else ():
+    for branch in graph.branches.values() if problems and isinstance(graph, Graph) else ():
         if branch.problem is None and branch.description.get("factory"):
             typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
             break
@@ -248,7 +271,7 @@ def say_state(graph: "Graph", file: Path, problems: bool = True) -> None:
         )
 
 
-def tell(found: Any, data: Any = None) -> None:
+def tell(found: object, data: object = None) -> None:
     """Print a result: one JSON object where there is `data`, else as text."""
     if data is None:
         typer.echo(str(found))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,13 +13,15 @@ if TYPE_CHECKING:
 def dissipation(found: Findings) -> dict[str, float]:
     """Power that impacts and friction dissipate where the stable response of the diagram is largest; nan of a declared machine without ``energy=``."""
     from contvines.survey.outcomes import highest, stretches
+    from orbits.orbit import Orbit
 
     top = highest(stretches(found.graph))
     if top is None or "impact_loss" not in top.stretch.branch.measure_names:
         return {"impact_power": np.nan, "friction_power": np.nan}
-    orbit: Any = top.stretch.branch.orbit(top.place)
+    orbit = top.stretch.branch.orbit(top.place)
+    assert isinstance(orbit, Orbit)
     seconds = orbit.period * float(orbit.model.gauge("time", orbit.params))
-    share = seconds * (1e-3 if orbit.model.units.get("impact_loss") == "J" else 1.0)  # shown in mW
+    share = seconds * (0.001 if orbit.model.units.get("impact_loss") == "J" else 1.0)  # shown in mW
     return {f"{name}_power": orbit.measure(f"{name}_loss") / share for name in ("impact", "friction")}
 
 
@@ -30,14 +32,17 @@ def pumping(found: Findings) -> dict[str, float]:
     """
     from contvines.survey.outcomes import peak
     from orbits.design.transients import free_decay
+    from orbits.orbit import Orbit
 
-    model = found.seed.model
-    height = peak(found)["peak"] / float(model.gauge("length", found.seed.params))
+    seed = found.seed
+    assert isinstance(seed, Orbit)
+    model = seed.model
+    height = peak(found)["peak"] / float(model.gauge("length", seed.params))
     if not np.isfinite(height):
         return {"pumping_time": np.nan, "pumped_share": np.nan}
-    decay = free_decay(model, found.seed.params, height)
+    decay = free_decay(model, seed.params, height)
     return {
-        "pumping_time": decay.pumping_time * float(model.gauge("time", found.seed.params)),
+        "pumping_time": decay.pumping_time * float(model.gauge("time", seed.params)),
         "pumped_share": decay.absorber_share,
     }
 

@@ -6,10 +6,12 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from orbits.machines.varying import Varying
 
 
 _UNIT = re.compile(r"\[([^\]]*)\]|\(([^)]*)\)|/\s*([^/]+)$")
@@ -105,7 +107,7 @@ def length_on_line(text: str, option: str, unit: str) -> float:
     return number * factor
 
 
-def scales(model: Any, params: np.ndarray) -> tuple[float, str, float, str]:
+def scales(model: Varying, params: np.ndarray) -> tuple[float, str, float, str]:
     """What a dimensionless length and time are in the units that a study shows, and these units ("" for plain numbers)."""
     from orbits.machines.physical import units
     from orbits.machines.physical.machine import Physical

@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -18,6 +18,12 @@ from contvines.command.frame import (
 )
 from contvines.shared.number_text import complex_figures, figures
 from contvines.text_table import fitted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from contvines.graph.graph import Graph
+    from contvines.loci.chart import Chart
 
 
 def orbit(
@@ -56,13 +62,14 @@ def orbit(
     tell(fitted(_describe(found)), _plain(found) if json else None)
     draw(plot, lambda: plot_portrait(found))
     if animate is not None:
-        if not hasattr(found, "animate"):
+        animated = getattr(found, "animate", None)
+        if not callable(animated):
             raise ValueError(f"--animate {animate}: this solution has no motion to show; --plot draws it")
-        found.animate(animate)
+        animated(animate)
         say(f"animation written to {animate}")
 
 
-def _orbit(file: Path, label: str | None, trust: bool) -> Any:
+def _orbit(file: Path, label: str | None, trust: bool) -> object:
     from contvines.command.study import is_database, read_study
 
     if not is_database(file) and file.suffix == ".toml":
@@ -74,21 +81,22 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
             )
         study = read_study(file)
         return _solution(first_orbit(study), study.within)
+    from contvines.branches.special_point import SpecialPoint
+    from contvines.graph.graph import Graph
+    from contvines.loci.plane_point import PlanePoint
     from contvines.problems.registry import without_problem
 
     graph = load_file(file, trust, charts=True)
     if label is None:
-        raise ValueError(
-            f"which orbit of {file}? Give one of the labels {', '.join([*graph.special, *graph.branches])}."
-        )
+        raise ValueError(f"which orbit of {file}? Give one of the labels {', '.join(_labels(graph))}.")
     name, _, place = label.partition(":")
     thing = graph[name]
-    if hasattr(thing, "kind") and not place:
-        if thing.problem is None:
+    if isinstance(thing, SpecialPoint | PlanePoint):
+        if place:
+            raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
+        if isinstance(thing, SpecialPoint) and isinstance(graph, Graph) and thing.problem is None:
             raise ValueError(without_problem(name, graph.branches[thing.branch].description))
         return thing.orbit
-    if hasattr(thing, "kind"):
-        raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
     last = len(thing) - 1
     if place and not (place.isdigit() and int(place) <= last):
         raise ValueError(
@@ -97,21 +105,34 @@ def _orbit(file: Path, label: str | None, trust: bool) -> Any:
     return thing.orbit(int(place or 0))
 
 
-def _solution(start: Any, within: tuple[float, float]) -> Any:
+def _labels(graph: "Graph | Chart") -> list[str]:
+    """All labels of a graph or chart."""
+    from contvines.graph.graph import Graph
+
+    if isinstance(graph, Graph):
+        return [*graph.special, *graph.branches]
+    return [*graph.points, *graph.loci]
+
+
+def _solution(start: object, within: tuple[float, float]) -> object:
     """The start of a study: an orbit as it is; of a problem (equilibria, cycles of maps) its first solution."""
-    if not hasattr(start, "u0"):
+    from contvines.problems.abilities import Started
+
+    if not isinstance(start, Started):
         return start
     from contvines.continuation.engine import Engine
     from contvines.continuation.settings import Settings
-    from contvines.continuation.starts import solve_start
+    from contvines.continuation.starts import problem_and_start, solve_start
 
-    first = solve_start(Engine(start, within, Settings()), start.u0, start.p0)
-    return start.orbit(first.u, first.p)
+    problem, u, p = problem_and_start(start, None)
+    first = solve_start(Engine(problem, within, Settings()), u, p)
+    return problem.orbit(first.u, first.p)
 
 
-def _plain(found: Any) -> dict[str, Any]:
-    if hasattr(found, "to_dict"):
-        return found.to_dict()
+def _plain(found: object) -> dict[str, Any]:
+    to_dict: Callable[[], dict[str, Any]] | None = getattr(found, "to_dict", None)
+    if to_dict is not None:
+        return to_dict()
     names = [n for n in ("parameter", "value", "u", "points") if hasattr(found, n)]
     return {n: getattr(found, n) for n in names}
 
@@ -127,7 +148,7 @@ EVENTS = {
 }
 
 
-def _describe(found: Any) -> str:
+def _describe(found: object) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
     from contvines.graph.shortening import short_word
     from contvines.graph.table import with_unit

@@ -6,15 +6,21 @@ has not come with it.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import Field
 
 from contvines.command.own_code import own_code
-from contvines.command.schema import FlowSections, PageSections, given, study_model, text
+from contvines.command.schema import FlowSections, PageSections, given, model_section, study_model, text
 from contvines.command.study_data import Sort, Study, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
 from orbits.machines.catalogue import PAGES, STRUCTURE, page_machine
+
+if TYPE_CHECKING:
+    from contvines.flows.problem import FlowProblem
+    from orbits.machines.page.machine import Machine
+
+F = TypeVar("F", PageSections, FlowSections)
 
 
 def read_own(data: dict[str, Any], path: Path) -> Study:
@@ -51,7 +57,7 @@ def _section(data: dict[str, Any], name: str) -> dict[str, Any]:
     return section if isinstance(section, dict) else {}
 
 
-def _structure(data: dict[str, Any], path: Path) -> tuple[Any, dict[str, Any]]:
+def _structure(data: dict[str, Any], path: Path) -> tuple["Machine", dict[str, Any]]:
     """The structure of a study, and the study without its matrices and elements."""
     from orbits.machines.parameters import ParameterError
     from orbits.machines.structure.structure import GIVEN, MATRICES, MEANT, structure
@@ -80,9 +86,7 @@ def _structure(data: dict[str, Any], path: Path) -> tuple[Any, dict[str, Any]]:
     return machine, {**data, "model": rest}
 
 
-def _values(
-    sections: Any, base: Any, known: Mapping[str, float], data: dict[str, Any]
-) -> tuple[Any, dict[str, float]]:
+def _values(base: type[F], known: Mapping[str, float], data: dict[str, Any]) -> tuple[F, dict[str, float]]:
     """The checked sections, and the values that they give to parameters."""
     kinds: dict[str, Any] = {
         name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in known.items()
@@ -92,12 +96,12 @@ def _values(
     }
     settings = {**{name: (kind | None, None) for name, kind in kinds.items()}, **settings}
     file = validated(study_model(base, settings, kinds), data)
-    return file, {**given(file.model, kinds), **given(file.start, kinds)}
+    return file, {**given(model_section(file), kinds), **given(file.start, kinds)}
 
 
-def _flow(data: dict[str, Any], path: Path, flow: Any) -> Study:
+def _flow(data: dict[str, Any], path: Path, flow: "FlowProblem") -> Study:
     known = dict(flow.values.values)
-    file, values = _values(data, FlowSections, known, data)
+    file, values = _values(FlowSections, known, data)
     parameters = {**known, **{name: float(value) for name, value in values.items()}}
     wrong = wrong_intervals(file, parameters[file.continue_.parameter], lambda name, value: "")
     state, box, size = file.start.state, file.start.box, len(flow.x0)
@@ -109,11 +113,13 @@ def _flow(data: dict[str, Any], path: Path, flow: Any) -> Study:
     elif box is not None and not all(low < high for low, high in box):
         wrong.append(f"[start] box = {box!r}: each pair is (low, high), low < high.")
     refuse(wrong)
-    flow.box = box  # of charts, and of the look after a diagram, as well
+    flow.box = (
+        None if box is None else [(low, high) for low, high in box]
+    )  # of charts, and of the look after a diagram, as well
     return Study.of(path, Sort.FLOW, str(data["model"]["name"]), parameters, file, flow=flow)
 
 
-def _counted(data: dict[str, Any], machine: Any) -> dict[str, Any]:
+def _counted(data: dict[str, Any], machine: "Machine") -> dict[str, Any]:
     """A study of a machine with units in which quantities, as `"15 mm"`, are numbers in these units.
 
     Raises
@@ -127,7 +133,7 @@ def _counted(data: dict[str, Any], machine: Any) -> dict[str, Any]:
     if not units:
         return data
 
-    def number(name: object, said: Any, where: str) -> Any:
+    def number(name: object, said: object, where: str) -> object:
         if isinstance(said, list):
             return [number(name, one, where) for one in said]
         if isinstance(said, dict):  # of [survey] vary
@@ -158,9 +164,9 @@ def _counted(data: dict[str, Any], machine: Any) -> dict[str, Any]:
     return found
 
 
-def _page(data: dict[str, Any], path: Path, machine: Any) -> Study:
+def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
     data = _counted(data, machine)
-    file, values = _values(data, PageSections, machine.parameters, data)
+    file, values = _values(PageSections, machine.parameters, data)
 
     def refusal(parameter: str, value: float) -> str:
         try:

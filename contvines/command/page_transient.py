@@ -49,7 +49,7 @@ def of_page(
     machine = study.model
     params, shown = machine.vector(study.loose), machine.units
     second = shown.get("time", "")
-    start = dict(study.state or {}) if release is None else _states(study, release)
+    start = dict(study.named_state or {}) if release is None else _states(study, release)
     rising = {} if begin is None or over is None else {
         "run_up_from": frequency_on_line(study, begin), "run_up_time": time_on_line(over, second)
     }  # fmt: skip

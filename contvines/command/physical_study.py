@@ -16,7 +16,7 @@ from contvines.command.study_data import Sort, Study, wrong_intervals
 from contvines.command.study_errors import refuse, validated
 from orbits.machines.catalogue import model_class
 from orbits.machines.physical import units
-from orbits.machines.physical.machine import physical, tables
+from orbits.machines.physical.machine import Physical, physical, tables
 from orbits.machines.physical.quantities import Quantity, QuantityError, near_quantity
 
 OWN = ("name", "units", "unusual", "contact_time")
@@ -43,7 +43,7 @@ def read_physical(data: dict[str, Any], path: Path) -> Study:
     return built(Study.of(path, Sort.PHYSICAL, machine.name, own, file, model=machine))
 
 
-def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
+def converted(data: dict[str, Any]) -> tuple[Physical | None, dict[str, Any], list[str]]:
     """The machine of a study in physical units, the study with numbers in place of quantities, and what is wrong.
 
     Returns
@@ -102,7 +102,7 @@ def converted(data: dict[str, Any]) -> tuple[Any, dict[str, Any], list[str]]:
     return machine, plain, wrong
 
 
-def _parameter(section: Any) -> str | None:
+def _parameter(section: object) -> str | None:
     name = section.get("parameter") if isinstance(section, dict) else None
     return name if isinstance(name, str) else None
 
@@ -112,7 +112,7 @@ def _said(known: Mapping[str, Quantity], name: str, given: Iterable[str]) -> boo
     return any(key == name or known[key].choice == known[name].choice for key in given if key in known)
 
 
-def _middle(quantity: Quantity, within: Any) -> Any:
+def _middle(quantity: Quantity, within: object) -> object:
     """The middle of an interval as a quantity in the unit of its lower end; that end itself where it is no interval of quantities.
 
     Raises
@@ -147,7 +147,7 @@ def _without_texts(plain: dict[str, Any]) -> dict[str, Any]:
 
 
 def _numbers(
-    machine: Any, known: Any, section: str, values: dict[str, Any], usual: str | None
+    machine: Physical, known: Mapping[str, Quantity], section: str, values: dict[str, Any], usual: str | None
 ) -> tuple[dict[str, Any], list[str]]:
     """A section with numbers in place of quantities, and refusals; the machine tells them by the quantity that varies."""
     name, changed, wrong = _parameter(values) or usual, dict(values), []
@@ -191,8 +191,8 @@ def _bounds(own: dict[str, str], bounds: dict[str, Any], section: str) -> tuple[
 
 
 def number_of(
-    machine: Any, name: str, value: Any, place: str, spread: bool = False
-) -> tuple[Any, str | None]:
+    machine: Physical, name: str, value: object, place: str, spread: bool = False
+) -> tuple[object, str | None]:
     """A value of quantity `name` counted in the machine's unit of it, and a refusal.
 
     A `spread` of values, their deviation, may be as small as it likes. What is neither text nor a number is left to others to refuse.

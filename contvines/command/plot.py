@@ -116,8 +116,10 @@ def plot(
             raise ValueError(
                 f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
             )
+    from contvines.loci.chart import Chart
+
     graph = load_file(file, trust, charts=True)
-    if hasattr(graph, "loci"):
+    if isinstance(graph, Chart):
         from contvines.plots.chart import plot_chart
 
         _refuse_of_chart(file, kind, {name: value for name, value in asked.items() if name != "--no-legend"})

@@ -140,7 +140,7 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
         found = {label: proof["certificate"] for label, proof in kept.items()}
     else:
         try:
-            (found,) = printable(json_.loads(file.read_text(encoding="utf-8")))
+            found = json_.loads(file.read_text(encoding="utf-8"))
         except (
             ValueError,
             RecursionError,
@@ -150,6 +150,7 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
             found = {"certificate": found}
         if not isinstance(found, dict):
             raise ValueError(f"{file}: this is no file of certificates.")
+        found = printable(found)
     for label in labels:
         if label not in found:
             raise ValueError(
@@ -193,7 +194,7 @@ def _check(file: Path, labels: list[str], json: bool) -> None:
         raise typer.Exit(1)
 
 
-def _boxes(certificate: Any) -> int:
+def _boxes(certificate: object) -> int:
     """How many boxes a certificate, or those of a branch's stretches, have; none if it is no certificate."""
     if isinstance(certificate, list):
         return sum(_boxes(one) for one in certificate if isinstance(one, dict))
@@ -201,6 +202,8 @@ def _boxes(certificate: Any) -> int:
     return len(boxes) if isinstance(boxes, list) else 0
 
 
-def _claims(certificate: Any) -> Any:
+def _claims(certificate: object) -> object:
     """What a certificate claims; of a branch the claims of its stretches in turn."""
-    return [_claims(one) for one in certificate] if isinstance(certificate, list) else certificate["claims"]
+    if isinstance(certificate, list):
+        return [_claims(one) for one in certificate]
+    return certificate["claims"] if isinstance(certificate, dict) else None

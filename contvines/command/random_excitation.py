@@ -11,9 +11,13 @@ import typer
 
 from contvines.command.frame import JsonOption, PlotOption, SizeOption, check_plot, draw, say, tell
 from contvines.command.study_data import Sort, Study
+from contvines.continuation.settings import Settings
 from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.figure import Figure
+
     from orbits.design.random_excitation import RandomResponse
     from orbits.machines.varying import Varying
 
@@ -84,9 +88,9 @@ class Found:
 
     title: str
     rows: list[tuple[str, float, float, str, str]]
-    frequencies: Any
+    frequencies: np.ndarray
     unit: str
-    densities: dict[str, tuple[Any, str]]
+    densities: dict[str, tuple[np.ndarray, str]]
 
     def as_json(self) -> dict[str, Any]:
         """Values and standard errors by name, and their units."""
@@ -118,7 +122,7 @@ class Found:
             columns = (self.frequencies, *(values for values, _ in self.densities.values()))
             writer.writerows([repr(float(x)) for x in row] for row in zip(*columns))
 
-    def draw(self, size: tuple[float, float] | None) -> Any:
+    def draw(self, size: tuple[float, float] | None) -> Figure:
         """The densities over the frequency."""
         from contvines.plots.measured import plot_densities
 
@@ -127,7 +131,7 @@ class Found:
 
 def _rounded(value: float, error: float) -> tuple[str, str]:
     """A number to the second digit of its error, and the error."""
-    if not (error > 0.0 and math.isfinite(error)) or error < 1e-9 * abs(value):
+    if not (error > 0.0 and math.isfinite(error)) or error < Settings.located * abs(value):
         return figures(value), "" if math.isnan(error) else "0"
     digits = max(2, min(6, math.ceil(math.log10(max(abs(value), error) / error)) + 2))
     return f"{value:.{digits}g}", f"{error:.2g}"
@@ -161,7 +165,7 @@ def _computed(study: Study, seed: int | None) -> Found:
     try:
         if said.parameter is not None:
             psd = Density(frequencies * turn, values / turn)
-            response = random_page(model, params, said.parameter, psd, start=study.state, **options)
+            response = random_page(model, params, said.parameter, psd, start=study.named_state, **options)
         else:
             rate, acceleration = _scales(model, params)
             psd = Density(frequencies * turn / rate, values * rate / turn / acceleration**2)
@@ -171,7 +175,7 @@ def _computed(study: Study, seed: int | None) -> Found:
     return _in_units(study, params, response, hertz)
 
 
-def _scales(model: Varying, params: Any) -> tuple[float, float]:
+def _scales(model: Varying, params: np.ndarray) -> tuple[float, float]:
     """omega_0 in 1/s, and b omega_0^2 in m/s^2; 1 where there are no units."""
     from contvines.command.measured import scales
     from orbits.machines.physical import units
@@ -181,7 +185,7 @@ def _scales(model: Varying, params: Any) -> tuple[float, float]:
     return 1.0 / seconds, (metre or 1.0) * length / seconds**2
 
 
-def _in_units(study: Study, params: Any, response: RandomResponse, hertz: bool) -> Found:
+def _in_units(study: Study, params: np.ndarray, response: RandomResponse, hertz: bool) -> Found:
     model, page = study.model, study.sort is Sort.PAGE
     shown, turn = model.units, 2.0 * math.pi if hertz else 1.0
     kinds = {} if page else {"impact_rate": "rate", "absorber_power": "power", "absorber_share": ""}

@@ -100,7 +100,7 @@ def recommend(
 
 
 def recommended(
-    read: Any, place: Path, cost: float, target: float | None, workers: int | None, quiet: bool
+    read: Study, place: Path, cost: float, target: float | None, workers: int | None, quiet: bool
 ) -> Recommendation:
     """The recommendation for a study: from its file if that is finished, else computed; rows of an unfinished one are kept beside it."""
     from contvines.command.recommending import digest

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from contvines.survey.completion import Unbranched
     from contvines.survey.outcomes import Findings
     from contvines.survey.plan import Plan
+    from orbits.design.first_clearance import FirstClearance
     from orbits.machines.varying import Varying
 
 PLACES = 13  # values of the first look
@@ -241,7 +242,7 @@ class _Work:
         self.round = self.surveys = 0
         self.rows: dict[float, _Looked] = {}  # by value, of all samples
 
-    def _theory(self) -> Any:
+    def _theory(self) -> FirstClearance | None:
         from orbits.design.first_clearance import first_clearance
 
         if self.name != "half_width" or "damping" not in self.model.parameter_names:

@@ -3,12 +3,11 @@
 import difflib
 import re
 from itertools import pairwise
-from typing import Any
 
 from contvines.shared.near_names import did_you_mean
 
 
-def refusal(error: Any, words: list[str]) -> str:
+def refusal(error: Exception, words: list[str]) -> str:
     """A usage error of the command line as one sentence; empty for a bare `contvines`, which asks for help.
 
     Parameters
@@ -16,7 +15,7 @@ def refusal(error: Any, words: list[str]) -> str:
     error : the exception of the parser; known by its name and attributes, whichever module it comes from.
     words : the line.
     """
-    kind = type(error).__name__
+    kind, option = type(error).__name__, getattr(error, "option_name", "")
     message = " ".join(str(getattr(error, "message", "")).split())
     place = _command(error, words)
     if kind == "NoArgsIsHelpError":
@@ -26,16 +25,17 @@ def refusal(error: Any, words: list[str]) -> str:
     if kind == "NoSuchOption":
         near = list(getattr(error, "possibilities", None) or ())
         hint = f"did you mean {' or '.join(near)}?" if near else f"`{place} --help` lists those there are."
-        return f"{error.option_name}: there is no such option; {hint}"
+        return f"{option}: there is no such option; {hint}"
     if "requires an argument" in message:
-        return f"{error.option_name}: its value is missing; `{place} --help` says what it takes."
+        return f"{option}: its value is missing; `{place} --help` says what it takes."
     if "does not take a value" in message:
-        return f"{error.option_name}: this option takes no value; write {error.option_name} alone."
+        return f"{option}: this option takes no value; write {option} alone."
     if message.startswith("No such command"):
         return _no_command(error, message)
     extra = re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message)
     if extra:
-        options = {parameter.name for parameter in error.ctx.command.params} if error.ctx else set()
+        context = getattr(error, "ctx", None)
+        options = {parameter.name for parameter in context.command.params} if context else set()
         file = " a file to write is given by --output FILE," if "output" in options else ""
         return f"{extra[1]}: this is too much for `{place}`;{file} `{place} --help` says what it takes."
     return _bad_value(error, message, words) or (
@@ -43,7 +43,7 @@ def refusal(error: Any, words: list[str]) -> str:
     )
 
 
-def _command(error: Any, words: list[str]) -> str:
+def _command(error: Exception, words: list[str]) -> str:
     """The command that was called, as far as the line tells."""
     known = getattr(getattr(error, "ctx", None), "command_path", None)
     if known and known != "contvines":
@@ -52,23 +52,29 @@ def _command(error: Any, words: list[str]) -> str:
     return " ".join(["contvines", *named])
 
 
-def _is_unknown(error: Any, word: str) -> bool:
+def _is_unknown(error: Exception, word: str) -> bool:
     commands = getattr(getattr(getattr(error, "ctx", None), "command", None), "commands", None)
     return commands is not None and word not in commands
 
 
-def _missing(error: Any, place: str) -> str:
+def _missing(error: Exception, place: str) -> str:
     param = getattr(error, "param", None)
     options = sorted(getattr(param, "opts", ()), key=len)
     if not options or not options[-1].startswith("-"):
         name = getattr(param, "metavar", None) or (options[-1].upper() if options else "something")
         return f"{name} is missing; `{place} --help` says what it is."
-    choices = re.findall(r"[\w-]+", str(error.format_message()).partition("Choose from:")[2])
+    choices = re.findall(r"[\w-]+", _shown(error).partition("Choose from:")[2])
     what = f"choose one of {', '.join(choices)}" if choices else f"`{place} --help` says what it is"
     return f"{options[-1]} is missing; {what}."
 
 
-def _no_command(error: Any, message: str) -> str:
+def _shown(error: Exception) -> str:
+    """The parser's own words."""
+    shown = getattr(error, "format_message", None)
+    return str(shown()) if callable(shown) else ""
+
+
+def _no_command(error: Exception, message: str) -> str:
     name = message.split("'")[1] if "'" in message else message
     commands = list(getattr(getattr(getattr(error, "ctx", None), "command", None), "commands", ()))
     near = difflib.get_close_matches(name, commands, n=1)
@@ -84,7 +90,7 @@ def _no_choice(place: str, given: str, quoted: str) -> str:
     )
 
 
-def _bad_value(error: Any, message: str, words: list[str]) -> str:
+def _bad_value(error: Exception, message: str, words: list[str]) -> str:
     """An option's value that cannot be."""
     names = sorted(getattr(getattr(error, "param", None), "opts", ()), key=len)
     if not names or not names[-1].startswith("-"):

@@ -1,11 +1,17 @@
 """`contvines report`: a result as one page to send round."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from contvines.command.frame import TrustOption, beside, load_file, say
+
+if TYPE_CHECKING:
+    from contvines.graph.graph import Graph
+    from contvines.loci.chart import Chart
+    from contvines.report.answer import Answer
+    from contvines.survey.results import Survey
 
 
 def report(
@@ -66,7 +72,7 @@ def report(
         say(f"{file} is unfinished: the page shows what there is so far")
 
 
-def _on_paper(answer: Any, page: Path, pdf: Path) -> str:
+def _on_paper(answer: "Answer", page: Path, pdf: Path) -> str:
     """Print the page, or set the answer without a browser; how it was done."""
     from contvines.report.answer import print_page
     from contvines.report.paper import set_answer
@@ -78,7 +84,7 @@ def _on_paper(answer: Any, page: Path, pdf: Path) -> str:
         return "set by matplotlib, as no browser could print the page"
 
 
-def _result(file: Path, trust: bool) -> Any:
+def _result(file: Path, trust: bool) -> "Graph | Chart | Survey":
     """The graph, chart or survey that a file holds."""
     if file.suffix == ".nc":
         from contvines.survey import load_survey
@@ -98,7 +104,7 @@ def _result(file: Path, trust: bool) -> Any:
     return result
 
 
-def _answer(file: Path) -> Any:
+def _answer(file: Path) -> "Answer":
     """The page of a recommendation."""
     from contvines.command.recommend import kept
     from contvines.command.recommend_picture import report_pictures

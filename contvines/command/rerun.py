@@ -1,7 +1,7 @@
 """`contvines rerun`: a result computed again from the study that its file keeps, and what differs."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -20,6 +20,10 @@ from contvines.command.frame import (
 )
 from contvines.command.run import graph_of
 from contvines.command.study_data import Study
+
+if TYPE_CHECKING:
+    from contvines.graph.graph import Graph
+    from contvines.loci.chart import Chart
 
 OutputOption = Annotated[
     Path | None,
@@ -46,6 +50,7 @@ def rerun(
     Values agree to 1e-10, or to the errors that both results state. Exit
     status 1 if anything differs.
     """
+    from contvines.loci.chart import Chart
     from contvines.provenance import as_text, provenance
     from contvines.store import Store
     from contvines.store.differences import differences, of_chart, of_graph
@@ -56,21 +61,20 @@ def rerun(
         made, fingerprint, kept = store.made, store.fingerprint, store.study or {}
     study, source = _study(file, kept.get("source"), trust)
     target = place_of(output, file, "-rerun.vines")
-    chart = "chart" in source
     command = source["command"]
     with held(target, quiet, fresh or _finished(target)):
-        if chart:
+        if isinstance(before, Chart):
             diagram = target.with_name(f"{target.stem}-diagram.vines")
             with held(diagram, quiet, fresh or _finished(diagram)):
                 graph = graph_of(study, command, diagram, quiet, problems=True, look=False)
             over, low, high = source["chart"]
             after = chart_of(graph, over, (low, high), source["virtual"], target, quiet, source)
+            found = differences(of_chart(before), of_chart(after))
             same = fingerprint_of(graph, over, (low, high), source["virtual"]) == fingerprint
         else:
             after = graph_of(study, command, target, quiet, problems=False, look=before.looked)
+            found = differences(of_graph(before), of_graph(after))
             same = study.fingerprint(command) == fingerprint
-    of: Any = of_chart if chart else of_graph
-    found = differences(of(before), of(after))
     if json:
         from contvines.command.frame import tell
 
@@ -96,15 +100,17 @@ def _finished(target: Path) -> bool:
         return store.finished
 
 
-def _size(result: Any) -> str:
+def _size(result: "Graph | Chart") -> str:
     """How much has been compared."""
-    if hasattr(result, "loci"):
+    from contvines.loci.chart import Chart
+
+    if isinstance(result, Chart):
         return f"{len(result.loci)} loci and {len(result.points)} points of codimension two compared"
     counts = len(result.branches), len(result.special), len(result.switches)
     return "{} branches, {} special points and {} switches compared".format(*counts)
 
 
-def _study(file: Path, source: Any, trust: bool) -> tuple[Study, dict[str, Any]]:
+def _study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str, Any]]:
     """The study that a file keeps, read as if it stood where it stood.
 
     Raises

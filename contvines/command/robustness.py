@@ -1,6 +1,6 @@
 """`contvines robustness`: how far a stable motion is from being lost."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -59,9 +59,9 @@ def robustness(
     from contvines.problems.registry import without_problem
 
     check_plot(plot, size)
-    graph = load_file(file, trust, charts=True)
+    graph = load_file(file, trust)
     name, _, place = label.partition(":")
-    branches = getattr(graph, "branches", {})
+    branches = graph.branches
     if name not in branches:
         raise ValueError(f"{file}: {name} is no branch of it; it has {', '.join(branches) or 'none'}.")
     branch = branches[name]
@@ -76,12 +76,12 @@ def robustness(
         value = float(branch.values[int(place)])
     if plot is not None and value is not None:
         raise ValueError("--plot draws the erosion curve of a whole branch: leave out --at and the point.")
-    found: Any
-    if value is None:
-        if vary:
-            raise ValueError("--vary needs one motion: give a point (B1:12), or --at VALUE.")
-        found = contvines.erosion(branch, values, starts=starts, seed=seed)
-    else:
+    if value is not None:
         found = contvines.robustness(branch, value, starts=starts, seed=seed, vary=tuple(vary or ()))
-    tell(found, found.to_dict() if json else None)
-    draw(plot, lambda: found.plot(figsize=size), json)
+        tell(found, found.to_dict() if json else None)
+        return
+    if vary:
+        raise ValueError("--vary needs one motion: give a point (B1:12), or --at VALUE.")
+    curve = contvines.erosion(branch, values, starts=starts, seed=seed)
+    tell(curve, curve.to_dict() if json else None)
+    draw(plot, lambda: curve.plot(figsize=size), json)

@@ -29,6 +29,7 @@ from contvines.command.frame import (
 )
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from ..graph.graph import Graph
@@ -220,13 +221,16 @@ def _tell(graph: "Graph", target: Path, summarised: bool, details: bool) -> None
     typer.echo(str(graph))
 
 
-def graph_of(study: "Study", command: str, target: Path, quiet: bool, *, problems: bool, look: bool):
+def graph_of(
+    study: "Study", command: str, target: Path, quiet: bool, *, problems: bool, look: bool
+) -> "Graph":
     """The graph of a study: from its file if that is finished, computed else."""
     from contvines.command.compose import first_orbit, population, run_atlas, run_diagram
+    from contvines.graph.graph import Graph
     from contvines.store import Store
 
     fingerprint = study.fingerprint(command)
-    graph = finished_of(target, fingerprint, quiet, problems=problems)
+    graph = finished_of(Graph, target, fingerprint, quiet, problems=problems)
     if graph is None:
         alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
         run = run_atlas if command == "atlas" else run_diagram
@@ -242,17 +246,19 @@ def graph_of(study: "Study", command: str, target: Path, quiet: bool, *, problem
     return _look(study, target) if look and not graph.looked else graph
 
 
-def _look(study: "Study", target: Path):
+def _look(study: "Study", target: Path) -> "Graph":
     """A few simulated starts after a diagram; what they reach beside it is kept in the file.
 
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
     """
     from contvines.coexistence.missing import look
     from contvines.command.compose import population
+    from contvines.graph.graph import Graph
     from contvines.store import Store
 
     with Store.open(target, write=True) as store:
         graph = store.graph()
+        assert isinstance(graph, Graph)
         with interruptible(
             f"the diagram is kept in {target}; the same command looks again for what it does not have"
         ):
@@ -293,7 +299,7 @@ def _shows_oscillator(graph: "Graph", y: str | None) -> bool:
     return default_measure(graph) == "max_abs_q1" and y in (None, "max_abs_q1")
 
 
-def _add_simulated(axes: Any, graph: "Graph", study: "Study") -> None:
+def _add_simulated(axes: "Axes", graph: "Graph", study: "Study") -> None:
     """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
     from contvines.command.compose import population
     from contvines.plots.sweep import draw_bands
@@ -312,7 +318,10 @@ def _add_simulated(axes: Any, graph: "Graph", study: "Study") -> None:
         named = [text.get_text() for text in old.get_texts()]
         more = [(handle, label) for handle, label in zip(handles, labels) if label not in named]
         axes.legend(
-            [*old.legend_handles, *(handle for handle, _ in more)],
+            [
+                *(handle for handle in old.legend_handles if handle is not None),
+                *(handle for handle, _ in more),
+            ],
             [*named, *(label for _, label in more)],
             loc="best",
             fontsize="small",

@@ -1,13 +1,14 @@
 """Sections and fields of a TOML study with the values that they expect, and models of whole studies made from tables of parameters."""
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypedDict, TypeVar, Unpack
 
 from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
     Field,
+    SerializerFunctionWrapHandler,
     WithJsonSchema,
     create_model,
     model_serializer,
@@ -23,7 +24,17 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-def text(expected: str, **limits: Any) -> Any:
+class Limits(TypedDict, total=False):
+    """Of a value, and of the length of a text or list, as pydantic knows them."""
+
+    gt: float
+    ge: float
+    le: float
+    min_length: int
+    max_length: int
+
+
+def text(expected: str, **limits: Unpack[Limits]) -> FieldInfo:
     """A field with limits and a way out, for refusals and for editors."""
     return Field(description=expected, **limits)
 
@@ -34,6 +45,7 @@ Interval = Annotated[
 ]
 Unbounded = Annotated[float, Field(allow_inf_nan=True)]
 Seed = Annotated[int, text("a whole number >= 0", ge=0)]
+S = TypeVar("S", bound=Section)
 PARAMETER = "the name of one of the model's parameters"
 
 
@@ -129,7 +141,7 @@ class AtlasSection(Section):
     budget: Annotated[int | None, text("a whole number of 1 or more, for example 500000", ge=1)] = None
 
     @model_serializer(mode="wrap")
-    def _settings(self, write: Any) -> dict[str, Any]:
+    def _settings(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Without a budget that was not given: files of studies that knew none are theirs still."""
         return {name: value for name, value in write(self).items() if (name, value) != ("budget", None)}
 
@@ -183,7 +195,9 @@ class FlowSections(Section):
     survey: SurveySection = SurveySection()
 
 
-class _MachineSections(Section):
+class MachineSections(Section):
+    """What a study of any machine has beside it."""
+
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     sweep: SweepSection = SweepSection()
     atlas: AtlasSection = AtlasSection()
@@ -192,26 +206,29 @@ class _MachineSections(Section):
     random: RandomSection | None = None
 
 
-class StudySections(_MachineSections):
+class StudySections(MachineSections):
     """What every study of a built-in machine has beside it."""
 
     start: WordSection = WordSection()
 
 
-class PageSections(_MachineSections):
+class PageSections(MachineSections):
     """What every study of a machine of a Python file has beside it."""
 
     start: PageStart = PageStart()
+
+
+Sections = StudySections | PageSections | FlowSections
 
 
 class _AnyStart(Section):
     model_config = ConfigDict(extra="allow", frozen=True)
 
 
-class UnknownModel(_MachineSections):
+class UnknownModel(MachineSections):
     """A study whose model is not known: all that can be checked without it."""
 
-    model: Any = None
+    model: object = None
     start: _AnyStart = _AnyStart()
 
 
@@ -240,7 +257,7 @@ def number(entry: Parameter) -> Any:
     if not entry.words:
         return kind
 
-    def coded(value: Any) -> Any:
+    def coded(value: object) -> object:
         return entry.words.get(value, value) if isinstance(value, str) else value
 
     span = {"type": "number", "minimum": limits.low, "maximum": limits.high}
@@ -249,8 +266,8 @@ def number(entry: Parameter) -> Any:
 
 
 def study_model(
-    base: type[Section], settings: Mapping[str, tuple[Any, Any]], parameters: Mapping[str, Any]
-) -> type[Section]:
+    base: type[S], settings: Mapping[str, tuple[Any, Any]], parameters: Mapping[str, Any]
+) -> type[S]:
     """The model of a whole study.
 
     Parameters
@@ -277,7 +294,7 @@ def study_model(
     return create_model(base.__name__, __base__=base, **sections)
 
 
-def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> Any:
+def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> type[Section]:
     """A section with further fields; they go by aliases, as their names may be those of a method of pydantic."""
     own = {
         name if name in base.model_fields else f"field_{place}": (
@@ -291,12 +308,19 @@ def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> Any:
     return made
 
 
-def kind_of(field: FieldInfo) -> Any:
+def kind_of(field: FieldInfo) -> type[Section]:
     """The section's model that a field of a study holds."""
     from typing import get_args
 
     kinds: Iterable[Any] = (field.annotation, *get_args(field.annotation))
-    return next(kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel))
+    return next(kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Section))
+
+
+def model_section(file: Section) -> Section:
+    """`[model]` of a study, whose fields are those of its machine."""
+    found = getattr(file, "model", None)
+    assert isinstance(found, Section)
+    return found
 
 
 def given(section: Section, names: Iterable[str]) -> dict[str, Any]:
@@ -305,7 +329,7 @@ def given(section: Section, names: Iterable[str]) -> dict[str, Any]:
     return {name: values[name] for name in names if name in values}
 
 
-def catalogue_model(name: str) -> type[Section]:
+def catalogue_model(name: str) -> type[StudySections]:
     """The model of a study of a machine of the catalogue."""
     from orbits.machines.catalogue import model_class
 

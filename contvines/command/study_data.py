@@ -9,9 +9,18 @@ from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contvines.command.schema import AtlasSection, ChartSection, RandomSection, SurveySection, SweepSection
+from contvines.command.schema import (
+    AtlasSection,
+    ChartSection,
+    MachineSections,
+    RandomSection,
+    Sections,
+    SurveySection,
+    SweepSection,
+)
 
 if TYPE_CHECKING:
+    from contvines.flows.problem import FlowProblem
     from orbits.machines.conditions import Table
 
 SHOWN = 60  # letters of a word that a refusal repeats
@@ -65,7 +74,7 @@ class Study:
     word: str | None = None
     periods: int = 1
     guess: list[list[float]] | None = None
-    state: Any = None
+    state: dict[str, float] | list[float] | None = None
     model: Any = None
     flow: Any = None
     loose: dict[str, float] = field(default_factory=dict)
@@ -81,7 +90,15 @@ class Study:
 
     @classmethod
     def of(
-        cls, path: Path, sort: Sort, name: str, parameters: dict[str, float], file: Any, **more: Any
+        cls,
+        path: Path,
+        sort: Sort,
+        name: str,
+        parameters: dict[str, float],
+        file: Sections,
+        model: object = None,
+        flow: "FlowProblem | None" = None,
+        loose: dict[str, float] | None = None,
     ) -> "Study":
         """A study from its sections; what is not among them is given."""
         go, start = file.continue_, file.start
@@ -104,8 +121,20 @@ class Study:
             kinds=go.kinds,
             **{key: getattr(start, key) for key in first if hasattr(start, key)},
             **sections,
-            **more,
+            model=model,
+            flow=flow,
+            loose=loose or {},
         )
+
+    @property
+    def named_state(self) -> dict[str, float] | None:
+        """Where the motion of a machine begins, by name."""
+        return self.state if isinstance(self.state, dict) else None
+
+    @property
+    def listed_state(self) -> list[float] | None:
+        """Where the motion of a flow begins, in the order of its states."""
+        return self.state if isinstance(self.state, list) else None
 
     def describe(self) -> dict[str, Any]:
         """What decides the result, as JSON scalars and lists."""
@@ -180,7 +209,7 @@ def wrong_ends(section: str, within: list[float]) -> list[str]:
 
 
 def wrong_intervals(
-    file: Any, first: float | None, refusal: Callable[[str, float], str], unit: str = ""
+    file: Sections, first: float | None, refusal: Callable[[str, float], str], unit: str = ""
 ) -> list[str]:
     """What is wrong with the intervals of a study.
 
@@ -196,9 +225,9 @@ def wrong_intervals(
     """
     go, wrong = file.continue_, []
     intervals = [("continue", go.parameter, go.within)]
-    if getattr(file, "sweep", None) is not None and file.sweep.within is not None:
+    if isinstance(file, MachineSections) and file.sweep.within is not None:
         intervals.append(("sweep", go.parameter, file.sweep.within))
-    if getattr(file, "chart", None) is not None:
+    if isinstance(file, MachineSections) and file.chart is not None:
         intervals.append(("chart", file.chart.parameter, file.chart.within))
     for section, name, within in intervals:
         refused = next(filter(None, (refusal(name, value) for value in within)), "")

@@ -5,8 +5,9 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
 
-from contvines.command.schema import Section, kind_of
+from contvines.command.schema import S, Section, kind_of
 from contvines.shared.near_names import did_you_mean
 
 UNION = re.compile(
@@ -29,7 +30,7 @@ class StudyError(ValueError):
     """A study that cannot be run; the message says which value and a way out."""
 
 
-def validated(model: type[Section], data: dict[str, Any], wrong: list[str] | None = None) -> Any:
+def validated(model: type[S], data: dict[str, Any], wrong: list[str] | None = None) -> S:
     """A study's sections, checked.
 
     Parameters
@@ -52,7 +53,11 @@ def validated(model: type[Section], data: dict[str, Any], wrong: list[str] | Non
         found: dict[Any, str] = {}
         for each in error.errors():
             loc = [part for part in each["loc"] if not (isinstance(part, str) and UNION.fullmatch(part))]
-            if len(loc) == 1 and each["type"] == "missing" and did_you_mean(loc[0], data.keys() - model_keys):
+            if (
+                len(loc) == 1
+                and each["type"] == "missing"
+                and did_you_mean(str(loc[0]), data.keys() - model_keys)
+            ):
                 continue  # the misspelt section is reported
             union = len(loc) < len(each["loc"])  # of a field that may be one of several types, one sentence
             found.setdefault((*loc, "" if union else each["type"]), _sentence(model, each["type"], loc, each))
@@ -75,7 +80,7 @@ def together(sentences: list[str]) -> StudyError:
     return StudyError("\n".join([f"{len(unique)} things to mend:", *lines]))
 
 
-def _sentence(model: type[Section], kind: str, loc: list[Any], error: Any) -> str:
+def _sentence(model: type[Section], kind: str, loc: list[int | str], error: ErrorDetails) -> str:
     section, value = _cut(str(loc[0])), _cut(repr(error["input"]))
     sections = {field.alias or name: field for name, field in model.model_fields.items()}
     if len(loc) == 1:
@@ -97,10 +102,10 @@ def _sentence(model: type[Section], kind: str, loc: list[Any], error: Any) -> st
         hint = did_you_mean(key, fields)
         return f"{place} = {value}: there is no such field{hint}; known are {', '.join(fields)}."
     if kind == "literal_error":
-        known = re.findall(r"'([^']*)'", str(error["ctx"]["expected"]))
+        known = re.findall(r"'([^']*)'", str(error.get("ctx", {})["expected"]))
         what = "parameter" if key == "parameter" else "choice"
         return f"{place} = {value}: there is no such {what}{did_you_mean(str(error['input']), known)}; choose one of {', '.join(known)}."
-    would = f"; expected {_expected(fields[loc[1]])}."
+    would = f"; expected {_expected(fields[str(loc[1])])}."
     if kind == "missing":
         return f"{place} is missing{would}"
     if kind == "finite_number":

@@ -11,11 +11,17 @@ from contvines.command.conditions import check_range
 from contvines.command.own_code import own_code, run_file
 from contvines.command.study_data import Sort, Study
 from contvines.shared.near_names import did_you_mean
+from orbits.machines.varying import Varying
 
 if TYPE_CHECKING:
+    from types import ModuleType
+
     from contvines.flows.family import FlowFamily
+    from contvines.flows.problem import FlowProblem
+    from contvines.survey.outcomes import Findings
     from contvines.survey.plan import Plan
     from orbits.design import Family
+    from orbits.machines.physical.machine import Physical
 
 WRITTEN = (Sort.PAGE, Sort.FLOW)  # equations in a Python file
 TEXTS = ("within", "values", "normal", "uniform")
@@ -74,23 +80,26 @@ def names_of(study: Study) -> Iterable[str]:
     return [entry.name for entry in study.model.settable]
 
 
-def family_of(study: Study, model: Any) -> Family | FlowFamily:
+def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily:
     """The machines, or flows, of a study's survey."""
     if study.sort is Sort.FLOW:
         from contvines.flows.family import FlowFamily
+        from contvines.flows.problem import FlowProblem
 
+        assert isinstance(model, FlowProblem) and model.origin is not None
         file, name, _ = model.origin
-        return FlowFamily(file, name, study.parameter, study.parameters, study.state)
+        return FlowFamily(file, name, study.parameter, study.parameters, study.listed_state)
+    assert isinstance(model, Varying)
     return machines_of(study, model)
 
 
-def machines_of(study: Study, model: Any) -> Family:
+def machines_of(study: Study, model: Varying) -> Family:
     """The machines of a study's survey."""
     from orbits.design import Family
 
     return Family(
         model, study.word, study.periods, study.guess, study.loose, study.parameter, study.within,
-        study.state, study.tables,
+        study.named_state, study.tables,
     )  # fmt: skip
 
 
@@ -188,14 +197,14 @@ def options_of(study: Study) -> dict[str, Any]:
     return {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
 
 
-def units_of(study: Study, model: Any) -> dict[str, str]:
+def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
     """Units of parameters and outcomes."""
     from contvines.command.machine_outcomes import UNITS
     from orbits.flows.catalogue import flow_of
 
-    units = {} if study.sort is Sort.FLOW else dict(model.units)
-    if not units:
+    if not isinstance(model, Varying) or not model.units:
         return {}
+    units = dict(model.units)
     over, shown = units.get(study.parameter, ""), units.get(flow_of(model).default_measure(model), "")
     bands = ("modulated_low", "modulated_mean", "modulated_high")
     units |= dict.fromkeys(("peak", "lower_peak", *bands), shown) | UNITS
@@ -235,20 +244,20 @@ class UserOutcome:
             raise ValueError(f"[survey] outcomes: {path} has no function {function!r}")
         return cls(str(path.resolve()), function)
 
-    def __call__(self, found: Any) -> Mapping[str, float]:
+    def __call__(self, found: Findings) -> Mapping[str, float]:
         value = getattr(_module(Path(self.path)), self.function)(found)
         return value if isinstance(value, Mapping) else {self.function: float(value)}
 
 
-def _module(path: Path) -> Any:
+def _module(path: Path) -> ModuleType:
     return run_file(path, "[survey] outcomes")
 
 
-def _numbers(model: Any, name: str, said: Any, place: str) -> Any:
+def _numbers(model: Physical, name: str, said: object, place: str) -> object:
     """Quantities as numbers counted in the machine's unit."""
     from contvines.command.physical_study import number_of
 
-    def read(values: Any, where: str, spread: int | None = None) -> Any:
+    def read(values: object, where: str, spread: int | None = None) -> object:
         if not isinstance(values, list):
             return values
         found = []

@@ -26,6 +26,9 @@ from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
+    from contvines.graph.graph import Graph
+    from orbits.attractors.sweeping import SweepRow
+
     from .study import Study
     from .sweep_rows import Kept
 
@@ -67,7 +70,7 @@ def sweep(
     target = output or beside(study, "-sweep.csv")
     refuse_source(target, study)
     check_target(target, "csv")
-    graph: Any = None
+    graph: Graph | None = None
     if over is not None:
         from contvines.command.sweep_picture import graph_beneath
 
@@ -108,7 +111,7 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
         if done:
             say(f"{target} is unfinished: going on after {done} of {len(values)} values.", quiet)
 
-        def keep(row: Any) -> None:
+        def keep(row: "SweepRow") -> None:
             file.keep(kept(row, "down" if down else "up", names))
             if count is not None:
                 count(row)

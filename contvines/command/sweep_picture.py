@@ -4,7 +4,10 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.command.frame import load_file
 from contvines.command.study_data import Sort, Study
+from contvines.continuation.settings import Settings
+from contvines.shared.floating_point import TINY
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -13,7 +16,7 @@ if TYPE_CHECKING:
     from .sweep_rows import Kept
 
 
-def graph_beneath(path: Path, study: Study) -> Any:
+def graph_beneath(path: Path, study: Study) -> "Graph":
     """The graph of a file, if it is one of the study's machine in the study's parameter.
 
     Raises
@@ -21,9 +24,7 @@ def graph_beneath(path: Path, study: Study) -> Any:
     ValueError
         With a sentence that names the fields that differ and their values.
     """
-    from contvines.store import load
-
-    graph = load(path)
+    graph = load_file(path)
     if graph.parameter != study.parameter:
         raise ValueError(f"{path} continues in {graph.parameter}, the study sweeps over {study.parameter}.")
     theirs, ours = _graph_machine(graph), _study_machine(study)
@@ -64,10 +65,10 @@ def _study_machine(study: Study) -> dict[str, Any]:
     return {"name": model.name, **dict(zip(model.parameter_names, vector.tolist()))}
 
 
-def _same(a: Any, b: Any) -> bool:
+def _same(a: float | str, b: float | str) -> bool:
     if isinstance(a, str) or isinstance(b, str):
         return a == b
-    return math.isclose(a, b, rel_tol=1e-12, abs_tol=1e-300)
+    return math.isclose(a, b, rel_tol=Settings.rounding, abs_tol=TINY)
 
 
 def _shown(value: object) -> str:
@@ -75,7 +76,7 @@ def _shown(value: object) -> str:
 
 
 def picture(
-    rows: "list[Kept]", study: Study, graph: "Graph", size: tuple[float, float] | None = None
+    rows: "list[Kept]", study: Study, graph: "Graph | None", size: tuple[float, float] | None = None
 ) -> "Figure":
     """The attractors of a sweep as dots, over a graph if there is one."""
     from contvines.plots.sweep import plot_sweep

@@ -8,12 +8,15 @@ import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import gettempdir
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from contvines.command.compose import machine
 from contvines.command.study_data import Study
 from contvines.graph.table import with_unit
 from contvines.shared.modulation import BAND, SILENT
+
+if TYPE_CHECKING:
+    from orbits.attractors.sweeping import SweepRow
 
 FIRST = ("value", "direction", "attractor", "word", "periods", "impacts")
 LAST = ("modulation", "symmetric", "nodes")
@@ -55,7 +58,7 @@ class Kept:
         return int(self.cells[4])
 
 
-def kept(row: Any, direction: str, names: list[str]) -> Kept:
+def kept(row: "SweepRow", direction: str, names: list[str]) -> Kept:
     """A row of `orbits.attractors.sweep` as it is kept; `names` are the measures in the CSV's order."""
     found, guess = row.detail, row.detail.guess
     kind = "periodic" if row.attractor == "sliding" else row.attractor
@@ -91,7 +94,7 @@ def measured_names(study: Study) -> list[str]:
     return [name for name in measure_names(machine(study)) if name not in FIRST]
 
 
-def _read(cell: str) -> Any:
+def _read(cell: str) -> object:
     """A cell of the CSV as JSON has it."""
     try:
         return json.loads(cell)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,9 +12,13 @@ from contvines.command.page_transient import frequency_on_line, of_page, time_on
 from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import Told, loads_rows
 
+if TYPE_CHECKING:
+    from orbits.design.record import Response
+    from orbits.design.start_up import StartUp
+
 FARTHEST = 10.0  # metres that an oscillator is pulled aside
-HARDEST = 1e5  # m/s^2 that a base is accelerated by
-LONGEST = 1e5  # that a motion is followed after a record, in radians of the oscillator
+HARDEST = 100_000.0  # m/s^2 that a base is accelerated by
+LONGEST = 100_000.0  # that a motion is followed after a record, in radians of the oscillator
 
 
 def transient(
@@ -277,7 +281,10 @@ def _recorded(study: Study, path: Path, tail: str | None) -> Told:
 
 
 def _motion(
-    title: str, rows: list[tuple[str, float, str, str]], seen: Any, scales: tuple[float, str, float, str]
+    title: str,
+    rows: list[tuple[str, float, str, str]],
+    seen: StartUp | Response,
+    scales: tuple[float, str, float, str],
 ) -> Told:
     """A simulated motion with the absorber and without, in the study's units of length and time."""
     length, unit, seconds, second = scales

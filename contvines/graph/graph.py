@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 from contvines.shared.near_names import did_you_mean
 
@@ -61,8 +61,8 @@ class Switch:
         }
 
 
-class DiagramOptions(PlotOptions, total=False):
-    """Of :func:`contvines.plots.diagram.plot_diagram`."""
+class CurveOptions(TypedDict, total=False):
+    """Of :func:`contvines.plots.diagram.plot_diagram`: what is drawn of branches and special points."""
 
     labels: bool | Sequence[str]
     ends: bool
@@ -70,9 +70,14 @@ class DiagramOptions(PlotOptions, total=False):
     words: bool
     color: str
     name: str | None
+    inset: bool | tuple[tuple[float, float], tuple[float, float]]
+
+
+class DiagramOptions(CurveOptions, PlotOptions, total=False):
+    """Of :func:`contvines.plots.diagram.plot_diagram`."""
+
     xlim: tuple[float, float] | None
     ylim: tuple[float, float] | None
-    inset: bool | tuple[tuple[float, float], tuple[float, float]] | None
 
 
 @hinted
@@ -344,7 +349,16 @@ class Graph(Resumable):
 
     @classmethod
     def load(cls, path: str | Path, *, trust: bool = False) -> Graph:
-        """Read a graph from a .vines file; see :func:`contvines.load`."""
+        """Read a graph from a .vines file; see :func:`contvines.load`.
+
+        Raises
+        ------
+        ValueError
+            If the file holds a chart.
+        """
         from ..store import load
 
-        return load(path, trust=trust)
+        found = load(path, trust=trust)
+        if not isinstance(found, Graph):
+            raise ValueError(f"{path}: this file holds a chart; contvines.load reads it")
+        return found

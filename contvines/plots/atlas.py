@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..graph.attractor import Attractor
-    from ..graph.graph import Graph
+    from ..graph.graph import CurveOptions, Graph
 
 MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the rest share one
 LOW = 3.4  # inches
@@ -37,7 +37,7 @@ def plot_atlas(
     legend: bool | str = True,
     figsize: Size = None,
     style: Style = None,
-    **options: Any,
+    **options: Unpack[CurveOptions],
 ) -> Figure:
     """Draw the diagram and, beneath it, which share of the starts reaches which motion, stacked against the parameter.
 

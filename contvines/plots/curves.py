@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,8 +44,8 @@ class Curve:
         """x and y of each line through the stored points: one, or one per point of a cycle."""
         return [broken(xs, ys, self.turning) for xs, ys in self._stored]
 
-    def draw(self, axes: Axes, **style: Any) -> None:
-        """Draw through the stored points."""
+    def draw(self, axes: Axes, style: Mapping[str, Any]) -> None:
+        """Draw through the stored points; `style` as matplotlib's lines know it."""
         self.lines = [axes.plot(xs, ys, **style)[0] for xs, ys in self.strands()]
 
     def refine(self, axes: Axes) -> None:

@@ -12,6 +12,8 @@ import numpy as np
 
 from contvines.shared.figures import new_figure, styled, windows
 
+from .settings import DRAWING
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
@@ -113,7 +115,7 @@ def thin_ticks(*drawn: Axes) -> None:
 def _crowded(axis: Axis, side: int) -> bool:
     """Whether labels of neighbouring ticks are less than a good half of a letter apart."""
     low, high = sorted(axis.get_view_interval())
-    slack = 1e-9 * (high - low)
+    slack = DRAWING.slack * (high - low)
     ticks = [tick for tick in axis.get_major_ticks() if low - slack <= tick.get_loc() <= high + slack]
     labels = [tick.label1 for tick in ticks if tick.label1.get_text() and tick.label1.get_visible()]
     if len(labels) < 2:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .figures import pixels
+from .settings import DRAWING
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +25,6 @@ LEADER = 14  # from this radius on a thin line leads from the text to its anchor
 ANGLES = np.pi * (0.25 + np.arange(16) / 8)
 WAYS = np.column_stack([np.cos(ANGLES), np.sin(ANGLES)])  # from an anchor to its text
 CELL = 2.0  # pixels of the raster in which curves are drawn for the search
-IMPOSSIBLE = 1e6
 WORST = (60.0, 24.0)  # cost above which a label is left out: of a point, and of a branch's name
 ALONG = 16.0  # half cells of a leader on a curve that count as much as crossing it
 GAP = 3.0  # points between neighbouring texts
@@ -104,7 +104,7 @@ def place_labels(
             if radius >= LEADER:
                 blocked |= _crossing(lines, boxes).any(axis=1) | _meeting(lines, leaders).any(axis=1)
                 cost += 8 * _crossing(lines, others).sum(axis=1) + 12 * ground.crossed(lines)
-            cost = np.where(blocked, IMPOSSIBLE, cost)
+            cost = np.where(blocked, DRAWING.blocked, cost)
             k = int(np.argmin(cost))
             if cost[k] < best[0]:
                 best = (float(cost[k]), middles[k], new[k], lines[k], radius)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -120,8 +120,7 @@ def place_legend(
     if place == "below":
         _below(axes, handles, own, remarks)
         return
-    loc: Any = "best" if place in PLACES else place
-    legend = axes.legend(handles=handles, handlelength=2.4, loc=loc)
+    legend = axes.legend(handles=handles, handlelength=2.4, loc=Legend.codes.get(place, Legend.codes["best"]))
     if place not in PLACES:
         return
     settle(figure)

@@ -11,6 +11,7 @@ from ..continuation.settings import hinting
 from ..problems.abilities import notation_of
 from .figures import Size, Style, given_axes, new_figure, root, settle, styled, thin_ticks
 from .legends import place_legend
+from .settings import DRAWING
 from .style import axis_label
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend:
     if not flow and np.nanmax(ranked) > 20:
         axes.set_yscale("log")
         low, high = ranked[ranked > 0].min(initial=1.0), np.nanmax(ranked)
-        axes.set_ylim(max(low, 1e-4) / 1.5, min(high, 1e4) * 1.5)  # a graze sends a multiplier to infinity
+        axes.set_ylim(max(low, DRAWING.smallest) / 1.5, min(high, DRAWING.largest) * 1.5)
     axes.set(xlabel=parameter_label(branch), ylabel=r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
     what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
     if legend is True and root(axes).get_size_inches()[0] < NARROW and drawn > 1:

@@ -92,7 +92,7 @@ class Picture:
                     tint = self.key.colors[STATES[state]] = STATE_COLORS[state]
                 curve = Curve(branch, self.x, self.y, first, last)
                 behind = state in ("unstable", "virtual")
-                curve.draw(self.axes, zorder=2.5 if behind else 3, **line_of(state, tint))
+                curve.draw(self.axes, {"zorder": 2.5 if behind else 3, **line_of(state, tint)})
                 self.curves.append(curve)
             for points, _ in stretches(self.graph, branch.label):
                 width = 5.0 * float(rcParams["lines.linewidth"])

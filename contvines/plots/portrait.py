@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 def plot_portrait(
-    orbit: Any,
+    orbit: object,
     *,
     axes: Axes | None = None,
     figsize: Size = None,
     style: Style = None,
-    **options: Any,
+    **options: object,
 ) -> Figure:
     """Draw an orbit: its own `plot()` where it has one, else the points of a cycle or the entries of a vector.
 
@@ -36,8 +36,7 @@ def plot_portrait(
     """
     if isinstance(orbit, Drawable):
         given = {"axes": axes, "figsize": figsize, "style": style, **options}
-        drawn: Any = orbit.plot(**{name: value for name, value in given.items() if value is not None})
-        return drawn if hasattr(drawn, "savefig") else drawn.get_figure()
+        return orbit.plot(**{name: value for name, value in given.items() if value is not None})
     for name in options:
         known = ("axes", "figsize", "style")
         raise TypeError(

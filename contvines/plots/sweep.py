@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -104,7 +104,7 @@ def draw_bands(axes: Axes, bands: Sequence[Band], color: str = WANDERING) -> Non
         axes.plot(values, mean, "_", color=color, markersize=4, zorder=1.6)
 
 
-def _dots(axes: Axes, dots: Dots, label: str, **style: Any) -> None:
+def _dots(axes: Axes, dots: Dots, label: str, **style: object) -> None:
     """One kind of dots; none, and no entry in the legend, where there are none."""
     if len(dots):
         values = np.array(dots, float).reshape(-1, 2)

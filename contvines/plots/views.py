@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..shared.floating_point import TINY
+from .settings import DRAWING
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -64,7 +67,7 @@ def fit_height(axes: Axes) -> None:
         axes.set_ylim(low / (high / low) ** 0.06, high * (high / low) ** 0.06)
         return
     room = high - low
-    least = 1e-9 * max(abs(low), abs(high), 1e-300)  # a level line has a height of its own
+    least = DRAWING.slack * max(abs(low), abs(high), TINY)  # a level line has a height of its own
     pad = 0.06 * room if room > least else 0.05 * max(abs(low), abs(high)) or 1.0
     limits = None if values.size < 10 else _without_runaways(values, np.empty(0))
     axes.set_ylim(*(limits or (low - pad, high + pad)))

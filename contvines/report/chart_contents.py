@@ -132,5 +132,9 @@ def _motions(locus: Locus) -> dict[str, Any]:
     return found
 
 
-def _scene(orbit: Any) -> dict[str, Any] | None:
-    return rounded(orbit.scene(SAMPLES)) if isinstance(orbit, Animated) else None
+def _scene(orbit: object) -> dict[str, Any] | None:
+    return (
+        {name: rounded(part) for name, part in orbit.scene(SAMPLES).items()}
+        if isinstance(orbit, Animated)
+        else None
+    )

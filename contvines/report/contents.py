@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..continuation.settings import Settings
 from ..graph.measures import default_measure
 from ..graph.proving import mark, proof_text
 from ..graph.shortening import motion_name, short_word
@@ -111,7 +112,7 @@ def _marginal(point: SpecialPoint) -> bool:
     if point.kind not in CRITICAL or not len(sizes) or not np.isfinite(sizes).all():
         return False
     flow = point.problem is not None and point.problem.spectrum == "flow"
-    return float(np.max(np.real(sizes) if flow else np.abs(sizes) - 1.0)) <= 1e-6
+    return float(np.max(np.real(sizes) if flow else np.abs(sizes) - 1.0)) <= Settings.stationary
 
 
 def _attractor(about: Attractor) -> dict[str, Any]:
@@ -151,8 +152,12 @@ def _orbits(graph: Graph) -> dict[str, Any]:
     return found
 
 
-def _scene(orbit: Any, samples: int) -> dict[str, Any] | None:
-    return rounded(orbit.scene(samples)) if isinstance(orbit, Animated) else None
+def _scene(orbit: object, samples: int) -> dict[str, Any] | None:
+    return (
+        {name: rounded(part) for name, part in orbit.scene(samples).items()}
+        if isinstance(orbit, Animated)
+        else None
+    )
 
 
 def _pairs(values: np.ndarray) -> list[list[float]]:

@@ -16,7 +16,7 @@ def shortened(values: ArrayLike, digits: int = 9) -> list[float | None]:
     return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, dtype=float)]
 
 
-def rounded(value: object) -> Any:
+def rounded(value: object) -> object:
     """Arrays and numbers within dicts and lists with five digits."""
     if isinstance(value, np.ndarray):
         return shortened(value, 5)

@@ -1,5 +1,7 @@
 """An open .vines file: the journal of a run and the home of its graph."""
 
+from __future__ import annotations
+
 import json
 import os
 import sqlite3
@@ -7,15 +9,19 @@ from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..interrupts import HELD
 from ..provenance import provenance
 from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, cut_short, damaged, pending
-from .packing import digest_of, packed, printable, split, unpacked
+from .packing import digest_of, packed, printable, printable_text, split, unpacked
 from .publishing import draft_of, publish
+
+if TYPE_CHECKING:
+    from ..graph.graph import Graph
+    from ..loci.chart import Chart
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -58,7 +64,7 @@ class Store:
         self._version = 0
 
     @classmethod
-    def create(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> "Store":
+    def create(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> Store:
         """Make a new file, whole from the first moment it is visible.
 
         Raises
@@ -74,7 +80,7 @@ class Store:
         return cls(_connected(path, write=True), path)
 
     @classmethod
-    def open(cls, path: str | Path, *, write: bool = False) -> "Store":
+    def open(cls, path: str | Path, *, write: bool = False) -> Store:
         """Open an existing file after checking that it is ours, whole and not newer.
 
         Raises
@@ -89,7 +95,7 @@ class Store:
         return cls(_connected(path, write=write), path)
 
     @classmethod
-    def attach(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> "Store":
+    def attach(cls, path: str | Path, fingerprint: str, study: Mapping[str, Any] | None = None) -> Store:
         """The file of this study, to write: checked and opened, or made with its first entry where there is none.
 
         Raises
@@ -184,15 +190,18 @@ class Store:
         with self.transaction():
             self.put("journal", key, values)
 
-    def checkpoint(self, graph: Any) -> None:
+    def checkpoint(self, graph: object) -> None:
         """Keep the graph as it stands, replacing what was kept of it before, in one transaction.
 
         One that is unfinished does not replace one that is finished.
         """
+        from contvines.graph.graph import Graph
         from contvines.graph.persistence import graph_entries
+        from contvines.loci.chart import Chart
 
+        assert isinstance(graph, Graph | Chart)
         # some numbers are worked out when they are asked for: before the write, which nothing may interrupt
-        entries = list(graph.entries() if hasattr(graph, "entries") else graph_entries(graph))
+        entries = list(graph_entries(graph) if isinstance(graph, Graph) else graph.entries())
         finished = bool(graph.finished)
         with self.transaction():
             if self.finished and not finished:
@@ -221,7 +230,7 @@ class Store:
             self._kept[kind, key] = (scalars, arrays)
         return kind, key
 
-    def graph(self, *, problems: bool = True, trust: bool = False) -> Any:
+    def graph(self, *, problems: bool = True, trust: bool = False) -> Graph | Chart:
         """The graph (or chart) as of the last checkpoint; without `problems`, numbers only (quicker).
 
         With `trust`, functions that the file names are imported; see :mod:`contvines.problems.registry`.
@@ -231,8 +240,7 @@ class Store:
 
         entries: dict[str, dict[str, Any]] = {}
         for kind, key, content in self._entries("e.kind != 'journal'"):  # as one checkpoint has left them
-            kind, key, content = printable(kind, key, content)
-            entries.setdefault(kind, {})[key] = content
+            entries.setdefault(printable_text(kind), {})[printable_text(key)] = printable(content)
         try:
             if "chart" in entries:
                 from contvines.loci.chart import chart_from_entries
@@ -373,7 +381,7 @@ class Store:
         if self._connection is not None:
             self._connection.close()
 
-    def __enter__(self) -> "Store":
+    def __enter__(self) -> Store:
         return self
 
     def __exit__(self, *_: object) -> None:

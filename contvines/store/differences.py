@@ -12,17 +12,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS, RENAMED
+from .settings import AGREEMENT
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from ..graph.graph import Graph
     from ..loci.chart import Chart
 
-VALUE = 1e-10
-ENDS = (
-    1e-8  # of branches, of loci and of stable stretches: borders of both kinds are located from either side
-)
-NEAR = 1e-8
-MULTIPLIERS = 1e-5  # at a fold they move with the square root of the location error
+
+Stretches = list[tuple[float, float]] | None
 
 
 def differences(before: dict[str, Any], after: dict[str, Any]) -> list[str]:
@@ -66,7 +65,7 @@ def _with_names_of_today(before: dict[str, Any]) -> dict[str, Any]:
     return before | {"points": renamed, "links": links}
 
 
-def _size(value: Any) -> float:
+def _size(value: ArrayLike) -> float:
     return 1.0 + float(np.abs(value).max())
 
 
@@ -81,7 +80,7 @@ def _renamed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, str]:
         close = {
             other: _gap(point, entry) for other, entry in after.items() if entry["kind"] == point["kind"]
         }
-        near = [other for other, gap in close.items() if gap < NEAR and other not in found.values()]
+        near = [other for other, gap in close.items() if gap < AGREEMENT.end and other not in found.values()]
         if label in near:
             found[label] = label
         elif near:
@@ -105,11 +104,11 @@ def _points(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
             continue
         now = after[renamed[label]]
         if renamed[label] != label and not any(
-            other is not point and other["kind"] == point["kind"] and _gap(point, other) < NEAR
+            other is not point and other["kind"] == point["kind"] and _gap(point, other) < AGREEMENT.end
             for other in before.values()
         ):
             yield f"{label} is called {renamed[label]}"
-        allowed = max(VALUE, (point["error"] + now["error"]) / _size(point["value"]))
+        allowed = max(AGREEMENT.value, (point["error"] + now["error"]) / _size(point["value"]))
         if _gap(point, now) > allowed:
             yield f"{label} moved from {point['value']} to {now['value']}"
         for name in ("real", "criticality", "branch", "on"):
@@ -123,7 +122,9 @@ def _points(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
 
 def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
     a, b = np.array(one["multipliers"]), np.array(other["multipliers"])
-    return a.shape == b.shape and bool(np.allclose(a, b, rtol=MULTIPLIERS, atol=MULTIPLIERS, equal_nan=True))
+    return a.shape == b.shape and bool(
+        np.allclose(a, b, rtol=AGREEMENT.multiplier, atol=AGREEMENT.multiplier, equal_nan=True)
+    )
 
 
 def _branches(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
@@ -142,11 +143,11 @@ def _branches(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
         yield f"branch {label} ({after[label]['word']} k={after[label]['periods']}) is new"
 
 
-def _same_intervals(one: Any, other: Any) -> bool:
+def _same_intervals(one: Stretches, other: Stretches) -> bool:
     if one is None or other is None:
         return one is other
     a, b = np.array(sorted(one), dtype=float), np.array(sorted(other), dtype=float)
-    return a.shape == b.shape and bool(np.allclose(a, b, rtol=ENDS, atol=ENDS))
+    return a.shape == b.shape and bool(np.allclose(a, b, rtol=AGREEMENT.end, atol=AGREEMENT.end))
 
 
 def _loci(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:

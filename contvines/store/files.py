@@ -1,9 +1,11 @@
 """A graph to a file of its own, and back."""
 
+from __future__ import annotations
+
 import os
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TypeVar, overload
+from typing import TYPE_CHECKING, TypeVar, overload
 
 from ..continuation.settings import hinting
 from ..interrupts import Resumable
@@ -11,11 +13,15 @@ from .database import Store
 from .header import TAILS, check_header
 from .publishing import draft_of
 
+if TYPE_CHECKING:
+    from ..graph.graph import Graph
+    from ..loci.chart import Chart
+
 Result = TypeVar("Result", bound=Resumable)
 
 
 @hinting
-def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
+def save(graph: Graph | Chart, path: str | Path, fingerprint: str | None = None) -> None:
     """Write a graph to a file of its own; an existing .vines file is replaced in one step.
 
     Raises
@@ -28,7 +34,7 @@ def save(graph: Any, path: str | Path, fingerprint: str | None = None) -> None:
         check_header(path)
     draft = draft_of(path)
     try:
-        with Store.create(draft, fingerprint or "saved from Python", getattr(graph, "model", None)) as store:
+        with Store.create(draft, fingerprint or "saved from Python", graph.model) as store:
             store.checkpoint(graph)
             store.settle()
         for tail in TAILS:
@@ -49,7 +55,7 @@ def resume(path: str | Path, fingerprint: str = ...) -> Store: ...
 
 
 @hinting
-def resume(path: Any, fingerprint: str = "run from Python") -> Any:
+def resume(path: Resumable | str | Path, fingerprint: str = "run from Python") -> object:
     """Go on with what was interrupted: `resume(graph)`, or `diagram(..., journal=resume("run.vines"))`.
 
     Parameters
@@ -79,7 +85,7 @@ def resume(path: Any, fingerprint: str = "run from Python") -> Any:
 
 
 @hinting
-def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Any:
+def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Graph | Chart:
     """The graph kept in a .vines file; `graph.finished` says whether its run had ended.
 
     A file is data: loading one runs nothing that it names.

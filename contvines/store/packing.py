@@ -23,7 +23,7 @@ def split(content: Mapping[str, Any]) -> tuple[str, dict[str, np.ndarray]]:
     return json.dumps({k: v for k, v in content.items() if k not in arrays}, default=_plain), arrays
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     """A value that JSON can hold, for numpy's scalars and foreign mappings."""
     if isinstance(value, np.generic):
         return value.item()
@@ -57,17 +57,22 @@ CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u206
 """Characters that a terminal obeys, line ends and tabs apart."""
 
 
-def printable(*parts: Any) -> tuple[Any, ...]:
-    """Texts, and values with texts in them, that show control characters (as \\x1b): what a file says is printed on terminals."""
-    return tuple(map(_shown, parts))
+def printable(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Values by name whose texts show control characters (as \\x1b): what a file says is printed on terminals."""
+    return {printable_text(name): _printable(part) for name, part in content.items()}
 
 
-def _shown(value: Any) -> Any:
+def printable_text(text: str) -> str:
+    """A text that shows control characters."""
+    return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+
+
+def _printable(value: object) -> object:
     if isinstance(value, str):
-        return CONTROL.sub(lambda found: found[0].encode("unicode_escape").decode(), value)
+        return printable_text(value)
     if isinstance(value, dict):
-        return {_shown(key): _shown(part) for key, part in value.items()}
-    return [_shown(part) for part in value] if isinstance(value, list) else value
+        return {_printable(key): _printable(part) for key, part in value.items()}
+    return [_printable(part) for part in value] if isinstance(value, list) else value
 
 
 def digest_of(kind: str, key: str, scalars: str, rows: list[tuple[str, str, str, bytes]]) -> bytes:
