@@ -144,7 +144,7 @@ def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
     return made | {"title": title, "required": ["model", *made["required"]]}
 
 
-def inlined(model: type[BaseModel]) -> dict[str, Any]:
+def inlined(model: "type[BaseModel]") -> dict[str, Any]:
     """The schema of a pydantic model without references, and without the null that TOML does not have."""
     made = model.model_json_schema(by_alias=True)
     shared = made.pop("$defs", {})
