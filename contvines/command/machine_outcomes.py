@@ -32,11 +32,13 @@ def pumping(found: Findings) -> dict[str, float]:
     """
     from contvines.survey.outcomes import peak
     from orbits.design.transients import free_decay
+    from orbits.machines.base import Model
     from orbits.orbit import Orbit
 
     seed = found.seed
     assert isinstance(seed, Orbit)
     model = seed.model
+    assert isinstance(model, Model)
     height = peak(found)["peak"] / float(model.gauge("length", seed.params))
     if not np.isfinite(height):
         return {"pumping_time": np.nan, "pumped_share": np.nan}

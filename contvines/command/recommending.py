@@ -599,10 +599,13 @@ class _Work:
         return compared[0], seen
 
     def _lines(self, model: Varying) -> list[Curve]:
-        """Responses of the machines to compare with."""
+        """Responses of the machines to compare with; declared machines have none."""
         from contvines.command.compare import POINTS
         from orbits.design.references import KINDS, reference
+        from orbits.machines.base import Model
 
+        if not isinstance(model, Model):
+            return []
         values = np.linspace(*self.study.within, POINTS)
         params = np.array([model.vector_at(self.study.parameter, float(x), self.study.loose) for x in values])
         length = model.gauge("length", params)
