@@ -87,12 +87,14 @@ def _lines(
 
     from contvines.graph.measures import default_measure
     from orbits.design.references import reference
+    from orbits.machines.base import Model
     from orbits.problem import OrbitProblem
 
     shown, over = y or default_measure(graph), x or graph.parameter
     problem = next((branch.problem for branch in graph.branches.values() if branch.problem is not None), None)
     if (
         not isinstance(problem, OrbitProblem)
+        or not isinstance(problem.model, Model)
         or "damping" not in problem.model.parameter_names
         or shown not in SHOWN
         or over != graph.parameter
@@ -110,10 +112,20 @@ def _lines(
 def peaks_compared(
     model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]
 ) -> dict[str, tuple[float, float]]:
-    """The largest response of each kind over an interval of a parameter, and where, in the machine's units."""
+    """The largest response of each kind over an interval of a parameter, and where, in the machine's units.
+
+    Raises
+    ------
+    ValueError
+        If the machine is declared: it has no closed forms.
+    """
     import numpy as np
 
     from orbits.design.references import reference
+    from orbits.machines.base import Model
+
+    if not isinstance(model, Model):
+        raise ValueError(f"the machine {model.name!r} has no closed forms to compare with")
 
     found = {}
     for kind in kinds:

@@ -25,7 +25,6 @@ from .settings import IDENTITY
 
 SAME = Settings().same
 ERRORS = 10.0  # times the stated errors
-EXACT = 1e-3  # of it: solutions to roundoff that differ by more are two, though they count as the same
 FAR = 0.1  # length along two branches after which they are one
 
 Form = tuple[Hashable, np.ndarray]
@@ -199,7 +198,7 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
 
     same = engine.settings.same
     gap, length, point = away(first), same, first
-    exactly = EXACT * same
+    exactly = IDENTITY.exact * same
     while exactly < gap <= same and 100.0 * engine.noise < exactly and length < FAR:
         border = engine.weights * point.tangent
         guess = engine.join(point.u, point.p) + length * point.tangent

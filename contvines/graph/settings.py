@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Identity:
-    """When two values of the parameter are one, in parts of `Settings.same`.
+    """When two values of the parameter, or two solutions, are one, in parts of `Settings.same`.
 
     Attributes
     ----------
@@ -15,10 +15,13 @@ class Identity:
         Of values whose errors are stated; the errors come on top of it.
     unstated : float
         Of values of which none is stated.
+    exact : float
+        Of solutions to roundoff: those that differ by more are two, though they count as the same.
     """
 
     stated: float = 1e-4
     unstated: float = 1e-2
+    exact: float = 1e-3
 
 
 IDENTITY = Identity()
