@@ -21,7 +21,7 @@ SETTLED = 0.01
 """Largest relative change of two observations that tell the same."""
 LASTING = 16  # forcing periods of a motion that does not recur
 MOST_EVENTS = 100_000
-TOGETHER = 1e-4  # phase by which the simulated first event may be early
+TOGETHER = 0.0001  # phase by which the simulated first event may be early
 
 
 @dataclass(frozen=True)

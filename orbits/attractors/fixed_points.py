@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from orbits.settings import SIMULATING, SOLVING
+
 ITERATIONS = 12
 LONGEST = 0.2  # of the box: longer steps are shortened
-SHIFT = 1e-7  # of the box, for differences
-SOLVED = 1e-9  # of the box
 SHORTER = 3  # times a step is halved where the motion does not come back
 BEYOND = 0.5  # of the box: so far outside nothing is looked for
 
@@ -33,7 +33,7 @@ def fixed_point(
     low, high = box.T
     size = high - low
     middle, outside = 0.5 * (low + high), (0.5 + BEYOND) * size
-    shift = SHIFT * size
+    shift = SIMULATING.nudge * size
     one = np.eye(len(size))
     matrix = np.empty_like(one)
     x = np.array(x, dtype=float)
@@ -41,7 +41,7 @@ def fixed_point(
     for _ in range(ITERATIONS):
         rest = x - image
         far = float(np.abs(rest / size).max())
-        if far < SOLVED:
+        if far < SOLVING.scaled:
             return x
         if not far < np.inf:
             return None

@@ -8,6 +8,7 @@ import numpy as np
 
 from contvines.shared.modulation import BAND, SILENT, modulation_of
 from orbits.flows.trajectory import TWO_PI, Trajectory
+from orbits.settings import SIMULATING
 
 PER_PERIOD = 48  # instants; events come on top
 
@@ -41,7 +42,7 @@ class Modulation(NamedTuple):
 
 def modulation(run: Trajectory) -> Modulation:
     """Of the whole forcing periods of a run."""
-    periods = max(1, int(run.lasted + 1e-9))
+    periods = max(1, int(run.lasted + SIMULATING.whole))
     clocks, sizes = run.responses(PER_PERIOD)
     place = ((clocks - run.clocks[0]) / TWO_PI).astype(int)
     tops = np.full(periods, -np.inf)

@@ -9,10 +9,10 @@ from typing import Protocol
 import numpy as np
 
 from orbits.orbit import Orbit
+from orbits.settings import SIMULATING
 
 SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
 SOLVED = 1000.0  # forcing periods whose simulation takes about as long as Newton's method for a cycle
-SAME = 1e-5  # difference of two canonical forms that are one
 RARE = 32  # forcing periods of the longest recurrence looked for where neighbours come together
 
 
@@ -85,4 +85,4 @@ def distinct(cycles: Iterable[Orbit], parameter: str, p: float) -> list[tuple[Pr
 
 def alike(one: Form, other: Form) -> bool:
     """Whether two canonical forms are those of one motion."""
-    return one[0] == other[0] and np.allclose(one[1], other[1], atol=SAME)
+    return one[0] == other[0] and np.allclose(one[1], other[1], atol=SIMULATING.same)

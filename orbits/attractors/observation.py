@@ -15,6 +15,7 @@ from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import Simulator
 from orbits.flows.trajectory import Trajectory
 from orbits.machines.varying import Varying
+from orbits.settings import SIMULATING
 from orbits.simulation.runs import simulator_of
 
 OFTEN = 32
@@ -36,7 +37,9 @@ def observe(found: Attractor, least: float = 0.0) -> Observation:
     first, longest = simulator.observed
     tally = _Tally(simulator)
     if found.recurrent:
-        seen = tally.go_on((found.periods or 1) + 1e-9, PER_PERIOD)  # the event it starts with comes again
+        seen = tally.go_on(
+            (found.periods or 1) + SIMULATING.whole, PER_PERIOD
+        )  # the event it starts with comes again
         speed = seen.impact_speed if found.impacts else 0.0
         return replace(seen, impact_speed=speed, impacts_per_period=found.impacts_per_period)
     if not longest:
@@ -128,7 +131,7 @@ class _Tally:
 
     def go_on(self, length: float, per_period: int = 0) -> Observation:
         """Simulate until `length` periods have been seen in all."""
-        while self.moving and self.seen.periods < length - 1e-9:
+        while self.moving and self.seen.periods < length - SIMULATING.whole:
             piece = min(PIECE, length - self.seen.periods)
             run = self.simulator.run(piece, int(MOST_EVENTS * (piece + 1.0)))
             self.moving = run.lasted > 0.0 and not run.stopped

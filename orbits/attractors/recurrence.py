@@ -12,15 +12,11 @@ from orbits.flows.protocol import Simulator
 from orbits.flows.solving import solved_at
 from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.orbit import Orbit
+from orbits.settings import SIMULATING, SOLVING
 from orbits.words import Word
 
-NEARLY = 1e-3  # difference of points, relative to 1 + points, at which a motion may have returned
 SHORT = 4  # forcing periods of the cycles that are looked for first
-EXACT = 1e-13  # last step of Newton's method
-SOLVED = 1e-9  # largest residual of a cycle, in units of the unknowns above 1
 FAR = 0.1  # of a cycle from the simulated motion, relative to 1 + states
-REPELS = 1.0 + 1e-6  # an orbit with a larger multiplier repels, and ...
-CLOSED = 1e-9  # ... a return to it that is open by more, relative to 1 + points, only passes it by
 DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed longer; t^(-1/2) gives 8
 MOVES = 8  # times that a creeping motion is moved on
 PLAIN = 40  # events up to which the plainest reading is looked for
@@ -74,13 +70,13 @@ def attracted(
             continue
         # next to a bifurcation a motion may recur but for a drift that fades or grows: it is given time as long as it does; one that
         # stays as it is belongs to a longer cycle, or to narrow bands
-        now = next(iter(returns(run, max_period, NEARLY)), None)
+        now = next(iter(returns(run, max_period, SIMULATING.nearly)), None)
         drifts, before = _drifts(before, now), now
         waited = patience > 0 and simulator.time - begun < waiting.slow and drifts
         last = last and not waited
-        for near in (tolerance, NEARLY) if last or attempt else (tolerance,):
+        for near in (tolerance, SIMULATING.nearly) if last or attempt else (tolerance,):
             for found in _candidates(simulator, run, max_period, near):
-                if _attracts(found[0]) or (last and found[2] <= CLOSED):
+                if _attracts(found[0]) or (last and found[2] <= SIMULATING.closed):
                     return _attractor(simulator, run, *found[:2])
                 simulator.push()
         if run.held or not (len(run) or model.forced):
@@ -98,7 +94,7 @@ Found = tuple[Orbit | int, int, float]
 def recurring(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Orbit | None:
     """The shortest cycle at the end of a run that its equations confirm and that attracts, or on which the motion is."""
     for orbit, _, gap in _candidates(simulator, run, max_period, near):
-        if isinstance(orbit, Orbit) and (gap <= CLOSED or _attracts(orbit)):
+        if isinstance(orbit, Orbit) and (gap <= SIMULATING.closed or _attracts(orbit)):
             return plainest(orbit)
     return None
 
@@ -108,7 +104,7 @@ def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: fl
     if not len(run):
         yield from _eventless(simulator, run, max_period, near)
         return
-    if near >= NEARLY and run.piled.any():
+    if near >= SIMULATING.nearly and run.piled.any():
         return  # what nearly returns between two rests on a wall is no cycle
     tried = 0
     for length, periods, gap in returns(run, max_period, near):
@@ -125,7 +121,7 @@ def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: fl
 
 def _attracts(found: Orbit | int) -> bool:
     """Whether a cycle does not repel; one without a word is only seen because it attracts."""
-    return isinstance(found, int) or not np.any(np.abs(found.multipliers) > REPELS)
+    return isinstance(found, int) or not np.any(np.abs(found.multipliers) > 1.0 + SIMULATING.neutral)
 
 
 def _attractor(simulator: Simulator, run: Trajectory, found: Orbit | int, periods: int) -> Attractor:
@@ -186,8 +182,8 @@ def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) ->
 def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:
     """The real orbit with the same word next to a guess, its shortest form; None if there is none within `far` (relative to 1 + states)."""
     system = orbit.system(symmetric=False)
-    u, residual = solved_at(system, system.reduce(orbit.nodes), system.value(orbit.params), EXACT)
-    if not residual < SOLVED * max(1.0, float(np.abs(u).max(initial=0.0))):
+    u, residual = solved_at(system, system.reduce(orbit.nodes), system.value(orbit.params))
+    if not residual < SOLVING.scaled * max(1.0, float(np.abs(u).max(initial=0.0))):
         return None
     nodes = system.expand(u)[: len(orbit.nodes)]
     moved = nodes - orbit.nodes

@@ -10,6 +10,7 @@ from orbits.attractors.fixed_points import fixed_point
 from orbits.flows.protocol import SimulationError, Simulator, later
 from orbits.flows.trajectory import Trajectory
 from orbits.orbit import Orbit
+from orbits.settings import SIMULATING
 
 Solve = Callable[[Trajectory, int, int, int], Orbit | None]
 """(record, first, last, periods) -> the cycle next to these events of a record, or None."""
@@ -18,7 +19,6 @@ WARM = (
     3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
 )
 EVENTS = 400  # in a forcing period at most
-ONE = 1e-5  # largest difference of two points that are one, relative to the box
 
 
 def returning_cycles(
@@ -69,13 +69,15 @@ def returning_cycles(
             continue
         for count in range(1, round(longest / length) + 1):
             x = fixed_point(lambda y, n=count: ahead(y, n), begin, box, simulator.hard)
-            if x is None or np.any(np.abs((known - x) / size).max(axis=1) < ONE):
+            if x is None or np.any(np.abs((known - x) / size).max(axis=1) < SIMULATING.same):
                 continue
             points = [x]
             for _ in range(count - 1):
                 points.append(ahead(points[-1], 1))
             known = np.concatenate([known, points])
-            again = np.abs((np.array(points[1:]).reshape(-1, len(x)) - x) / size).max(axis=1) < ONE
+            again = (
+                np.abs((np.array(points[1:]).reshape(-1, len(x)) - x) / size).max(axis=1) < SIMULATING.same
+            )
             prime = int(np.argmax(again)) + 1 if again.any() else count
             found = _solved(simulator, x, prime if prime % 2 or length == 1.0 else prime // 2, solve)
             if found is not None:

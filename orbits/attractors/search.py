@@ -11,6 +11,7 @@ from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import described, lasting
 from orbits.attractors.recurrence import attracted
 from orbits.flows.protocol import SimulationError, Simulator
+from orbits.settings import SIMULATING
 from orbits.simulation.runs import simulator_of
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from orbits.orbit import Orbit
 
 
-SAME = 1e-4  # difference of the nodes of one motion met twice
 DRAWS = 200  # starts drawn at most to find one that can be simulated
 
 
@@ -124,6 +124,6 @@ def different_attractors(
                 refused = error
         else:
             raise SimulationError(f"no start with states within {size:g} could be simulated: {refused}")
-        if not any(one.distance(known) < SAME for known in found):
+        if not any(one.distance(known) < SIMULATING.same for known in found):
             found.append(one)
     return found

@@ -15,6 +15,7 @@ from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import described, dots, modulated
 from orbits.attractors.search import find_attractor, goes_on
 from orbits.flows.protocol import SimulationError
+from orbits.settings import SIMULATING
 from orbits.simulation.runs import simulator_of
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def sweep(
     start: Mapping[str, float] | np.ndarray | None = None,
     transient: float = 200,
     max_period: int = 16,
-    nudge: float = 1e-7,
+    nudge: float = SIMULATING.nudge,
     exponents: bool = True,
     progress: Callable[[SweepRow], None] | None = None,
     **parameters: float,

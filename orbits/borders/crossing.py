@@ -18,7 +18,6 @@ from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends
 from orbits.borders.holding import parameter_unit
 from orbits.borders.neighbours import (
-    SIZES,
     Begun,
     Grown,
     Place,
@@ -32,13 +31,14 @@ from orbits.borders.neighbours import (
 )
 from orbits.borders.rewriting import edits_at
 from orbits.borders.rounds import derivative, rounds_at
-from orbits.borders.sticking import FOLLOWED, from_rest, to_rest
+from orbits.borders.sticking import from_rest, to_rest
 from orbits.contacts.letters import HIT, SLIP
 from orbits.cycles.identity import canonical, size_of_one
 from orbits.cycles.rounds import MOST, choices, escape
 from orbits.flows.solving import solved_at
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem, Seed
+from orbits.settings import BORDERING, REPLAYING, SOLVING
 from orbits.words.margins import approaches_of
 from orbits.words.rewriting import Edit
 
@@ -46,11 +46,6 @@ if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
 
 LONG_WORD = 60  # letters of a word that a line has room for
-BESIDE = (1e-4, 1e-5)  # distances from a border at which the branch that ends there is looked at
-AWAY = (
-    1e-6,
-    1e-7,
-)  # of the parameter's unit: how far from a border simulation begins, the second where the first finds nothing
 NEARER = (
     0.3,
     0.1,
@@ -123,7 +118,7 @@ def _with_room(
 
 
 def _followed(problem: CycleProblem, u: np.ndarray, p: float, orbit: Orbit) -> bool:
-    return bool(margins_of(problem, u, p).min() >= REAL) and orbit.replay() < FOLLOWED
+    return bool(margins_of(problem, u, p).min() >= REAL) and orbit.replay() < REPLAYING.followed
 
 
 def _simplest(
@@ -140,7 +135,7 @@ def _simplest(
 def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     """Where the simpler orbits, on whose border a branch of less symmetry ends, go on themselves."""
     at_border, residual = solved_at(problem.equations, u, p)
-    if not residual < 1e-10:
+    if not residual < SOLVING.residual:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
     for other, v, q, tangent, note in proposals(placed(problem, at_border, p, index)):
@@ -210,7 +205,7 @@ def _grown_in(
 ) -> tuple[Grown, str] | None:
     """The orbit in which the first rounds of the problem, as many as `changed`, go through one of the changes."""
     for edit in choices:
-        ways = SIZES if rounds == 2 else SIZES[:2]
+        ways = BORDERING.sizes if rounds == 2 else BORDERING.sizes[:2]
         edits = [edit.later(k, problem, p) for k in range(changed)]
         found = grown(Begun(wider, whole, p, edits), ways, steady=rounds > 2)
         if found is not None:
@@ -221,22 +216,24 @@ def _grown_in(
 def _real_part(
     problem: CycleProblem, u: np.ndarray, p: float, tangent: np.ndarray, index: int
 ) -> list[tuple[np.ndarray, float] | None]:
-    """Solutions (u, p) in the branch's real part, close to the border at each of the distances `BESIDE`; None where there is none.
+    """Solutions (u, p) in the branch's real part, close to the border at each of the distances `BORDERING.beside`; None where there is none.
 
     Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
     border, so its tangent does not tell.
     """
     kernels, work = problem.equations.kernels, problem.scratch
     step, along = np.empty(u.size + 1), np.empty(u.size + 1)
-    tangent = tangent / max(float(np.abs(tangent).max()), 1e-12)
+    tangent = tangent / float(np.abs(tangent).max())
     sides, found = (1.0, -1.0), []
-    for length in BESIDE:
+    for length in BORDERING.beside:
         best = None
         for side in sides:
             there = u + side * length * tangent[:-1]
             q = p + side * length * float(tangent[-1])
-            residual, _, q = kernels.newton(problem.data, there, q, work, tangent, step, along, 1e-13, 40)
-            if residual < 1e-10:
+            residual, _, q = kernels.newton(
+                problem.data, there, q, work, tangent, step, along, SOLVING.last_step, 40
+            )
+            if residual < SOLVING.residual:
                 margin = float(margins_of(problem, there, q)[index])
                 if best is None or margin > best[0]:
                     best = margin, side, (there, float(q))
@@ -253,7 +250,7 @@ def _simulated(
 
     orbit = problem.orbit(u, p)
     here = _key(orbit)
-    for away, side in product(AWAY, (1.0, -1.0)):
+    for away, side in product(BORDERING.away, (1.0, -1.0)):
         q = p + side * away * parameter_unit(problem, p)
         found, _ = settled(orbit, problem.values(q))
         if found is None or (problem.forced and found.periods % problem.periods) or _key(found) == here:
@@ -288,7 +285,7 @@ def _nearer(problem: CycleProblem, u: np.ndarray, q: float, p: float) -> Orbit |
     for part in NEARER:
         there = p + part * (q - p)
         u, residual = solved_at(problem.equations, u, there)
-        if not residual < 1e-10:
+        if not residual < SOLVING.residual:
             break
         if margins_of(problem, u, there).min() < REAL:
             return None

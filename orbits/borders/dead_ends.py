@@ -11,16 +11,11 @@ from orbits.contacts.letters import HIT, STICK, TURN
 from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
+from orbits.settings import BORDERING, EVENTS
 from orbits.words.margins import border_kind, place_of
 
 if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
-
-SLOW = 1e-3  # of the machine's own speed, or length: impacts slower than this, turns closer to a wall
-UNRESOLVED = 1e-5  # the way after an impact that ends this slow, its square, is lost in that of the margins
-VANISHING = 1e-9  # margins smaller than this are those of the border itself
-ONE_WAY = 1e-9  # relative difference of the frictions, slope included, of the two directions
-AWAY = 1e-6  # of the parameter's unit, from where simulation is asked
 
 CREEPS = (
     "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
@@ -69,10 +64,12 @@ def _contact(orbit: Orbit, index: int) -> str:
 def _nearly_vanishing(orbit: Orbit) -> str:
     """What else is about to vanish beside that which does; empty where nothing is."""
     margins, word = orbit.relative_margins, orbit.word
-    speeds = [m.value for m in margins if m.kind == "approach" and VANISHING < m.value < SLOW]
+    speeds = [m.value for m in margins if m.kind == "approach" and BORDERING.shown < m.value < BORDERING.slow]
     turns = [k for k in range(len(word)) if word.letter(k).kind == TURN]
     gaps = [
-        m.value for m in margins if m.kind == "wall" and m.segment in turns and VANISHING < m.value < SLOW
+        m.value
+        for m in margins
+        if m.kind == "wall" and m.segment in turns and BORDERING.shown < m.value < BORDERING.slow
     ]
     if speeds:
         return PILING.format(speed=min(speeds))
@@ -81,7 +78,7 @@ def _nearly_vanishing(orbit: Orbit) -> str:
     seen = {(m.kind, m.segment): m.value for m in margins}
     for place in range(len(word)):
         pair = seen.get(("duration", place), np.inf), seen.get(("stick", place), np.inf)
-        if word.letter(place).kind == STICK and min(pair) > VANISHING and max(pair) < SLOW:
+        if word.letter(place).kind == STICK and min(pair) > BORDERING.shown and max(pair) < BORDERING.slow:
             return FADING.format(length=pair[0], reserve=pair[1])
     return ""
 
@@ -92,7 +89,9 @@ def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
 
     told = {}
     for side, name in ((1.0, "above"), (-1.0, "below")):
-        found, kind = settled(orbit, problem.values(p + side * AWAY * parameter_unit(problem, p)))
+        found, kind = settled(
+            orbit, problem.values(p + side * BORDERING.away[0] * parameter_unit(problem, p))
+        )
         if found is None:
             told[name] = ENDS.get(kind, kind)
         elif found.word.canonical().events == orbit.word.canonical().events:
@@ -112,7 +111,7 @@ def piled_up(orbit: Orbit, approaches: np.ndarray | None = None) -> bool:
     speeds = (orbit.approaches if approaches is None else approaches).tolist()
     hits = [place for place in range(len(orbit.word)) if orbit.word.letter(place).kind == HIT]
     return any(
-        speed > VANISHING and orbit.flow.restitution(orbit, place) * speed < UNRESOLVED
+        speed > BORDERING.shown and orbit.flow.restitution(orbit, place) * speed < BORDERING.unresolved
         for speed, place in zip(speeds, hits)
     )
 
@@ -123,4 +122,4 @@ def _gives_way_one_way(orbit: Orbit) -> bool:
     if not isinstance(model, Model):
         return False
     left, right = model.rest.reserves(orbit.params)
-    return bool(abs(left - right) > ONE_WAY * model.friction_acceleration(orbit.params))
+    return bool(abs(left - right) > EVENTS.zero * model.friction_acceleration(orbit.params))

@@ -8,10 +8,10 @@ from collections.abc import Callable
 import numpy as np
 
 from orbits.orbit import Orbit
+from orbits.settings import BORDERING
 
 PER_PERIOD = 200  # instants of a forcing period at which motions are compared
 CLOSE = 0.05  # largest difference in position between a border orbit and one that goes on from it, wherever that is measured
-ALIKE = 1e-7  # motions that differ by less need not come any nearer
 SHRINKS = 0.5  # by at least this factor a distance that tends to zero falls on the way to the border
 
 COARSE = 10  # every so many instants are compared first
@@ -30,7 +30,7 @@ def tends_to(border: Orbit, near: Orbit, further: Orbit) -> bool:
 
 def tends(close: float, further: Callable[[], float]) -> bool:
     """The same from their distances; the larger one is asked for where it matters."""
-    return close < ALIKE or (close < CLOSE and close < SHRINKS * further())
+    return close < BORDERING.together or (close < CLOSE and close < SHRINKS * further())
 
 
 def gap(border: Orbit, near: Orbit) -> float:

@@ -9,8 +9,7 @@ import numpy as np
 from orbits.contacts.changes import Change, Grows, What
 from orbits.contacts.letters import STICK
 from orbits.protocol import CycleProblem
-
-NEAR = 1e-7  # margins this small vanish together
+from orbits.settings import BORDERING, SOLVING
 
 
 def parameter_unit(problem: CycleProblem, p: float) -> float:
@@ -63,17 +62,19 @@ def hold(
         else:
             u[following] = u[here] + wanted
     else:
-        near = NEAR * parameter_unit(other, p)
+        near = BORDERING.together * parameter_unit(other, p)
         speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
         border[here : here + n], border[size] = slopes, by_parameter
         u[here : here + n] += push * (wanted - speed) / float(slopes @ push)
         if (
-            len(change.events) > 1 and other.word.letter(first + 1).kind == STICK and abs(speed) > NEAR
+            len(change.events) > 1
+            and other.word.letter(first + 1).kind == STICK
+            and abs(speed) > BORDERING.together
         ):  # it comes to rest the sooner the slower it is
             clock = here if not other.forced else following
             since = u[following] - u[here] if other.forced else u[here]
             u[clock] += since * (wanted / speed - 1.0)
-    residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, 1e-12, 40)
-    if not residual < 1e-10:
+    residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, SOLVING.last_step, 40)
+    if not residual < SOLVING.residual:
         return None
     return Held(u, float(q_new), tangent, wanted)

@@ -10,24 +10,17 @@ from typing import NamedTuple
 import numpy as np
 
 from orbits.borders.distance import SHRINKS, gap, tends, tends_to
-from orbits.borders.holding import NEAR, Held, climb, hold, parameter_unit
+from orbits.borders.holding import Held, climb, hold, parameter_unit
 from orbits.borders.rewriting import durations_after, edits_at, rewritten
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, SLIP, STICK
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem
+from orbits.settings import BORDERING, GROWING, SOLVING
 from orbits.words.rewriting import Edit
 
-# of what grows beyond the border: ways to try
-SIZES = ((2e-3, 2e-4, 2e-5), (1e-4, 2e-5), (2e-6, 2e-7), (2e-8,))
-LARGEST = 2e-3  # what grows is followed up to here where smaller sizes leave open what is real
-SHOWN = 1e-8  # margins smaller than this may be zeros: their signs are asked for further from the border
-ROUNDING = 1e-13  # of a margin
-STEEP = 1e4  # change of the nodes with the parameter beyond which a fold is close
 ASTRAY = 0.1  # part of the way from the border by which a solution may miss its prediction: else it is of another branch
 CLOSER = 3  # times that a solution which tends to the border orbit is looked at closer still
-PLACED = 1e-10  # of the parameter's unit: places of such solutions this close to the border's are the same
-GROWING = 1e-4  # least growth of a margin with the distance from the border
 ROOM = 4  # events that may stand before that of the margin
 
 
@@ -161,7 +154,7 @@ def proposals(border: Place) -> Iterator[tuple[CycleProblem, np.ndarray, float, 
     """Solutions next to the border with the words that the local rules propose."""
     problem, u, p, index, orbit, edits, _ = border
     values = margins_of(problem, u, p)
-    together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < NEAR]
+    together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < BORDERING.together]
     for first in edits:
         chosen = [first]
         for j in together:
@@ -181,7 +174,9 @@ def _overlap(a: Change, b: Change) -> bool:
     return a.start < max(b.stop, b.start + 1) and b.start < max(a.stop, a.start + 1)
 
 
-def grown(begun: Begun, ways: tuple[tuple[float, ...], ...] = SIZES, steady: bool = False) -> Grown | None:
+def grown(
+    begun: Begun, ways: tuple[tuple[float, ...], ...] = BORDERING.sizes, steady: bool = False
+) -> Grown | None:
     """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
 
     None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable.
@@ -248,12 +243,12 @@ def vanishing_in(
     """
     if not len(other.word):
         return None
-    orbit, near = other.orbit(guess, p), NEAR * parameter_unit(other, p)
+    orbit, near = other.orbit(guess, p), BORDERING.together * parameter_unit(other, p)
     for place in range(other.length):
         kind = other.word.letter(place).kind
-        if kind == HIT and abs(other.equations.approach(guess, p, place, near).speed) < NEAR:
+        if kind == HIT and abs(other.equations.approach(guess, p, place, near).speed) < BORDERING.together:
             grows = Grows.SPEED
-        elif kind == STICK and place + 1 < other.length and abs(orbit.durations[place]) < NEAR:
+        elif kind == STICK and place + 1 < other.length and abs(orbit.durations[place]) < BORDERING.together:
             grows = Grows.GAP
         else:
             continue
@@ -273,16 +268,16 @@ def _begins_at(
     values = margins_of(other, near.u, near.p)
     if values.min() < REAL:
         return False
-    undecided = np.abs(values) < SHOWN
+    undecided = np.abs(values) < BORDERING.shown
     for held in _outwards(other, first, change, p, found):
         second, size = second or held, held.size
         if not undecided.any():
             break
         values = margins_of(other, held.u, held.p)
-        if np.any(undecided & (values < -SHOWN)):
+        if np.any(undecided & (values < -BORDERING.shown)):
             return False
-        undecided &= values < SHOWN
-    if size < LARGEST and np.any(undecided & (values < -ROUNDING)):
+        undecided &= values < BORDERING.shown
+    if size < GROWING.first and np.any(undecided & (values < REAL)):
         return False  # no solution where they would have a sign
     further = second or near
     apart = gap(border, other.orbit(near.u, near.p))
@@ -298,7 +293,7 @@ def _keeps_tending(
 
     Those of a branch that only passes by do so until they are as far as that branch's own border. `apart` is the distance of `near`.
     """
-    placed = PLACED * parameter_unit(other, p)
+    placed = BORDERING.placed * parameter_unit(other, p)
     for _ in range(CLOSER):
         held = hold(other, near.u, near.p, first, change, p, 0.1 * near.size)
         if held is None:
@@ -316,8 +311,8 @@ def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: 
     """The solutions from small to large, and on to larger sizes."""
     yield from found[-2::-1]
     held: Held | None = found[0]
-    while held is not None and held.size < LARGEST:
-        held = hold(other, held.u, held.p, first, change, p, min(10.0 * held.size, LARGEST))
+    while held is not None and held.size < GROWING.first:
+        held = hold(other, held.u, held.p, first, change, p, min(10.0 * held.size, GROWING.first))
         if held is not None:
             yield held
 
@@ -329,25 +324,31 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
     border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
     border[-1] = 1.0
     at_border, unit = guess.copy(), parameter_unit(other, p)
-    residual, _, _ = kernels.newton(other.data, at_border, p, work, border, step, tangent, 1e-12, 40)
-    if not residual < 1e-10:
+    residual, _, _ = kernels.newton(
+        other.data, at_border, p, work, border, step, tangent, SOLVING.last_step, 40
+    )
+    if not residual < SOLVING.residual:
         return None
     # where the branch turns back, or its period halves, close by, solutions at a given value may be those of another one
-    steep = np.abs(tangent).max() * unit > STEEP
+    steep = np.abs(tangent).max() * unit > BORDERING.steep
     found = _along(other, at_border, p, tangent) if steep else None
-    for away in (1e-8, 1e-7, 1e-6) if found is None else ():
+    for away in BORDERING.regular if found is None else ():
         sides = []
         for side in (1.0, -1.0):
             q = p + side * away * unit
             ahead = at_border + (q - p) * tangent[:-1]
             u, along = ahead.copy(), tangent.copy()
-            residual, _, _ = kernels.newton(other.data, u, q, work, border, step, along, 1e-12, 40)
-            astray = np.abs(u - ahead).max() > ASTRAY * np.abs(ahead - at_border).max() + SHOWN
-            if residual < 1e-10 and not astray:
+            residual, _, _ = kernels.newton(
+                other.data, u, q, work, border, step, along, SOLVING.last_step, 40
+            )
+            astray = np.abs(u - ahead).max() > ASTRAY * np.abs(ahead - at_border).max() + BORDERING.shown
+            if residual < SOLVING.residual and not astray:
                 sides.append((float(margins_of(other, u, q).min()), u, q, side * along))
         if sides:
             margin, u, q, along = max(sides, key=lambda entry: entry[0])
-            if margin > GROWING * away:  # not one that vanishes all along, as at a wall touched without speed
+            if (
+                margin > BORDERING.growing * away
+            ):  # not one that vanishes all along, as at a wall touched without speed
                 found = Grown(other, u, q, along)
                 break
     if found is None or (steady and not stable_at(other, found.u, found.p)):
@@ -362,12 +363,17 @@ def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.nda
     kernels, work = other.equations.kernels, other.scratch
     step, scratch = np.empty_like(tangent), np.empty_like(tangent)
     length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
-    for away in (1e-5, 1e-6):
+    for away in BORDERING.turning:
         for side in (1.0, -1.0):
             direction = side * tangent / length
             u = at_border + away * direction[:-1]
             guess = p + away * direction[-1]
-            residual, _, q = kernels.newton(other.data, u, guess, work, direction, step, scratch, 1e-12, 40)
-            if residual < 1e-10 and margins_of(other, u, float(q)).min() > GROWING * away:
+            residual, _, q = kernels.newton(
+                other.data, u, guess, work, direction, step, scratch, SOLVING.last_step, 40
+            )
+            if (
+                residual < SOLVING.residual
+                and margins_of(other, u, float(q)).min() > BORDERING.growing * away
+            ):
                 return Grown(other, u, float(q), direction)
     return None

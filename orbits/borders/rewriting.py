@@ -9,12 +9,10 @@ import numpy as np
 
 from orbits.contacts.changes import Spot
 from orbits.orbit import Orbit
-from orbits.settings import GROWING
+from orbits.settings import BORDERING, GROWING
 from orbits.words.margins import place_of
 from orbits.words.rewriting import Edit, applied, changes_at, spliced
 from orbits.words.word import Word
-
-LEAST = 1e-6  # duration of a flight of a guess
 
 
 def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
@@ -70,7 +68,7 @@ def durations_after(durations: np.ndarray, nodes: np.ndarray, edit: Edit) -> np.
     passed = np.cumsum(np.roll(durations, 1 - change.start)[: change.stop - change.start + 1])
     instants = [_instant(spot, change.start, passed) for spot in change.spots]
     whole = [*instants, instants[0] + durations.sum()] if alone else [0.0, *instants, passed[-1]]
-    spans = np.maximum(np.diff(whole), LEAST)
+    spans = np.maximum(np.diff(whole), BORDERING.least_flight)
     nodes[(np.arange(len(spans)) + change.start - (0 if alone else 1)) % len(nodes), 0] = spans
     return nodes
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from orbits.borders.holding import Held
-from orbits.borders.neighbours import SIZES, Place
+from orbits.borders.neighbours import Place
 from orbits.cycles.rounds import Rounds, derived, judged
 from orbits.protocol import CycleProblem
+from orbits.settings import BORDERING
 from orbits.words.rewriting import Edit
 
 
@@ -43,7 +44,7 @@ def _near_border(border: Place, edit: Edit) -> tuple[CycleProblem, list[Held]]:
     other, guess = begun.start[:2]
     if begun.growing is None:
         return other, [Held(guess, border.p, guess, 0.0)]
-    return other, begun.climbed(SIZES[0])
+    return other, begun.climbed(BORDERING.sizes[0])
 
 
 def derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndarray, float] | None:

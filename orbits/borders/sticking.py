@@ -10,18 +10,17 @@ from orbits.borders.distance import CLOSE
 from orbits.borders.holding import parameter_unit
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem, Seed
+from orbits.settings import BORDERING, REPLAYING
 from orbits.starts.find import StartError, find
 
 if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
 
-FOLLOWED = 1e-6  # largest replay error of a seed
-
 
 def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
     """The stick-slip motion just beyond the slip of a stuck one: closed form, or what the simulator finds."""
     p = float(point.value)
-    for distance in (1e-4, 1e-3):
+    for distance in BORDERING.slipping:
         for side in (1.0, -1.0):
             q = p + side * distance * parameter_unit(problem, p)
             if Orbit.at_rest(problem.model, problem.values(q)).real:
@@ -36,7 +35,11 @@ def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
             other = problem.sibling(orbit.word, orbit.periods, orbit.symmetric)
             u, q = other.reduce(orbit.nodes), other.value(orbit.params)
             length = orbit.model.natural_units(orbit.params)[0]
-            if orbit.real and np.ptp(orbit.sample()["w"]) < CLOSE * length and orbit.replay() < FOLLOWED:
+            if (
+                orbit.real
+                and np.ptp(orbit.sample()["w"]) < CLOSE * length
+                and orbit.replay() < REPLAYING.followed
+            ):
                 sign = np.zeros(other.dimension + 1)
                 sign[-1] = side
                 note = "the stuck absorber begins to slip: persistence, the word becomes ss"
@@ -51,9 +54,9 @@ def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
     p = float(point.value)
     unit = parameter_unit(problem, p)
     for side in (-1.0, 1.0):
-        q = p + side * 1e-7 * unit
+        q = p + side * BORDERING.away[-1] * unit
         orbit = Orbit.at_rest(problem.model, problem.values(q))
-        beyond = Orbit.at_rest(problem.model, problem.values(p - side * 1e-7 * unit))
+        beyond = Orbit.at_rest(problem.model, problem.values(p - side * BORDERING.away[-1] * unit))
         if orbit.margin > 0.0 >= beyond.margin:  # next to nothing reads as zero
             other = problem.sibling(orbit.word, 1, orbit.symmetric)
             direction = np.zeros(other.dimension + 1)

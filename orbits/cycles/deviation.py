@@ -14,18 +14,14 @@ import numpy as np
 from orbits.contacts.letters import HIT
 from orbits.cycles.cycle import Cycle
 from orbits.flows.protocol import SimulationError
+from orbits.settings import REPLAYING, SIMULATING
 from orbits.simulation.runs import simulator_of
 from orbits.words.alphabet import Watch
 
 TURN = 2.0 * np.pi
-AT_BORDER = 1e-4  # margins below this may make two events one
-WILD = 1e3  # multipliers above this blow rounding up within a period
-AGREED = 1e-9  # deviations below this need no second look
 BACKWARD = (
     -TURN * np.finfo(float).eps ** 0.5
 )  # what vanishes at a border like a root has half of the digits: rounding of a flight's duration
-DEFINITE = 1e-2  # strength of an event from which a simulation starts without doubt
-SHORT = 1e-4  # flights that are over so soon may swap the events at their ends
 STRETCHES = 32  # at most so many starts
 POINTS = 400  # instants of a period at which positions are compared
 
@@ -45,11 +41,11 @@ def deviation(orbit: Cycle, known: Known) -> float:
     if not len(orbit.word):
         return by_positions(orbit, known)
     error = by_events(orbit)
-    if error < AGREED:
+    if error < REPLAYING.agreed:
         return error
     if not math.isfinite(error):
         margins, multipliers = known()
-        if not (np.any(np.abs(margins) < AT_BORDER) or np.any(np.abs(multipliers) > WILD)):
+        if not (np.any(np.abs(margins) < REPLAYING.close) or np.any(np.abs(multipliers) > REPLAYING.wild)):
             return max(by_events(orbit, place, 1) for place in range(len(orbit.word)))
     return min(error, by_positions(orbit, known))
 
@@ -102,7 +98,7 @@ def by_positions(orbit: Cycle, known: Known) -> float:
                 here = np.array([motion[name][0] for name in simulator.names])
                 simulator.start(here, float(clock[0]) / TURN)
             begun = simulator.time
-            run = simulator.run(float(since[-1]) / TURN + 1e-6, 100 * n + 1000)
+            run = simulator.run(float(since[-1]) / TURN + SIMULATING.whole, 100 * n + 1000)
             there = run.coordinates(begun + since / TURN)[:, columns]
         except (SimulationError, ValueError):  # it does not go on for so long
             return math.inf
@@ -113,8 +109,8 @@ def by_positions(orbit: Cycle, known: Known) -> float:
 def _definite(orbit: Cycle, margins: np.ndarray) -> list[int]:
     """Events of some strength, between flights that are not short; all between such flights where every impact is soft."""
     n, columns = len(orbit.word), orbit.word.alphabet.columns
-    strong = np.resize(margins[columns.index(Watch.STRENGTH) :: len(columns)], n) > DEFINITE
-    long = np.minimum(orbit.durations, np.roll(orbit.durations, 1)) > SHORT
+    strong = np.resize(margins[columns.index(Watch.STRENGTH) :: len(columns)], n) > REPLAYING.definite
+    long = np.minimum(orbit.durations, np.roll(orbit.durations, 1)) > REPLAYING.close
     hits = np.array([orbit.word.letter(i).kind == HIT for i in range(n)])
     if not strong[hits].any():
         strong = strong | hits.any()

@@ -11,18 +11,17 @@ from functools import cache
 
 import numpy as np
 
+from orbits.settings import EVENTS, SIMULATING
 from orbits.words.word import Word
-
-SAME = 1e-7  # nodes closer than this are one node, unless the caller knows the size of the machine better
 
 
 def size_of_one(nodes: np.ndarray) -> float:
     """Distance below which nodes (L, n + 1) are one, of a machine whose states have any size."""
-    return SAME * (1.0 + float(np.abs(nodes[:, 1:]).max(initial=0.0)))
+    return SIMULATING.one * (1.0 + float(np.abs(nodes[:, 1:]).max(initial=0.0)))
 
 
 def root_orbit(
-    word: Word, periods: int, nodes: np.ndarray, *, forced: bool = True, same: float = SAME
+    word: Word, periods: int, nodes: np.ndarray, *, forced: bool = True, same: float = SIMULATING.one
 ) -> tuple[Word, int, np.ndarray]:
     """The shortest orbit of which this one is a repetition: its word, periods and nodes (l, n), without events one per forcing period."""
     repetitions = word.repetitions if len(word) else len(nodes)
@@ -42,7 +41,7 @@ def is_symmetric(
     word: Word,
     periods: int,
     nodes: np.ndarray,
-    same: float = SAME,
+    same: float = SIMULATING.one,
     *,
     forced: bool = True,
     image: np.ndarray | None = None,
@@ -74,7 +73,7 @@ def canonical(
     mirror: bool = True,
     *,
     forced: bool = True,
-    same: float = SAME,
+    same: float = SIMULATING.one,
 ) -> tuple[Hashable, np.ndarray]:
     """Key (word and periods) and vector of the orbit's canonical form.
 
@@ -101,7 +100,7 @@ def canonical(
         for reading in readings:
             turn = size - reading[1] * flat.shape[1]
             score = float(direction[turn : turn + size] @ images[reading[0]])
-            if score > best_score + 1e-12:
+            if score > best_score + EVENTS.zero:
                 best, best_score = reading, score
     mirrored, place = best
     turned = np.concatenate([flat[place:], flat[:place]]) if place else flat

@@ -22,6 +22,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orbits.settings import ROUNDING, SOLVING
+
 
 @np.errstate(all="ignore")
 def through_flights(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray] | None:
@@ -79,9 +81,6 @@ def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.
 
 MOST = 8  # up to so many rounds of a cycle are joined to one at a border
 UNSTABLE = 1.5  # a largest multiplier from which on a cycle is unstable, though the product is known next to the border only
-ROUNDING = 1e-14  # of the derivative of a round, relative to the product of its factors' absolute values
-SURE = 1e-3  # relative error of a derivative that is of use
-DECIDED = 1e-2  # of the largest determinant: smaller ones have no sign to rely on
 BOUNDED = 0.05  # relative change of the derivatives from one size of what grows to the next, where they have a limit
 
 
@@ -117,9 +116,9 @@ class Rounds(NamedTuple):
             choices(most), sides.tolist(), beside.tolist(), products
         ):
             if self.linear:
-                torn = low < -DECIDED * high and high > -DECIDED * low
+                torn = low < -ROUNDING.decided * high and high > -ROUNDING.decided * low
             elif self.further is not None and _lasts(-low, -before[0]) and _lasts(high, before[1]):
-                torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < SURE
+                torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < ROUNDING.sure
             else:
                 torn = False
             if torn or (key[0] > 2 and _radius(product) > UNSTABLE + self._rounding(*key, own, other)):
@@ -141,7 +140,7 @@ def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _lasts(near: float, further: float) -> bool:
     """Whether a determinant that is positive near the border is so all the way to it: it grows, or stays as it is."""
-    return near > DECIDED and further - near <= DECIDED * near
+    return near > ROUNDING.decided and further - near <= ROUNDING.decided * near
 
 
 def _radius(product: np.ndarray) -> float:
@@ -184,7 +183,7 @@ def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds
         size = float(np.abs(near[0]).max())
         error = max(error, near[1] / size if size > 0.0 else 0.0)
         bounded = bounded and bool(np.abs(far[0] - near[0]).max() <= BOUNDED * max(size, 1.0))
-    if not error <= SURE:
+    if not error <= ROUNDING.sure:
         return None
     return Rounds(np.array(found), error, bounded and _agree(*found), None if bounded else np.array(further))
 
@@ -220,7 +219,7 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
     if found is None:
         return None
     whole, sizes = found
-    error = ROUNDING * float(sizes.max())
+    error = SOLVING.rounding * float(sizes.max())
     return (whole, error) if np.isfinite(whole).all() and math.isfinite(error) else None
 
 

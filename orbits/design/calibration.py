@@ -15,6 +15,7 @@ from orbits.design.columns import read_columns
 from orbits.design.estimates import Calibration, fit
 from orbits.machines.base import ParameterError
 from orbits.machines.path import along
+from orbits.settings import DESIGNING
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -82,7 +83,7 @@ def from_impacts(
             if instants.size < used:
                 instants = simulate(model, start, events=events, **numbers).impact_times[:used]
         if instants.size < used:
-            return np.full(used, 1e3 * float(since[-1]))
+            return np.full(used, 1000.0 * float(since[-1]))
         late = (instants - instants[0]) - since[:used]
         return late - late.mean()
 
@@ -119,7 +120,11 @@ def _nearer(
     )
     sums = np.apply_along_axis(lambda x: float(np.square(residuals(x, few)).sum()), -1, places)
     tried = [np.array([*guess.values()], dtype=float), *_lowest(sums, places, CANDIDATES)]
-    options: dict[str, Any] = {"bounds": (low, high), "x_scale": high - low, "diff_step": 1e-5}
+    options: dict[str, Any] = {
+        "bounds": (low, high),
+        "x_scale": high - low,
+        "diff_step": DESIGNING.difference,
+    }
 
     def followed(x: np.ndarray) -> tuple[float, np.ndarray]:
         used = few

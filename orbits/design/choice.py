@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from orbits.machines.base import ParameterError
+from orbits.numbers import SMALLEST
+from orbits.settings import DESIGNING
 
 Evaluate = Callable[[dict[str, float]], Mapping[str, float]]
 
@@ -49,7 +51,7 @@ def best(
     quantile: float | None = None,
     grid: int = 9,
     known: Sequence[tuple[Mapping[str, float], float]] = (),
-    accuracy: float = 1e-3,
+    accuracy: float = DESIGNING.accuracy,
 ) -> Choice:
     """The choice with the lowest (or largest) outcome.
 
@@ -190,13 +192,13 @@ def _refine(
             options={"xatol": accuracy * (over[0][1] - over[0][0])},
         )
         return
-    sizes = np.array([max(b[1] - b[0], 1e-12) for b in brackets])
+    sizes = np.array([max(b[1] - b[0], SMALLEST) for b in brackets])
     simplex = np.array([[0.0, 0.0], [0.25, 0.0], [0.0, 0.25]])
     minimize(
         lambda x: value(np.asarray(start) + x * sizes),
         np.zeros(2),
         method="Nelder-Mead",
-        options={"initial_simplex": simplex, "xatol": accuracy * 4.0, "fatol": 1e-6, "maxfev": 60},
+        options={"initial_simplex": simplex, "xatol": accuracy * 4.0, "fatol": DESIGNING.level, "maxfev": 60},
     )
 
 

@@ -13,8 +13,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from orbits.machines.base import ParameterError
+from orbits.settings import DESIGNING
 
-NEAR, WIDEST = 1e-6, 0.1  # steps of differences, as parts of the limits' span
+WIDEST = 0.1  # step of differences, of the limits' span
 AGREEING = 0.3  # relative difference of slopes from one step and from four times that, where data are smooth
 
 
@@ -96,10 +97,10 @@ def fit(
         start,
         bounds=(low, high),
         x_scale=span,
-        diff_step=1e-5,
-        xtol=1e-12,
-        ftol=1e-12,
-        gtol=1e-14,
+        diff_step=DESIGNING.difference,
+        xtol=DESIGNING.estimated,
+        ftol=DESIGNING.estimated,
+        gtol=DESIGNING.flat,
         method="trf",
     )
     data, unknowns = found.fun.size - spent, len(names)
@@ -109,7 +110,7 @@ def fit(
     wide = float(t.ppf(0.5 + 0.5 * confidence, data - unknowns))
     jacobian = _effects(residuals, found.x, low, high, wide * scatter)
     _, sizes, axes = np.linalg.svd(jacobian * span, full_matrices=False)
-    if sizes[-1] <= 1e-10 * sizes[0]:
+    if sizes[-1] <= DESIGNING.independent * sizes[0]:
         flat = names[int(np.argmax(np.abs(axes[-1])))]
         raise ParameterError(
             f"the data do not depend on {flat} (alone): leave it out, or measure something that does"
@@ -145,7 +146,7 @@ def _effects(
     """
     columns = []
     for j in range(x.size):
-        step = NEAR * (high[j] - low[j])
+        step = DESIGNING.effect * (high[j] - low[j])
         slope = _slope(residuals, x, j, step, low, high)
         while step < WIDEST * (high[j] - low[j]) and np.linalg.norm(slope) * step > scatter:
             wider = _slope(residuals, x, j, 4.0 * step, low, high)

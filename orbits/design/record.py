@@ -20,11 +20,11 @@ import numpy as np
 
 from contvines.core.library import NUMBER, POINTER, WHOLE, address, function, native
 from orbits.machines.base import ParameterError
+from orbits.settings import EVENTS, REPLAYING, SIMULATING
 
 if TYPE_CHECKING:
     from orbits.machines.base import Model
 
-SLOWEST = 1e-7  # speed of an impact, in half-widths times omega_0, below which the absorber stays on a wall that it is pressed to
 MOST_EVENTS = 20_000  # in a hundredth of the natural period
 SLICE = 20_000  # rows of one call of the native core
 
@@ -109,7 +109,7 @@ def recorded(
             "a recorded motion of the base is followed for level cavities only: use slope = 0"
         )
     if tail > 0.0:
-        times = np.append(times, [times[-1] + 1e-9, times[-1] + tail])
+        times = np.append(times, [times[-1] + SIMULATING.whole, times[-1] + tail])
         acceleration = np.append(acceleration, [0.0, 0.0])
     eps, r = numbers["mass_ratio"], numbers["restitution"]
     steps = np.maximum(np.ceil(np.diff(times) / (0.02 * math.pi)), 1).astype(np.int64)
@@ -250,7 +250,7 @@ def _march_plainly(
                     if _watch(state, mode, rate, eps, pull, a0, a1, first, what) >= 0.0:
                         continue
                     low, high = 0.0, first
-                    while high - low > 1e-15 * (1.0 + first):
+                    while high - low > REPLAYING.rounding * (1.0 + first):
                         middle = 0.5 * (low + high)
                         if middle <= low or middle >= high:
                             break
@@ -279,7 +279,7 @@ def _march_plainly(
                     mode = 1 if after > 0.0 else -1
                     side = 1 if which == 0 else -1
                     need = -(rate * v1 + x1) / (1.0 + eps)
-                    if abs(after) < SLOWEST and side * need > -pull:
+                    if abs(after) < EVENTS.touch and side * need > -pull:
                         v2 = v_rate / (1.0 + eps)
                         v1 = v2
                         mode, wall = 0, side

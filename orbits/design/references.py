@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from orbits.settings import DESIGNING
+
 if TYPE_CHECKING:
     from orbits.machines.base import Model
 
@@ -127,7 +129,7 @@ def _sliding(omega: float, force: float, drag: float, eps: float, own: float) ->
     high = max(2.0 * low, 1.0)
     while missing(high) < 0.0:
         high *= 2.0
-        if high > 1e12:
+        if high > DESIGNING.endless:
             return math.inf
     for _ in range(200):
         middle = 0.5 * (low + high)

@@ -15,9 +15,9 @@ from typing import Self
 
 from orbits.machines.coupled import Coupled
 from orbits.machines.parameters import ParameterError
+from orbits.settings import DESIGNING
 
 STANDARD_GRAVITY = 9.81
-AGREEMENT = 1e-3  # two ways to give one number may differ by so much (printed data are rounded)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +88,7 @@ class Scales:
             object.__setattr__(self, "natural_frequency", self.omega_0 / (2.0 * math.pi))
         else:
             follows = self.omega_0 / (2.0 * math.pi)
-            if abs(follows - self.natural_frequency) > AGREEMENT * follows:
+            if abs(follows - self.natural_frequency) > DESIGNING.agreement * follows:
                 raise ParameterError(
                     f"natural_frequency = {self.natural_frequency:g} Hz contradicts stiffness = {self.stiffness:g} N/m with "
                     f"oscillator_mass = {self.oscillator_mass:g} kg, which give {follows:.6g} Hz: leave one of them out"
@@ -224,7 +224,7 @@ class Scales:
                 natural_frequency = math.sqrt(gravity / (machine.gravity * half_width)) / (2.0 * math.pi)
         omega = 2.0 * math.pi * natural_frequency
         follows = gravity / (half_width * omega**2)
-        if abs(follows - machine.gravity) > AGREEMENT * max(follows, machine.gravity):
+        if abs(follows - machine.gravity) > DESIGNING.agreement * max(follows, machine.gravity):
             raise ParameterError(
                 f"half_width = {half_width:g} m and natural_frequency = {natural_frequency:g} Hz contradict the machine's "
                 f"gravity = {machine.gravity:g}: with g = {gravity:g} m/s^2 they give {follows:.6g}; leave one of them out"

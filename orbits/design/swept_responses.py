@@ -13,20 +13,19 @@ from orbits.attractors.sweeping import SweepRow, sweep
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError
 from orbits.population.population import Population
+from orbits.settings import DESIGNING
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
     from orbits.simulation.runs import Start
 
 DRAWN = 3  # starts at the first, the middle and the last value
-SAME = 1e-3  # relative difference of the responses of one motion
 USUAL, LONG = (
     200,
     800,
 )  # forcing periods that are left out, and of a motion without a period that may be a transient
 ENDS = 0.01  # relative fall of the response by which a transient is known
 CLIMBED = 24  # values to either side of the largest response
-NARROW = 1e-3  # of the interval: the least step between them
 
 
 def swept_responses(
@@ -98,7 +97,7 @@ class _Seen:
         """Whether a motion was met at this value already; of those without a period there is one."""
         here, own = [other for other in self.rows if other.value == row.value], self.response(row)
         return any(
-            abs(self.response(other) - own) <= SAME * abs(own)
+            abs(self.response(other) - own) <= DESIGNING.agreement * abs(own)
             if row.periods and other.periods
             else row.periods == other.periods
             for other in here
@@ -133,7 +132,7 @@ class _Seen:
             here, step = top, 0.5 * spacing
             for _ in range(CLIMBED):
                 value = min(max(here.value + side * step, self.values[0]), self.values[-1])
-                if step < NARROW * span or value == here.value:
+                if step < DESIGNING.narrow * span or value == here.value:
                     break
                 row = self.at(value, here.detail.state)
                 self.rows.append(row)

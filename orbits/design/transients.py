@@ -13,6 +13,8 @@ import numpy as np
 
 from orbits.design.record import Response, recorded
 from orbits.machines.base import ParameterError
+from orbits.numbers import SMALLEST
+from orbits.settings import DESIGNING
 from orbits.simulation.runs import simulate
 
 if TYPE_CHECKING:
@@ -91,7 +93,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float, lost: floa
         times.append(times[-1] + 2.0 * math.pi)
         energy.append(_energy(run.end, eps) / first)
         state = run.end
-        if abs(taken.sum()) < 1e-9 * first:
+        if abs(taken.sum()) < DESIGNING.exhausted * first:
             break
     t, e = np.array(times), np.array(energy)
     rate = 0.5 * eps * damping
@@ -144,7 +146,7 @@ def _when(times: np.ndarray, energy: np.ndarray, level: float) -> float:
     i = int(below[0])
     if i == 0:
         return float(times[0])
-    share = math.log(energy[i - 1] / level) / math.log(energy[i - 1] / max(energy[i], 1e-300))
+    share = math.log(energy[i - 1] / level) / math.log(energy[i - 1] / max(energy[i], SMALLEST))
     return float(times[i - 1] + share * (times[i] - times[i - 1]))
 
 

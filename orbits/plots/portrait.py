@@ -12,6 +12,7 @@ from contvines.shared.figures import new_figure, styled
 from contvines.shared.near_names import hinting
 from orbits.plots import panels as panel
 from orbits.plots.shown import quantities, shown
+from orbits.settings import SIMULATING
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -116,7 +117,11 @@ def portrait(
 def title(orbit: Orbit) -> str:
     """What the orbit is, in two lines: word, impacts, symmetry and stability; then its parameters."""
     size = np.abs(orbit.multipliers)
-    if size.size and np.abs(size - 1.0).min() <= 1e-6 and size.max() <= 1.0 + 1e-6:
+    if (
+        size.size
+        and np.abs(size - 1.0).min() <= SIMULATING.neutral
+        and size.max() <= 1.0 + SIMULATING.neutral
+    ):
         state = "marginal"  # at a fold, a symmetry breaking, ...
     else:
         state = "stable" if orbit.stable else "unstable"

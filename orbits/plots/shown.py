@@ -100,7 +100,7 @@ def _of_cavity(orbit: Orbit, model: Model, points: int) -> Shown:
     half, largest = 0.5 * (left - right), float(np.abs(w).max())
     near = orbit.word.impact_free and 0.0 < largest <= 0.5 * half
     ends = (1.5 * largest, -1.5 * largest) if near else (left + 0.16 * half, right - 0.16 * half)
-    reach = 1.15 * max(1e-3 * half, float(np.abs(rate).max()))
+    reach = 1.15 * max(0.001 * half, float(np.abs(rate).max()))
     turns = motion["phase"] / (2.0 * np.pi)
     even = np.linspace(turns[0], turns[-1], points)
     box, body = (np.interp(even, turns, place) for place in (cavity, absorber))

@@ -9,28 +9,24 @@ import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.motion import RARE, SOLVED, Motion, Problem, wandering
-from orbits.attractors.recurrence import NEARLY, attracted, recurring, returns
+from orbits.attractors.recurrence import attracted, recurring, returns
 from orbits.flows.protocol import Batch, Outcome, SimulationError, Simulator
 from orbits.flows.trajectory import TWO_PI
 from orbits.orbit import Orbit
 from orbits.population.sorting import Sorting
+from orbits.settings import SIMULATING
 
 if TYPE_CHECKING:
     from orbits.flows.trajectory import Trajectory
 
 BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)
 """Forcing periods (or events) between two looks at a motion that is followed alone."""
-SURE = 1e-7  # a point so near to a known motion, relative to 1 + points, lies on it
-FALLING = 1e-2  # so near, and nearer by half than at the look before, it is falling onto it
-NEAR = 1e-3  # a settled point lies so near to the solved motion that it belongs to
-RECOGNISED = 1e-7  # difference of two points that counts as a return of a single motion of many
 AGAIN = 8.0  # forcing periods after which a settled motion is looked at
 PATIENCE = 3  # times at most a motion that does not recur is looked at again
 ENOUGH = 20_000  # forcing periods that chaotic motions, all those alike together, have not ended in; events of a motion that is followed alone
 LATE = 3000.0  # forcing periods between two such looks
 TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
 UNENDING = ("chaotic", "quasi-periodic", "slow")
-LONG = 1e4  # clock of a self-excited machine without an event after which none is waited for
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +96,7 @@ class Fleet:
     def _looked_at(self, transient: float, longest: int, patience: int) -> Attractor:
         """What the motion settles on."""
         self.work += SOLVED
-        return attracted(self.simulator, transient, longest, RECOGNISED, patience)
+        return attracted(self.simulator, transient, longest, SIMULATING.one, patience)
 
     def _unsettled(self, i: int, batch: Batch, sorting: Sorting) -> None:
         """A motion that does not recur, judged by its growth of small differences; where it may still recur it is looked at again.
@@ -139,8 +135,10 @@ class Fleet:
         for looks, block in enumerate(BLOCKS):
             goes_on = simulator.skip(block)
             marks, gap, mirrored = self._nearest()
-            near = marks is not None and gap < FALLING
-            if marks is not None and (gap < SURE or (near and marks is before[0] and gap < 0.5 * before[1])):
+            near = marks is not None and gap < SIMULATING.falling
+            if marks is not None and (
+                gap < SIMULATING.one or (near and marks is before[0] and gap < 0.5 * before[1])
+            ):
                 return sorting.assign(i, marks.place, mirrored)
             before = marks, gap
             if goes_on and (looks < 2 or (near and looks < 5)):
@@ -150,7 +148,7 @@ class Fleet:
                 solution = _equilibrium(run, sorting.parameter)
                 motion = Motion("stuck", "", 0, *solution, state=simulator.state.copy())
                 return sorting.assign(i, sorting.place(motion))
-            orbit = recurring(simulator, run, self.longest, NEARLY)
+            orbit = recurring(simulator, run, self.longest, SIMULATING.nearly)
             if orbit is not None:
                 return self._add(i, orbit, orbit.flow.kind(orbit), orbit.periods, orbit.spelling, sorting)
             if run.held:
@@ -167,7 +165,7 @@ class Fleet:
         kind, exponent, error = self._grown()
         state = simulator.state.copy()
         if kind == "slow":  # neighbours come together: it may recur, but late
-            orbit = recurring(simulator, simulator.look(RARE), RARE, NEARLY)
+            orbit = recurring(simulator, simulator.look(RARE), RARE, SIMULATING.nearly)
             if orbit is not None:
                 return self._add(i, orbit, orbit.flow.kind(orbit), orbit.periods, orbit.spelling, sorting)
         return sorting.plain(i, kind, exponent=exponent, error=error, state=state)
@@ -224,7 +222,7 @@ class Fleet:
         recurs = (batch.outcomes == Outcome.SETTLED) & (batch.periods == max(periods, 1))
         if periods > self.longest:
             recurs = batch.outcomes == Outcome.WANDERING
-        here = (np.minimum(own, image) < NEAR) & recurs
+        here = (np.minimum(own, image) < SIMULATING.nearly) & recurs
         here[i] = True
         return sorting.assign(here, k, image < own)
 

@@ -13,12 +13,12 @@ from orbits.proofs.equations import MIRRORED, Motif
 from orbits.proofs.flights import MACHINES, parameter_names
 from orbits.proofs.obstacles import ProofError
 from orbits.proofs.varying import Varying
+from orbits.settings import PROVING
 
 if TYPE_CHECKING:
     from flint import arb
 
 SIDED = ("restitution", "friction")
-NEAR = 1e-6  # nodes of an orbit and of its mirror image
 
 
 def motif_of(
@@ -59,7 +59,7 @@ def require_mirror(
         image[[letter not in MIRRORED for letter in motif.events], 1] += middle
     letters = tuple(MIRRORED.get(letter, letter) for letter in motif.events)
     same = tuple(events[n:]) == letters and tuple(modes[n:]) == tuple(-mode for mode in motif.modes)
-    if not same or nodes.shape[0] != 2 * n or not np.max(np.abs(nodes[n:] - image)) < NEAR:
+    if not same or nodes.shape[0] != 2 * n or not np.max(np.abs(nodes[n:] - image)) < PROVING.near:
         raise ProofError(
             "the second half of the orbit is not the mirror image of the first: prove the whole word"
         )

@@ -19,6 +19,7 @@ from orbits.proofs.balls import ball, library, texts, upper_text
 from orbits.proofs.elimination import Singular, solve
 from orbits.proofs.equations import System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
+from orbits.settings import PROVING
 
 if TYPE_CHECKING:
     from flint import arb
@@ -83,11 +84,11 @@ def _newton(system: System, nodes: Sequence[Sequence[arb]], extras: Sequence[arb
         except Singular:
             raise Obstacle(Step.REFINEMENT, Remedy.DEGENERATE) from None
         moved = max(float(v.abs_upper()) for part in (*dz, de) for v in part) if dz else 0.0
-        if not moved < 0.3 or (before is not None and moved > 1e-6 and moved > 10 * before):
+        if not moved < 0.3 or (before is not None and moved > PROVING.near and moved > 10 * before):
             raise Obstacle(Step.REFINEMENT, Remedy.START)
         z = [[(v - d).mid() for v, d in zip(node, part)] for node, part in zip(z, dz)]
         e = [(v - d).mid() for v, d in zip(e, de)]
-        if moved < goal or (before is not None and before < 1e-12 and moved >= before):
+        if moved < goal or (before is not None and before < PROVING.rounded and moved >= before):
             return z, e
         before = moved
     raise Obstacle(Step.REFINEMENT, Remedy.BITS)

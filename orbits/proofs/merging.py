@@ -22,8 +22,8 @@ import numpy as np
 
 from orbits.proofs.equations import MIRRORED, Motif
 from orbits.proofs.flights import WALLS
+from orbits.settings import PROVING
 
-SHORT = 1e-3  # radians of the forcing
 PAIRS = ("ts", "tt", "us", "su")
 Merged = tuple[Motif, np.ndarray, tuple[str, int]]
 
@@ -104,7 +104,7 @@ def _pair(motif: Motif, nodes: np.ndarray, i: int) -> str:
     turn = np.pi * motif.periods * (1 if motif.half else 2)
     span = nodes[0, 0] + turn - nodes[i, 0] if last else nodes[i + 1, 0] - nodes[i, 0]
     pair = motif.events[i] + motif.arrival(i)[0]
-    return pair if abs(span) < SHORT and pair in PAIRS else ""
+    return pair if abs(span) < PROVING.short and pair in PAIRS else ""
 
 
 def _without(motif: Motif, nodes: np.ndarray, places: Sequence[int], margin: tuple[str, int]) -> Merged:

@@ -20,6 +20,7 @@ from orbits.proofs.proof import Proof
 from orbits.proofs.stability import stable_in_basis
 from orbits.proofs.tiles import Along, Tile, lay
 from orbits.proofs.varying import Varying
+from orbits.settings import PROVING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 BITS = 192
 FIRST = 1 / 16  # first tile's share of the piece
 ROOM = 0.8  # by which a tile is widened where its stability is judged
-LEAST = 1e-6  # smallest tile's share
-GRADED = 1e-8  # by which it may be smaller near special points
 GRADE = 0.35  # near a special point a tile's width over the distance
 
 
@@ -181,7 +180,7 @@ def _chain(end: Proof, guess: Callable[[float], np.ndarray], inside: float) -> l
     if one["parameter"] != other["parameter"]:
         ascending = float(one["parameter"][0]) < inside
         return [one, tile, other] if ascending else [other, tile, one]
-    near = guess(float(one["parameter"][0]) + 1e-4 * (inside - float(one["parameter"][0])))
+    near = guess(float(one["parameter"][0]) + PROVING.inside * (inside - float(one["parameter"][0])))
 
     def away(entry: Entry) -> float:
         nodes = [[float(m) for m, _, _ in node] for node in entry["nodes"]]
@@ -227,10 +226,10 @@ class _Cover:
             end = float(last[1]["parameter"][0])
         start = at
         width = (high - low) * FIRST
-        least = LEAST * (high - low) * (GRADED if first or last else 1.0)
+        least = PROVING.least_tile * (high - low) * (PROVING.graded if first or last else 1.0)
         while float(at) < float(goal):
             place = float(at)
-            width = min(width, 1.03 * (float(goal) - place) + 1e-3 * least)
+            width = min(width, 1.03 * (float(goal) - place) + PROVING.overlap * least)
             if first:
                 width = min(width, GRADE * (place - begin))
             if last:

@@ -24,6 +24,7 @@ from orbits.proofs.stability import basis_texts, stable
 from orbits.proofs.starting import chain as maps_of
 from orbits.proofs.starting import eigenpair, eigenvector, touching_phase, vanishing_margin
 from orbits.proofs.varying import Varying
+from orbits.settings import PROVING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
 
     from orbits.proofs.elimination import Solution
 
-NEAR = 1e-6  # a proved orbit is the computed one when it is nearer than this
 MOST_BITS = 6144
 FLOATING = 64  # bits where floats will do
 MULTIPLIERS = {"fold": 1, "symmetry-breaking": -1, "period-doubling": -1}
@@ -199,7 +199,7 @@ def _slip(proof: Proof, p: Mapping[str, arb], here: Mapping[str, arb], value: fl
     assert proof.varying is not None
     system = AtSlip(proof.motif, p, proof.varying, side)
     z, e = refine(system, [[ball(phase)]], [ball(value)], bits)
-    if not abs(float(e[0]) - value) < NEAR:
+    if not abs(float(e[0]) - value) < PROVING.near:
         raise Obstacle(Step.REFINEMENT, Remedy.START)
     box = enclose(system, z, e, bits)
     chain = crossing(proof.motif, p, proof.varying, [], e[0], bits)
@@ -250,7 +250,7 @@ def _refined(
     )
     if extras:
         away = max(away, abs(float(e[0] - extras[0])))
-    if not away < NEAR:
+    if not away < PROVING.near:
         raise Obstacle(
             Step.REFINEMENT, Remedy.START, detail=f"the nearest orbit is {away:.1g} away from these nodes"
         )

@@ -20,6 +20,7 @@ import numpy as np
 from orbits.proofs.balls import library
 from orbits.proofs.equations import System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
+from orbits.settings import PROVING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,12 +28,7 @@ if TYPE_CHECKING:
     from flint import arb, arb_mat
 
 SQUARINGS = 26
-LARGE = 1e12
-ROUGH = 1e-3  # relative error of a determinant that another arithmetic finds apart from 0, too
-CRITICAL = 1e-9  # multipliers this close to the circle are told from it by eigenvectors of
-DIGITS = 60  # digits
-ROUNDING = 1e-20  # share of a multiplier's imaginary part that is none
-MIXED = 1e3  # condition from which on eigenvectors are nearly parallel
+DIGITS = 60  # of exact eigenvectors
 
 
 def stable(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[bool | None, Obstacle | None]:
@@ -76,7 +72,7 @@ def away_from_one(system: System, nodes: Sequence[Sequence[arb]]) -> bool:
         product = factor * product
     one = library().arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
     both = [(one - product).det(), (one + product).det()]
-    return all(float(det.rad()) < ROUGH * abs(float(det.mid())) for det in both)
+    return all(float(det.rad()) < PROVING.rough * abs(float(det.mid())) for det in both)
 
 
 def _definite(matrix: arb_mat) -> bool:
@@ -174,13 +170,13 @@ def _eigenvectors(product: arb_mat) -> list[list[str]]:
         values, vectors = flint.acb_mat(product).eig(right=True)
     except ValueError:  # multiple ones
         return []
-    if not any(abs(abs(complex(value)) - 1.0) < CRITICAL for value in values):
+    if not any(abs(abs(complex(value)) - 1.0) < PROVING.critical for value in values):
         return []
     columns = []
     for j in sorted(range(len(values)), key=lambda j: -abs(complex(values[j]))):
         vector = [vectors[i, j] for i in range(len(values))]
         angle = complex(values[j]).imag
-        if abs(angle) < ROUNDING * abs(complex(values[j])):
+        if abs(angle) < PROVING.real * abs(complex(values[j])):
             columns.append([entry.real for entry in vector])
         elif angle > 0.0:
             columns += [[entry.real for entry in vector], [entry.imag for entry in vector]]
@@ -220,7 +216,7 @@ def _bases(product: arb_mat) -> list[arb_mat]:
     shortens all vectors, from X = 1 + (A/g)' X (A/g) with g between the spectral radius and 1 (Lyapunov, Stein).
     """
     numbers = np.array([[float(value.mid()) for value in row] for row in product.tolist()])
-    if not np.all(np.isfinite(numbers)) or np.max(np.abs(numbers), initial=0.0) > 1e280:
+    if not np.all(np.isfinite(numbers)) or np.max(np.abs(numbers), initial=0.0) > PROVING.largest:
         return []
     values, vectors = np.linalg.eig(numbers)
     order = np.argsort(-np.abs(values), kind="stable")  # those outside the circle come first
@@ -242,7 +238,7 @@ def _bases(product: arb_mat) -> list[arb_mat]:
         except np.linalg.LinAlgError:  # the radius is 1 but for rounding
             sizes, axes = np.ones(size), np.eye(size)
         found.append(_exact(axes / np.sqrt(np.maximum(sizes, 1.0))))
-        if not (eigen.shape == (size, size) and np.linalg.cond(eigen) < MIXED):
+        if not (eigen.shape == (size, size) and np.linalg.cond(eigen) < PROVING.mixed):
             found.reverse()
     return [basis for basis in found if basis is not None]
 
@@ -257,6 +253,10 @@ def _columns(carried: arb_mat) -> arb_mat | None:
 
 
 def _exact(basis: np.ndarray) -> arb_mat | None:
-    if basis.shape[0] != basis.shape[1] or not np.all(np.isfinite(basis)) or np.linalg.cond(basis) > LARGE:
+    if (
+        basis.shape[0] != basis.shape[1]
+        or not np.all(np.isfinite(basis))
+        or np.linalg.cond(basis) > PROVING.singular
+    ):
         return None
     return library().arb_mat(basis.tolist())

@@ -22,6 +22,7 @@ from orbits.proofs.proof import Proof
 from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special
 from orbits.proofs.resting import prove_stuck
 from orbits.proofs.varying import Varying
+from orbits.settings import PROVING
 from orbits.words import Word
 from orbits.words.margins import margin_name
 
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 
 CRITICAL = (*MULTIPLIERS, "neimark-sacker")
-NARROW = 1e-12  # half a tile about a special point, from which floats can go on
 PLAIN = ("end", "user")  # kinds of special points where nothing happens
 
 
@@ -227,7 +227,7 @@ def _joinable(problem: Motions, motif: Motif, found: Special | None) -> Proof | 
         proof = of_point(problem, found.kind, found.u, float(found.value), found.margin_index)
     except ProofError:
         return None
-    wide = bool(proof.chain) and float(proof.chain[1]["half_width"]) > NARROW
+    wide = bool(proof.chain) and float(proof.chain[1]["half_width"]) > PROVING.narrow
     return proof if wide and proof.motif == motif else None
 
 

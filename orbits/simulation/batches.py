@@ -25,6 +25,7 @@ from orbits.machines.stepping import (
     Machine,
     W,
 )
+from orbits.settings import SIMULATING
 from orbits.simulation.driver import buffers
 
 SETTLED, AT_REST, LOST, WANDERING = Outcome.SETTLED, Outcome.AT_REST, Outcome.LOST, Outcome.WANDERING
@@ -32,7 +33,7 @@ GROWTH = 4000  # forcing periods over which the growth of small differences is f
 
 BLOCK = 512  # motions that one thread takes at a time
 BUFFER = 1024  # events kept between two looks
-WORK = 8e3  # events and periods of one native call: an interrupt is seen between two calls
+WORK = 8000.0  # events and periods of one native call: an interrupt is seen between two calls
 RESULTS = ("periods", "impacts", "holds", "gaps", "outcome")
 
 
@@ -214,7 +215,7 @@ def _growth(
         apart = other[drawn_back] - state[drawn_back]
         size = math.sqrt(float(apart @ apart))
         if size == 0.0:  # a stick has lost the difference: give it one again
-            ratios[k] = 1e-3
+            ratios[k] = SIMULATING.lost
             other[RATE] = state[RATE] + distance
         else:
             ratios[k] = size / distance
@@ -286,7 +287,7 @@ def lyapunov(name: str, state: np.ndarray, params: np.ndarray, periods: int = GR
     """
     engine = machine(name)
     left, right = engine.walls(params)
-    logs = np.log(growth(engine, state.copy(), params, float(left), float(right), periods, 1e-7))
+    logs = np.log(growth(engine, state.copy(), params, float(left), float(right), periods, SIMULATING.nudge))
     blocks = logs[periods // 20 :]
     means = blocks[: 19 * (len(blocks) // 19)].reshape(19, -1).mean(axis=1)
     return float(means.mean()), float(means.std(ddof=1) / np.sqrt(len(means)))

@@ -13,9 +13,7 @@ import numpy as np
 
 from orbits.flows.trajectory import TWO_PI
 from orbits.machines.stepping import HOLD, Machine, W
-
-LEAST = 1e-11  # way that is none of rounding, in units of the cavity
-STEADY = 1e-3  # part of the way by which phases, and ways from event to event, may differ from one time to the next
+from orbits.settings import EVENTS, SIMULATING
 
 
 def creep(nodes: np.ndarray, codes: np.ndarray, modes: np.ndarray, max_period: int) -> np.ndarray | None:
@@ -43,7 +41,7 @@ def creep(nodes: np.ndarray, codes: np.ndarray, modes: np.ndarray, max_period: i
         way = float(shift[-1, 1])
         late = np.abs(shift[:, 0] - TWO_PI * periods).max()
         uneven = np.abs(shift[:, 1] - way).max()
-        if periods and abs(way) > LEAST and max(late, uneven) < STEADY * abs(way):
+        if periods and abs(way) > EVENTS.zero and max(late, uneven) < SIMULATING.steady * abs(way):
             return shift[:, 1]
     return None
 

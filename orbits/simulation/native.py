@@ -13,6 +13,7 @@ from orbits.flows.protocol import Batch, SimulationError, Waiting
 from orbits.machines.catalogue import stepper
 from orbits.machines.states import state_of
 from orbits.machines.stepping import FAILED, MODE, PSI, RATE, REST, TURNS, V, W
+from orbits.settings import REPLAYING, SIMULATING
 from orbits.simulation.batches import GROWTH, lyapunov, settle_all
 from orbits.simulation.creeping import move_on
 from orbits.simulation.driver import MOST_EVENTS, buffers, collect, first_state, skip
@@ -30,10 +31,7 @@ TRANSIENTS = (
     640.0,
     2560.0,
 )  # forcing periods of many starts, each for those that do not recur before
-TOLERANCE = 1e-8  # difference of two of their states that counts as a return
-AT_REST = 1e-13  # largest change of a settled oscillator from one look to the next, relative
-NOTHING = 1e-9  # of the forces: friction that is short of no more may hold
-FOREVER = 1e6  # periods: only a motion that keeps off the walls lasts so long without events
+FOREVER = 1_000_000.0  # periods: only a motion that keeps off the walls lasts so long without events
 
 
 class NativeSimulator:
@@ -47,7 +45,9 @@ class NativeSimulator:
 
     forced = True
     watched = (2000.0, 800_000)
-    waiting = Waiting(300.0, 2, 2, 4, 1e-6, 0, 200_000.0, np.inf)  # weakly damped motions settle late
+    waiting = Waiting(
+        300.0, 2, 2, 4, SIMULATING.returned, 0, 200_000.0, np.inf
+    )  # weakly damped motions settle late
     observed, modulated = (4096.0, 16384.0), 512.0
     resting, wandering = "stuck", "chaotic"
     count = 0.0
@@ -139,7 +139,7 @@ class NativeSimulator:
         """Move on; `SimulationError` if the motion is not finite or comes to rest for ever."""
         most = int(PER_PERIOD * max(until - self.time + 1.0, 1.0))
         status = skip(self.engine, self.state, self.params, until, most, self._scratch)
-        if status == FAILED or not abs(self.time - until) < 1e-9:
+        if status == FAILED or not abs(self.time - until) < SIMULATING.whole:
             raise SimulationError(
                 f"the motion of {self.model.name!r} does not go on to {until:g} forcing periods"
             )
@@ -201,7 +201,7 @@ class NativeSimulator:
         if last:
             self._oscillator_settles()
             return True
-        slips = rest.reserve(self.params, np.linalg.solve(*rest.equations(self.params))) <= -NOTHING
+        slips = rest.reserve(self.params, np.linalg.solve(*rest.equations(self.params))) <= -SIMULATING.held
         return None if slips or not self._oscillator_settles() else True
 
     def _oscillator_settles(self) -> bool:
@@ -214,7 +214,7 @@ class NativeSimulator:
             skip(self.engine, state, self.params, self.time + length, 1)
             if state[MODE] != 0.0:
                 return False
-            if np.abs(state[V:] - before[V:]).max() <= AT_REST * np.abs(state[V:]).max():
+            if np.abs(state[V:] - before[V:]).max() <= SIMULATING.settled * np.abs(state[V:]).max():
                 break
             length *= 2.0
         return True
@@ -227,7 +227,7 @@ class NativeSimulator:
 
     def push(self) -> None:
         """Change its velocity a little."""
-        self.state[RATE] *= 1.0 + 1e-6
+        self.state[RATE] *= 1.0 + REPLAYING.displaced
 
     def growth(self) -> tuple[float, float]:
         """See `orbits.simulation.batches.lyapunov`."""
@@ -264,7 +264,7 @@ class NativeSimulator:
             self.params,
             transients=TRANSIENTS,
             longest=longest,
-            tolerance=TOLERANCE,
+            tolerance=SIMULATING.returned_many,
             workers=workers or cores(),
         )
         work, followed = float(states[:, TURNS].sum()), sum(TRANSIENTS)

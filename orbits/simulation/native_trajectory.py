@@ -13,6 +13,7 @@ from orbits.contacts import letters as kinds
 from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.machines.states import event_states, nodes_of
 from orbits.machines.stepping import MODE, PSI, RATE, REST, STATUS, TIME_REACHED, TURNS, Machine, W
+from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 from orbits.words.alphabet import shaken
 
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
 
 LETTERS = "LRtsuH"
 KINDS = np.array([kinds.HIT, kinds.HIT, kinds.TURN, kinds.STICK, kinds.SLIP, kinds.HOLD])
-NO_SPEED = 1e-7  # of the machine's own: a touch, not an impact
-AT_ONCE = 1e-6  # phase from a touch to the stick that follows it
-PLACED = 1e-8  # phases of a peak that differ by less: the peak itself is known to the square of that
 MOST_STEPS = 60  # towards a peak
 PER_PERIOD = 200  # instants
 PER_OSCILLATION = 12  # instants between which an extremum of q1 is looked for; events come on top
@@ -221,7 +219,7 @@ class NativeTrajectory(Trajectory):
         if phases is None:
             phases = self._grid(per_period)
         phases = np.atleast_1d(np.asarray(phases, dtype=float))
-        slack = 1e-9 * max(1.0, abs(last))
+        slack = SIMULATING.whole * max(1.0, abs(last))
         if phases.size and (phases.min() < first - slack or phases.max() > last + slack):
             raise ValueError(
                 f"phases from {phases.min():g} to {phases.max():g} leave the run, which lasts "
@@ -260,7 +258,7 @@ class NativeTrajectory(Trajectory):
             here = self.sample(place)
             rate, _ = self.model.bodies(here.w_rate, here.v_rate, self.params)
             peak = max(peak, float(np.abs(here.cavity).max()))
-            if np.all((rate == 0.0) | (np.abs(place - last) < PLACED)):
+            if np.all((rate == 0.0) | (np.abs(place - last) < SIMULATING.peak)):
                 break
             side = np.where(rate * below > 0.0, 1, -1)
             share = np.where(side == before, 0.5, 1.0)  # an end that stays twice counts half
@@ -314,5 +312,5 @@ def _touches(codes: np.ndarray, nodes: np.ndarray, speeds: np.ndarray) -> np.nda
     """
     hits = codes < 2
     wait = (np.roll(nodes[:, 0], -1) - nodes[:, 0]) % TWO_PI
-    soft = hits & (speeds < NO_SPEED) & (np.roll(codes, -1) == 3) & (wait < AT_ONCE)
+    soft = hits & (speeds < EVENTS.touch) & (np.roll(codes, -1) == 3) & (wait < SIMULATING.at_once)
     return soft if np.array_equal(soft, hits) else np.zeros_like(soft)

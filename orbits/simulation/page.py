@@ -17,18 +17,18 @@ from orbits.flows.page.variations import Variations
 from orbits.flows.protocol import SimulationError, Waiting, checked_start
 from orbits.flows.trajectory import Trajectory
 from orbits.machines.page.machine import Machine
+from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 
 REACHED, FULL, STILL = 0, 1, 2
 SAMPLES = 2000  # of a run, for its extremes
-AWAY = 1e3  # clock without an event of a cycle after which a motion does not come back to it
-LONG = 1e4  # clock of a self-excited machine without an event after which none is waited for
+AWAY = 1000.0  # clock without an event of a cycle after which a motion does not come back to it
+LONG = 10_000.0  # clock of a self-excited machine without an event after which none is waited for
 LONGEST_WORD = 400  # events of its longest cycle
-AT_REST = 1e-6  # of the room between walls: what reaches less rests
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
 WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
 LATE = 50  # instants of its motion by which it is told whether it has come to rest
-FOREVER = 1e5  # clock after which a run that waits for events gives up
+FOREVER = 100_000.0  # clock after which a run that waits for events gives up
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +194,7 @@ def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
             np.array([stepper.clock]),
             machine.compiled.numbers(stepper.params, stepper.modes)[None],
         )[0]
-        state += (1e-12 - gaps[deep[0]]) * slopes / float(slopes @ slopes)
+        state += (EVENTS.zero - gaps[deep[0]]) * slopes / float(slopes @ slopes)
     return state
 
 
@@ -235,7 +235,7 @@ class PageSimulator:
     """A page's motion on its way; see the contract at the top of `orbits.flows.protocol`."""
 
     watched = (3000.0, 3000)
-    waiting = Waiting(100.0, 4, 0, 2, 1e-5, 5, 0.0, 50_000.0)
+    waiting = Waiting(100.0, 4, 0, 2, SIMULATING.returned_page, 5, 0.0, 50_000.0)
     observed, modulated = (0.0, 0.0), 0.0
     resting, wandering = "rest", "aperiodic"
 
@@ -432,7 +432,7 @@ class PageSimulator:
         except SimulationError:
             reach = zero
         largest, room = float(reach.max()), self._room()
-        if largest < AT_REST * room:  # it stays where it is
+        if largest < SIMULATING.resting * room:  # it stays where it is
             return np.full(self.machine.size, room)
         return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
 

@@ -15,16 +15,12 @@ from orbits.contacts.letters import HIT, SLIP, STICK, TURN
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import Motion, SimulationError, Simulator
 from orbits.flows.trajectory import TWO_PI
+from orbits.numbers import SMALLEST
+from orbits.settings import REPLAYING, SIMULATING
 from orbits.simulation.runs import simulator_of
 from orbits.words import Word
 
-DISPLACED, NEAR = 1e-6, 1e-8  # a start off an orbit, and when it counts as back
-ILL = 1e-6  # an orbit is known at least as well
-SMALLER = (1e-7, 1e-8)  # displacements beside folds, of which no more ...
-SHRUNK = 1e-2  # ... than this part is to be left
 LONGEST = 200_000.0  # forcing periods that are waited for
-ROUNDING = 1e-15  # of a simulated node
-ENOUGH = 2e-10  # estimated error of a derivative that asks for no smaller step
 
 
 @dataclass(frozen=True)
@@ -75,7 +71,7 @@ class Round(NamedTuple):
     message: str
 
 
-def replay(orbit: Motion, *, thorough: bool = False, loss: float = 1e-4, most: int = 200) -> Replay:
+def replay(orbit: Motion, *, thorough: bool = False, loss: float = REPLAYING.loss, most: int = 200) -> Replay:
     """Replay an orbit of a forced machine: start exactly at its first node and compare events and nodes over one period.
 
     Parameters
@@ -113,10 +109,10 @@ def replay(orbit: Motion, *, thorough: bool = False, loss: float = 1e-4, most: i
     multipliers = np.linalg.eigvals(matrix).astype(complex)
     free = len(flow_of(orbit.model).loose(orbit.model, word))  # such a motion may be moved as a whole
     growth = float(np.sort(np.abs(multipliers))[::-1][free])
-    expected = np.log(loss / 1e-15) / np.log(growth) if growth > 1.0 else np.inf
+    expected = np.log(loss / REPLAYING.rounding) / np.log(growth) if growth > 1.0 else np.inf
     wanted = int(min(most, max(1.0, expected)))
     cycle = simulator, word, nodes, orbit.periods
-    returned = _returns(*cycle, growth) if growth < 1.0 - 1e-6 else None
+    returned = _returns(*cycle, growth) if growth < 1.0 - SIMULATING.neutral else None
     return Replay(error, "", multipliers, _tracked(*cycle, loss, wanted), float(expected), returned)
 
 
@@ -164,7 +160,9 @@ def go_round(simulator: Simulator, word: Word, node: np.ndarray, times: int = 1)
     return Round(run.nodes, "")
 
 
-def monodromy(simulator: Simulator, word: Word, node: np.ndarray, step: float = 1e-5) -> np.ndarray | None:
+def monodromy(
+    simulator: Simulator, word: Word, node: np.ndarray, step: float = REPLAYING.slope
+) -> np.ndarray | None:
     """Derivative of the return map at the first node, shape (NODE, NODE), by central differences, extrapolated once.
 
     Next to an impact of small speed the map is strongly curved: the step is shortened there.
@@ -174,15 +172,15 @@ def monodromy(simulator: Simulator, word: Word, node: np.ndarray, step: float = 
     result = np.empty((len(node), len(node)))
     for j in range(len(node)):
         best = np.inf
-        for size in (step, 0.1 * step, 0.01 * step, 1e-3 * step):
+        for size in (step, 0.1 * step, 0.01 * step, 0.001 * step):
             coarse = _slope(simulator, word, node, j, size)
             fine = None if coarse is None else _slope(simulator, word, node, j, 0.5 * size)
             if coarse is None or fine is None:
                 continue
-            error = float(np.abs(fine - coarse).max()) ** 2 + ROUNDING / size
+            error = float(np.abs(fine - coarse).max()) ** 2 + REPLAYING.rounding / size
             if error < best:
                 best, result[:, j] = error, (4.0 * fine - coarse) / 3.0
-            if error < ENOUGH:
+            if error < REPLAYING.slope_error:
                 break
         if best == np.inf:
             return None
@@ -256,7 +254,9 @@ def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, 
     displacements are tried as well. Where the orbit itself is known less well than that, because it is ill conditioned, starts are to
     come to where the simulation settles that starts on it.
     """
-    cycles = min(LONGEST / periods, np.ceil(np.log(1e-7) / np.log(max(growth, 1e-3))) + 10.0)
+    cycles = min(
+        LONGEST / periods, np.ceil(np.log(REPLAYING.forgotten) / np.log(max(growth, SMALLEST))) + 10.0
+    )
 
     def later(size: float, wanted: np.ndarray, wait: float = cycles) -> tuple[float, np.ndarray]:
         """The motion from a start so far off, after these cycles, and its distance from the nodes wanted."""
@@ -265,15 +265,19 @@ def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, 
         simulator.skip(wait * periods)
         return _nearest(simulator, word, wanted, periods)
 
-    tries = ((DISPLACED, NEAR), (1e-8, 1e-9), (1e-10, 1e-8), (1e-11, 1e-8))
+    displaced, back = REPLAYING.displaced, REPLAYING.back
+    tries = ((displaced, back), *REPLAYING.nearer)
     if any(later(size, nodes)[0] < near for size, near in tries):
         return True
     off, settled = later(0.0, nodes)
-    if not off < ILL:
+    if not off < displaced:
         return False
-    if off > NEAR and later(DISPLACED, settled)[0] < NEAR:
+    if off > back and later(displaced, settled)[0] < back:
         return True
-    return any(later(size, nodes)[0] < min(ILL, SHRUNK * later(size, nodes, 0.0)[0]) for size in SMALLER)
+    return any(
+        later(size, nodes)[0] < min(displaced, REPLAYING.shrunk * later(size, nodes, 0.0)[0])
+        for size in REPLAYING.beside_folds
+    )
 
 
 def _nearest(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int) -> tuple[float, np.ndarray]:

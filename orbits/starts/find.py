@@ -15,6 +15,7 @@ from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError
 from orbits.flows.solving import solved_at
 from orbits.orbit import Orbit
+from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 NEARBY = 0.1  # residual of a guess that may be read from another event than its word
 BETTER = 0.1  # part of the residual with which another reading is believed
-TOLERANCE = 1e-12
 LONG = 12  # events of a word that are shown
 LONGEST = 24  # words with more events are not looked for from random nodes
 TRIALS = 24  # simulated starts
@@ -42,8 +42,8 @@ def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     half = orbit.symmetric and orbit.model.has_mirror(orbit.params, parameter)
     system = orbit.flow.equations(orbit.model, orbit.word, orbit.periods, parameter, orbit.params, half)
     value = system.value(orbit.params)
-    u, residual = solved_at(system, system.reduce(orbit.nodes), value, TOLERANCE, limit)
-    if not residual < 1e-9 * max(1.0, float(np.abs(u).max())):
+    u, residual = solved_at(system, system.reduce(orbit.nodes), value, limit=limit)
+    if not residual < SOLVING.scaled * max(1.0, float(np.abs(u).max())):
         return None
     nodes = system.expand(u, value)[: len(orbit.nodes)]
     if orbit.forced:
