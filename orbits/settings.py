@@ -226,7 +226,7 @@ class Replaying:
     agreed : float
         Deviation that needs no second look.
     close : float
-        Margins, and clocks of flights, below which rounding may make one event of two, or swap them.
+        Margins, and clocks of flights, below which rounding may make one event of two, or swap them; phase by which an event may be early.
     definite : float
         Strength of an event from which a simulation starts without doubt.
     wild : float

@@ -19,7 +19,7 @@ from .averages import rotation_number
 from .birth import Birth, anchored, born
 from .circle import Circle, Circles
 from .invariance import Curve, between
-from .section import Section, section_of
+from .section import Section, Watched, section_of
 from .settings import CIRCLES
 
 REACH = (
@@ -167,7 +167,7 @@ def _attracts(here: Section, curve: Curve, birth: Birth, centre: np.ndarray) -> 
 
 def _returns(here: Section, most: int) -> int:
     """Returns of a simulation, as many as its section has time for."""
-    return min(most, getattr(here, "returns_watched", most))
+    return min(most, here.returns_watched) if isinstance(here, Watched) else most
 
 
 def _slowest(rotation: float) -> float:

@@ -44,6 +44,13 @@ class Imaged(Protocol):
 
 
 @runtime_checkable
+class Watched(Protocol):
+    """A section whose steps take so long that a simulation is followed for so many returns at most."""
+
+    returns_watched: int
+
+
+@runtime_checkable
 class Walled(Protocol):
     """A section that knows the walls at which motions rebound."""
 

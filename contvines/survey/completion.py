@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from ..graph.run import Run
 from ..graph.stretches import gaps, spread, stretches, unseen
 from ..journal import NullJournal
 from ..shared.number_text import PART
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
 
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
@@ -146,7 +149,7 @@ def _run(graph: Graph) -> Run:
     return run
 
 
-def _add(run: Run, motions: Sequence[tuple[Any, np.ndarray]], p: float) -> None:
+def _add(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: float) -> None:
     """Trace the motions that lie on no branch yet."""
     for problem, u in motions:
         if run.register.find(problem, u, p, True) is None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from orbits.flows.trajectory import Trajectory
 from orbits.orbit import Orbit
+from orbits.settings import REPLAYING
 from orbits.simulation.runs import simulator_of
 from orbits.words import Word
 
@@ -21,7 +22,6 @@ SETTLED = 0.01
 """Largest relative change of two observations that tell the same."""
 LASTING = 16  # forcing periods of a motion that does not recur
 MOST_EVENTS = 100_000
-TOGETHER = 0.0001  # phase by which the simulated first event may be early
 
 
 @dataclass(frozen=True)
@@ -247,7 +247,7 @@ class Attractor:
         run, first = self.trajectory, self.first
         shown = np.array(run.shown(first))
         if self.orbit is not None and self.model.forced and len(shown) > 1:
-            began = self.orbit.nodes[self._reading[1], 0] - TOGETHER
+            began = self.orbit.nodes[self._reading[1], 0] - REPLAYING.close
             since = run.clocks[1:][first:][run.hits[first:]] - began
             shown = shown[np.argsort(since % (2.0 * np.pi * self.periods))]
         return shown.tolist()
