@@ -53,18 +53,12 @@ def mark(
     if reached and origin is not None and pending.point is not None:
         marks.append((origin, pending.point))
     events.sort(key=lambda pair: pair[0])
-    doubt = 0.0  # how well the parameter is known beside the point where the branch begins
     for index, event in events:
         meets = event.role is Role.MEETING
         kind = _kind(run, engine, event)
         label = _known(run, engine, branch, event, kind, pending, meets, index in (0, last))
         if label is None:
             point = _special(run, kind, engine, branch, event, index)
-            start = run.graph.special.get(pending.point or "")
-            if start is not None and origin is not None:
-                doubt = max(doubt, start.location_error, point.location_error)
-                if _stands_still(engine, branch, point, start, origin, doubt):
-                    continue
             label = point.label = run.new_label(run.kind(kind).label)
             run.events[label] = event
             run.graph.special[label] = point
@@ -239,17 +233,6 @@ def _without_turnings(engine: Engine, events: list[tuple[int, Located]]) -> list
         if event.kind != "fold"
         or not any(turns_at(engine, event.point, place.u, place.p) for place in places)
     ]
-
-
-def _stands_still(
-    engine: Engine, branch: Branch, fold: SpecialPoint, start: SpecialPoint, origin: int, doubt: float
-) -> bool:
-    """Whether a branch on a mesh has not moved from where it begins to a fold, as far as the parameter is known."""
-    if fold.kind != "fold" or not isinstance(engine.problem, Adaptive):
-        return False
-    first, last = sorted((origin, fold.index))
-    away = np.append(branch.values[first : last + 1], fold.value) - start.value
-    return bool(np.abs(away).max() <= doubt)
 
 
 def _doubt(engine: Engine, special: SpecialPoint) -> None:

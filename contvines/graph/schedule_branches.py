@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.located import Role
+from ..bifurcation.location_error import rounding_of_parameter
 from ..bifurcation.multiplier_counts import counts
 from ..bifurcation.normal_forms.along_branch import criticality, crossing_speed, fold_coefficient
 from ..bifurcation.normal_forms.criticality import cubic_form
@@ -105,16 +106,19 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     point.mirror = point.kind == "symmetry-breaking"
     for child in children:
         target, _ = run.engine(child.problem)
-        found = departures(
+        search = partial(
+            departures,
             target,
             np.asarray(child.u, dtype=float),
             point.value,
             target.unit(np.asarray(child.tangent, dtype=float)),
-            run.settings.amplitude,
             one_sided=not generic,
             most=_critical(engine, spectrum, critical),
-            exchanged=None if name == "plus" else _exchange(target, spectrum, point.value, speed),
+            exchanged=None if name == "plus" else _exchange(target, spectrum, point, speed),
         )
+        found = search(run.settings.amplitude)
+        if name == "minus":
+            found = _told_apart(target, point, run.settings.amplitude, found, search)
         if not found:
             run.remark(point.label, "no branch that leaves here was found")
         for departure in found:
@@ -198,11 +202,12 @@ def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 
 def _exchange(
-    target: Engine, spectrum: NDArray[np.complex128], value: float, speed: float | None
+    target: Engine, spectrum: NDArray[np.complex128], at: SpecialPoint, speed: float | None
 ) -> Callable[[Solved], bool] | None:
     """Whether a solution of the branch that leaves where a multiplier passes -1 at a speed is stable where the known one is not, and unstable where it is.
 
-    As the parity of the number of multipliers past +1 tells. None where it is not known at which speed.
+    As the parity of the number of multipliers past +1 tells, of solutions further from the point than its stated error: others do not tell on which
+    side of it they are. None where it is not known at which speed.
     """
     if speed is None or not np.isfinite(speed) or target.problem.spectrum != "map":
         return None
@@ -210,10 +215,37 @@ def _exchange(
     others = int((np.abs(np.delete(real, np.abs(real + 1.0).argmin())) > 1.0).sum()) if len(real) else 0
 
     def exchanged(point: Solved) -> bool:
+        if not _apart(target, at, point):
+            return True
         past = int(counts(target, point.row)[0])
-        return (past - others - int(speed * (point.p - value) < 0.0)) % 2 == 0
+        return (past - others - int(speed * (point.p - at.value) < 0.0)) % 2 == 0
 
     return exchanged
+
+
+def _apart(target: Engine, at: SpecialPoint, point: Solved) -> bool:
+    """Whether the parameter of a solution beside a special point differs from the point's by more than is known of both."""
+    return abs(point.p - at.value) > at.location_error + rounding_of_parameter(target, point)
+
+
+def _told_apart(
+    target: Engine,
+    at: SpecialPoint,
+    amplitude: float,
+    found: list[Departure],
+    search: Callable[[float], list[Departure]],
+) -> list[Departure]:
+    """The branches that leave, from first points so far away that their parameter tells on which side of the special point they are.
+
+    Nearer ones neither tell whether the branch turns nor whether it is stable. Those found first where none does, as of upright branches.
+    """
+    further, way = found, amplitude
+    while further and way < target.settings.max_step:
+        if all(_apart(target, at, departure.ahead) for departure in further):
+            return further
+        way *= 2.0
+        further = search(way)
+    return found
 
 
 def _critical(engine: Engine, spectrum: NDArray[np.complex128], critical: complex) -> int | None:

@@ -8,6 +8,7 @@ from ...continuation.aims import NO_COLUMNS, SLOPE, Aim
 from ..determinant import alone
 from ..kind import Classified, Kind, Test
 from ..located import Located
+from ..location_error import rounding_of_parameter
 from ..normal_forms.along_branch import fold_coefficient
 from ..point_on_branch import Point, PointOnBranch
 from ..segment import Segment
@@ -41,7 +42,8 @@ def turns_back(point: Point) -> bool:
     if engine.adaptive and _upright(segment):
         return alone(engine, point.solved)
     moved = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
-    return moved > engine.settled(point.value)
+    blur = rounding_of_parameter(engine, point.solved) if engine.adaptive else 0.0
+    return moved > max(engine.settled(point.value), blur)
 
 
 def classify(point: PointOnBranch) -> Classified:
