@@ -21,10 +21,9 @@ from ..problems.dense import DenseWork
 from ..shared.floating_point import EPSILON, TINY
 from .locate import Root, locate, locate_singular
 from .segment import Segment
+from .settings import LOCATING
 
 ROUNDING = 32.0 * EPSILON  # of entries
-FAR = 1e7  # growth under the inverse of a bordered matrix that tells a singular one
-NOISY = 1e-4  # ... and times the noise of the equations, which keeps matrices from being singular
 WIDTH = 0.02  # part of a segment, either side of a place that is known already
 AT_SIGNS = Aim(SIGN, NO_COLUMNS)
 
@@ -59,12 +58,12 @@ def _side(n: int) -> np.ndarray:
 
 
 def singular(engine: Engine, point: Solved) -> bool:
-    """Whether [[F_u, F_p], [tangent]] is singular but for rounding, and the noise of the equations."""
+    """Whether [[F_u, F_p], [tangent]] is singular: nearer to a singular matrix than segments are resolved, or the noise of the equations allows."""
     engine.residual(point.u, point.p)
     side = np.append(engine.row_sizes * _side(engine.n), 0.0)
     image = engine.apply_inverse(engine.weights * point.tangent, side)
-    far = FAR if engine.noise <= 0.0 else min(FAR, NOISY / engine.noise)
-    return not (np.isfinite(image).all() and engine.norm(image) < far)
+    near = max(engine.settings.resolution, LOCATING.noisy * engine.noise)
+    return not (np.isfinite(image).all() and engine.norm(image) < 1.0 / near)
 
 
 def alone(engine: Engine, point: Solved) -> bool:

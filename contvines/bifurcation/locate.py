@@ -54,8 +54,7 @@ def locate(
     tolerance : float
         Width of the final bracket relative to the segment.
     fallback_zero : bool
-        Where the ends do not have opposite signs after all, take the end at which the test is smallest.
-
+        Of an aim: where the ends do not have opposite signs after all, take the end at which it is smallest.
     jump : float
         A test that changes by more than this over a tiny part of the segment jumps; the root is then not continuous.
 
@@ -87,11 +86,7 @@ def locate(
     if not (np.isfinite(fa) and np.isfinite(fb)):
         return None
     if fa * fb > 0.0:
-        # an end that is the zero itself may have either sign, by roundoff
-        if not fallback_zero and min(abs(fa), abs(fb)) > LOCATING.rounding * max(abs(fa), abs(fb)):
-            return None
-        s = 0.0 if abs(fa) < abs(fb) else 1.0
-        return Root(s, solved[s], 0.0)
+        return None
     s, low, high, flow, fhigh = bracketed_root(value, 0.0, 1.0, fa, fb, tolerance, jump)
     width = abs(solved[high].p - solved[low].p) + 2.0 * EPSILON * abs(solved[s].p)
     return Root(

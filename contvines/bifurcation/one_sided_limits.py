@@ -100,8 +100,6 @@ def _limits(segment: Segment, position: float, own: np.ndarray) -> list[list[flo
             fewer = best is not None and poles < len(best) - 1
             if changed[poles] < CONVERGED[poles] and (changed[poles] < error or fewer):
                 best, error = limit[: poles + 1], changed[poles]
-        if best is not None and len(best) == 1 and error < LIMITS.enough:
-            break
     if best is None:
         return _by_margin(segment, position, own)
     if len(best) == 1:

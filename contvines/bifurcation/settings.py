@@ -16,16 +16,13 @@ class Locating:
     jump : float
         A test that differs by more than this across the final bracket has a jump there.
     rounding : float
-        Part of a number by which another one differs through rounding: a test's value at an end that is the zero itself, of either sign; an
-        image from a signed permutation of the unknowns.
+        Part of a number by which another one differs through rounding: an image from a signed permutation of the unknowns, say.
     halved : float
         Part of the last Newton correction that may be left.
     noisy : float
-        Times the noise of the equations: places are no better than this.
+        Times the noise of the equations: places are no better than this, and matrices no nearer to singular ones.
     past : float
         How far past the circle (the axis) a multiplier is more than rounding; native/scan.hpp has the same.
-    bent : float
-        Condition of the second derivatives from which one Newton step for a branch point says nothing.
     """
 
     bracket: float = 1e-12
@@ -34,7 +31,20 @@ class Locating:
     halved: float = 1e-3
     noisy: float = 2e3
     past: float = 1e-10
-    bent: float = 1e6
+
+
+@dataclass(frozen=True)
+class Leaving:
+    """First points of branches that leave a special point.
+
+    Attributes
+    ----------
+    slanted, grazing : float
+        How far off such a point may be, in amplitudes, where two branches cross at a small angle; and if nothing is found at that.
+    """
+
+    slanted: float = 300.0
+    grazing: float = 1e4
 
 
 @dataclass(frozen=True)
@@ -54,8 +64,6 @@ class Limits:
     smooth, growing : float
         Difference of extrapolations from two spacings that have converged: without and with multipliers that grow without bound. The latter
         also from what is computed at the border, and of products of a margin and what grows as its inverse.
-    enough : float
-        Difference at which no smaller spacing is asked.
     straight : float
         Distance before a short segment up to which its branch is looked for along the tangent.
     unbounded : float
@@ -68,7 +76,6 @@ class Limits:
     agreeing: float = 1e-7
     smooth: float = 1e-4
     growing: float = 1e-2
-    enough: float = 1e-9
     straight: float = 3e-5
     unbounded: float = 1e15
 
@@ -104,4 +111,4 @@ class NormalForms:
     resonant: float = 2e-3
 
 
-LOCATING, LIMITS, NORMAL_FORMS = Locating(), Limits(), NormalForms()
+LOCATING, LEAVING, LIMITS, NORMAL_FORMS = Locating(), Leaving(), Limits(), NormalForms()

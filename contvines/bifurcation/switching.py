@@ -13,11 +13,10 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..problems.protocol import Problem
 from ..shared.floating_point import EPSILON, ROUNDED
+from .settings import LEAVING
 
 KERNEL = 4  # null vectors that are followed at most
 MOST = 40  # branches that leave one point at most: half of 3^4 - 1, as where four mirrors meet
-SLANTED = 300.0  # times the amplitude: how far off the first point may be, where two branches cross at a small angle
-GRAZING = 1e4  # ... if nothing is found at that
 # the branch that is known bends away, and is met again at a distance that grows like the root of the amplitude
 LEAST = 1.6
 ATTEMPTS = 22  # halvings of the amplitude
@@ -242,7 +241,7 @@ class _BranchPoint:
         self, direction: np.ndarray, bend: float = 0.0, exchanged: Exchanged = None
     ) -> Departure | None:
         """The branch in a direction; `bend` is that of the parameter."""
-        ways = ((LEAST, SLANTED), (LEAST, GRAZING), (0.0, SLANTED))
+        ways = ((LEAST, LEAVING.slanted), (LEAST, LEAVING.grazing), (0.0, LEAVING.slanted))
         for asked in (exchanged, None) if exchanged is not None else (None,):
             for way in ways:
                 found = self._along(direction, bend, asked, *way)
@@ -297,7 +296,8 @@ class _BranchPoint:
         engine, settings, rough, straight = self.engine, self.engine.settings, False, None
         for side, first in ((1.0, found.ahead), (-1.0, found.back)):
             nearer = (
-                self.at(found.direction, side * found.amplitude * part, 0.0, GRAZING) for part in (0.5, 0.25)
+                self.at(found.direction, side * found.amplitude * part, 0.0, LEAVING.grazing)
+                for part in (0.5, 0.25)
             )
             gaps = [engine.join(point.u, point.p) - self.z for point in (first, *nearer) if point is not None]
             left = [engine.norm(wide - 2.0 * narrow) for wide, narrow in pairwise(gaps)]

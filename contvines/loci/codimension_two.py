@@ -268,7 +268,7 @@ def _root(plane: Plane, segment: Segment, test: Test, size: float) -> tuple[Plac
     def value(point: Solved) -> float:
         return _value(plane, _place(plane.locus, point), test)
 
-    root = None if size < VANISHING.nothing else locate(segment, value, fallback_zero=True, jump=size)
+    root = None if size < VANISHING.nothing else locate(segment, value, jump=size)
     if root is None or not root.continuous or not abs(value(root.point)) <= VANISHING.zero * size:
         return None
     one, other = (_place(plane.locus, end) for end in (segment.a, segment.b))
