@@ -66,6 +66,23 @@ def test_a_chart_is_kept_in_a_file(chart, tmp_path):
     assert str(other) == str(chart)
 
 
+def test_orbits_of_a_chart_by_label(chart, tmp_path):
+    from typer.testing import CliRunner
+
+    path = tmp_path / "cusp.vines"
+    chart.save(path)
+    with pytest.raises(ValueError, match="holds a chart"):
+        cv.Graph.load(path)
+    (locus,), (point,) = chart.loci, chart.points
+
+    def refusal(*label):
+        return str(CliRunner().invoke(app, ["orbit", str(path), *label]).exception)
+
+    assert f"{point}, {locus}" in refusal()
+    assert "single point" in refusal(f"{point}:0")
+    assert "numbered from 0" in refusal(f"{locus}:{len(chart.loci[locus])}")
+
+
 @pytest.mark.slow
 def test_command_line(tmp_path, monkeypatch, capsys):
     from typer.testing import CliRunner
