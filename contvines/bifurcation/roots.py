@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
@@ -49,6 +50,7 @@ def bracketed_root(
     return bracketing.best(known), low, high, flow, fhigh
 
 
+@cache
 def chebyshev_nodes(n: int) -> np.ndarray:
     """The n roots of the Chebyshev polynomial T_n, none of them 0 for even n."""
     return np.cos((2.0 * np.arange(n) + 1.0) * np.pi / (2 * n))

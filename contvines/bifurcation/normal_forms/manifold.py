@@ -22,6 +22,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from ...shared.floating_point import TINY
+from ..roots import chebyshev_nodes
 from ..settings import NORMAL_FORMS
 
 if TYPE_CHECKING:
@@ -134,13 +135,14 @@ class Reduction:
         """Taylor coefficients of this degree of what is left over, shape (number of monomials, N)."""
         wanted = monomials(self.m, degree)
         lines = directions(self.m, degree)
-        nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
         points = lines @ self.real.T
         sizes = np.abs(points).max(axis=1) * max(float(np.abs(self.vectors).max()), TINY)
         radii = self.radius / sizes
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused
             samples = self._rest(
-                ((radii[:, None] * nodes)[:, :, None] * points[:, None, :]).reshape(-1, self.m)
+                ((radii[:, None] * chebyshev_nodes(NODES))[:, :, None] * points[:, None, :]).reshape(
+                    -1, self.m
+                )
             )
         if not np.isfinite(samples).all():
             raise ValueError("the equations cannot be evaluated near the special point")
@@ -211,9 +213,8 @@ def _less(exponents: Monomial, j: int) -> Monomial:
 @cache
 def fit_weights(degree: int) -> np.ndarray:
     """Weights of samples at Chebyshev nodes in the coefficient of t^degree of the polynomial through them, on [-1, 1]."""
-    nodes = np.cos((2.0 * np.arange(NODES) + 1.0) * np.pi / (2 * NODES))
     chebyshev = np.polynomial.chebyshev
-    series = np.linalg.inv(chebyshev.chebvander(nodes, NODES - 1))
+    series = np.linalg.inv(chebyshev.chebvander(chebyshev_nodes(NODES), NODES - 1))
     parts = [chebyshev.cheb2poly(np.eye(NODES)[k])[degree] if k >= degree else 0.0 for k in range(NODES)]
     return np.array(parts) @ series
 

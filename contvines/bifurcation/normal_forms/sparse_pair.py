@@ -20,9 +20,10 @@ from scipy.sparse.linalg import splu
 
 from ...problems.large.sparse_work import SparseWork
 from ...shared.floating_point import ROUNDED
+from ..roots import chebyshev_nodes
 from ..settings import NORMAL_FORMS
 from .coefficients import Coefficient, in_phase
-from .taylor import NODES, RADIUS, SMALLER, derivative_weights, nodes
+from .taylor import NODES, RADIUS, SMALLER, derivative_weights
 
 if TYPE_CHECKING:
     from ...problems.protocol import Problem
@@ -141,7 +142,7 @@ def _derivatives(
     """B(x, v) and C(x, x, v) for some vectors v, columns as they are."""
     first, second = derivative_weights(NODES)
     one, two = np.zeros_like(vectors), np.zeros_like(vectors)
-    for t, a, b in zip(nodes(NODES), first, second, strict=True):
+    for t, a, b in zip(chebyshev_nodes(NODES), first, second, strict=True):
         sample = changes(u + radius * t * x, vectors)
         if sample is None:
             return None

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..roots import chebyshev_nodes
 from ..settings import NORMAL_FORMS
 
 NODES = 12
@@ -61,7 +62,7 @@ def along_line(
         samples = jacobians(_places(u, x, ROUGH * radius, FEW))
         if samples is None:
             return None
-        inner, outer = ((samples[i] - samples[-1 - i]) / (2.0 * nodes(FEW)[i]) for i in (1, 0))
+        inner, outer = ((samples[i] - samples[-1 - i]) / (2.0 * chebyshev_nodes(FEW)[i]) for i in (1, 0))
         return Line(
             *_fitted(samples, ROUGH * radius), float(np.abs(inner - outer).max()) / (ROUGH * radius), 0.0
         )
@@ -91,7 +92,7 @@ def _fit(
 
 
 def _places(u: np.ndarray, x: np.ndarray, radius: float, count: int) -> np.ndarray:
-    return u + radius * nodes(count)[:, None] * x
+    return u + radius * chebyshev_nodes(count)[:, None] * x
 
 
 def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
@@ -102,16 +103,10 @@ def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]
 
 
 @cache
-def nodes(count: int) -> np.ndarray:
-    """The zeros of the Chebyshev polynomial of this degree."""
-    return np.cos((2.0 * np.arange(count) + 1.0) * np.pi / (2 * count))
-
-
-@cache
 def derivative_weights(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Weights of the samples in the first and second derivative at 0 of the polynomial through them, on [-1, 1]."""
     chebyshev = np.polynomial.chebyshev
-    series = np.linalg.inv(chebyshev.chebvander(nodes(count), count - 1))
+    series = np.linalg.inv(chebyshev.chebvander(chebyshev_nodes(count), count - 1))
     unit = np.eye(count)
     first = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row)) for row in unit])
     second = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row, 2)) for row in unit])
