@@ -83,7 +83,9 @@ class AdaptiveLocus(LocusProblem):
         if u is None:
             return
         inner, value = self.split(u)
-        self.base.kernels.assign(self.first.data, self.second.data, float(p))
+        assign = self.base.kernels.assign
+        assert assign is not None
+        assign(self.first.data, self.second.data, float(p))
         first.anchor(inner, float(value))
         second.reference = first.reference
         for work in self.works:

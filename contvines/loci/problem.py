@@ -12,7 +12,7 @@ from contvines.shared.near_names import did_you_mean
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
-from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, Workspace
+from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults
 from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
@@ -48,8 +48,8 @@ class Work(NamedTuple):
     """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`. ``memory`` is the struct `Work` of native/loci.hpp."""
 
     residual: np.ndarray
-    base: Workspace
-    trial: Workspace
+    base: Any  # a workspace in its own right
+    trial: Any
     base_F: np.ndarray
     base_Q: np.ndarray
     trial_F: np.ndarray
