@@ -47,7 +47,7 @@ def unasked(graph: Graph, asked: Sequence[float], most: int) -> list[float]:
     wanted: list[tuple[float, float]] = []
     for first, last in pairwise(marks):
         width = float(last - first)
-        if width <= ATLAS.narrow_gap * size:
+        if width <= ATLAS.narrow * size:
             continue
         inside = known[(known > first) & (known < last)]
         if not inside.size:

@@ -12,9 +12,7 @@ class AtlasSettings:
     Attributes
     ----------
     narrow : float
-        Stable stretches and windows that are narrower are left out.
-    narrow_gap : float
-        Stretches between two changes of what is stable that are narrower are not looked into.
+        Stable stretches, windows, and stretches between two changes of what is stable that are narrower are left out.
     narrow_chain : float
         Stretches that meet, as those of a cascade, and are narrower together, are not followed past their ends.
     beyond : float
@@ -28,7 +26,6 @@ class AtlasSettings:
     """
 
     narrow: float = 1e-5
-    narrow_gap: float = 1e-6
     narrow_chain: float = 1e-3
     beyond: float = 2e-3
     farthest: float = 1e-3
