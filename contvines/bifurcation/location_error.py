@@ -11,6 +11,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Blurred, Doubtful
 from ..problems.interpreted import Linearised
+from ..problems.protocol import array_of
 from ..shared.floating_point import EPSILON
 from .located import Located
 from .segment import Segment
@@ -137,7 +138,7 @@ def _null_vectors(
     engine.residual(u, p)
     assert problem.kernels.transpose is not None
     problem.kernels.transpose(problem.data, engine.work, border[:-1], other)
-    other[0][:] = -side[:-1] / engine.row_sizes
+    array_of(other)[:] = -side[:-1] / engine.row_sizes
     turned = np.append(_linearised(engine).derivative, border[-1])
     with np.errstate(all="ignore"):
         problem.kernels.bordered(problem.data, other, turned, 0.0, left, unused)

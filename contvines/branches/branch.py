@@ -15,7 +15,7 @@ from ..problems.registry import without_problem
 from .ending import Ending
 
 if TYPE_CHECKING:
-    from ..problems.protocol import BorderPoint
+    from ..problems.protocol import BorderPoint, Problem
 
 
 @hinted
@@ -56,7 +56,7 @@ class Branch:
     """
 
     label: str
-    problem: Any = field(repr=False)
+    problem: Problem | None = field(repr=False)
     points: np.ndarray = field(repr=False)
     values: np.ndarray = field(repr=False)
     tangents: np.ndarray = field(repr=False)
@@ -153,16 +153,27 @@ class Branch:
             return _bare_measure(self.label, name, u)
         return self.problem.measures((name,), u, p)[name]
 
-    def orbit(self, i: int) -> Any:
-        """The solution at point i as the object that the problem hands to users; at a border with the multipliers' limits."""
+    @property
+    def attached(self) -> Problem:
+        """The problem.
+
+        Raises
+        ------
+        ValueError
+            If there is none, as after loading.
+        """
         if self.problem is None:
             raise ValueError(without_problem(self.label, self.description))
+        return self.problem
+
+    def orbit(self, i: int) -> Any:
+        """The solution at point i as the object that the problem hands to users; at a border with the multipliers' limits."""
         n = len(self)
         if not isinstance(i, int | np.integer):
             raise TypeError(f"{self.label}.orbit({i!r}): give the number of a point, from 0 to {n - 1}")
         if not -n <= i < n:
             raise IndexError(f"{self.label} has no point {i}; its {n} points are numbered from 0 to {n - 1}")
-        found = self.problem.orbit(self.points[i], float(self.values[i]))
+        found = self.attached.orbit(self.points[i], float(self.values[i]))
         ends = {0: self.endings[0], n - 1: self.endings[1]}
         if i % n in ends and ends[i % n].kind in BORDERS and isinstance(found, Limited):
             return found.with_multipliers(self.multipliers[i])

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..bifurcation.kind import Kind
+    from ..problems.protocol import Problem
 
 
 class Later:
@@ -125,7 +126,7 @@ class SpecialPoint:
     remarks: tuple[str, ...] = ()
     margin_index: int | None = None
     index: int = -1
-    problem: Any = field(default=None, repr=False)
+    problem: Problem | None = field(default=None, repr=False)
     own_kind: Kind | None = field(default=None, repr=False)
 
     @property
@@ -133,6 +134,19 @@ class SpecialPoint:
         """Name of the user function, where the point was met from, and remarks, in words."""
         met = f"met from {self.met_from}" if self.met_from else ""
         return "; ".join(filter(None, (self.name, met, *self.remarks)))
+
+    @property
+    def attached(self) -> Problem:
+        """The problem.
+
+        Raises
+        ------
+        ValueError
+            If there is none, as after loading.
+        """
+        if self.problem is None:
+            raise ValueError(without_problem(self.label))
+        return self.problem
 
     @property
     def frequency(self) -> float | None:
@@ -156,20 +170,17 @@ class SpecialPoint:
         ValueError
             If the problem is not attached or does not tell them.
         """
-        if self.problem is None:
-            raise ValueError(without_problem(self.label))
-        if not isinstance(self.problem, Resolved):
+        problem = self.attached
+        if not isinstance(problem, Resolved):
             raise ValueError(
                 f"{self.label}: its problem tells no eigenvectors; problems made of your own equations do"
             )
-        return self.problem.eigenvectors(self.u, self.value, self.multipliers)
+        return problem.eigenvectors(self.u, self.value, self.multipliers)
 
     @property
     def orbit(self) -> Any:
         """The solution as the object that its problem hands to users; at a border with the multipliers' one-sided limits."""
-        if self.problem is None:
-            raise ValueError(without_problem(self.label))
-        found = self.problem.orbit(self.u, self.value)
+        found = self.attached.orbit(self.u, self.value)
         if self.kind in BORDERS and isinstance(found, Limited):
             return found.with_multipliers(self.multipliers)
         return found
@@ -196,8 +207,6 @@ class SpecialPoint:
         """
         if self.kind != "hopf":
             raise ValueError(f"{self.label} is a {self.kind} point; cycles are born at Hopf points")
-        if self.problem is None:
-            raise ValueError(without_problem(self.label))
         from ..graph.cycle_at import cycle_at
 
         return cycle_at(self)

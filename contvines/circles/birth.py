@@ -55,7 +55,7 @@ class Birth(NamedTuple):
 
 def anchored(point: SpecialPoint) -> Problem:
     """The problem of a point; of cycles on a mesh the one that begins with the point, across whose cycle sections are taken."""
-    problem = point.problem
+    problem = point.attached
     if not isinstance(problem, CycleProblem):
         return problem
     return problem.with_unknowns(point.u, float(point.value), problem.intervals, problem.copies)
@@ -119,7 +119,7 @@ def _image(section: Section, forms: Forms, multiplier: complex, u: np.ndarray) -
 
 def _crossing(point: SpecialPoint) -> tuple[complex, float]:
     """The raw critical multiplier, and d(log abs)/dp along the cycles."""
-    problem, p = point.problem, float(point.value)
+    problem, p = point.attached, float(point.value)
     unit = max(abs(p), CIRCLES.least_parameter)
     engine = Engine(problem, (p - unit, p + unit), Settings())
 

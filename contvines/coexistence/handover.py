@@ -86,7 +86,7 @@ class Handover:
         branch = self.run.graph.branches[end.label]
         for place in end.places:
             try:
-                section = section_of(branch.problem, float(branch.values[place]))
+                section = section_of(branch.attached, float(branch.values[place]))
                 point = section.through(branch.points[place])
             except ValueError:
                 continue

@@ -43,13 +43,13 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
     for branch in other.branches.values():
         middle = len(branch) // 2
         known = run.register.find(
-            branch.problem, branch.points[middle], float(branch.values[middle]), branch.real
+            branch.attached, branch.points[middle], float(branch.values[middle]), branch.real
         )
         called[branch.label] = run.new_label("B") if known is None else known.label
         if known is None:
             added = replace(branch, label=called[branch.label])
             graph.branches[added.label] = added
-            run.register.add(added, run.engine(added.problem)[0])
+            run.register.add(added, run.engine(added.attached)[0])
     for point in other.special.values():
         called[point.label] = _special(run, point, called)
     fresh = {called[label] for label in other.branches} - {
@@ -74,7 +74,7 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
 def _special(run: Run, point: SpecialPoint, called: dict[str, str]) -> str:
     """The label of a special point here: of the same one where there is one, else a new one."""
     graph = run.graph
-    form = point.problem.canonical(point.u, point.value)
+    form = point.attached.canonical(point.u, point.value)
     for known in graph.special.values():
         near = abs(known.value - point.value) <= run.settings.same * run.unit(point.value)
         if (

@@ -178,7 +178,7 @@ def robustness(
         If the branch has no stable real motion there, or it cannot be simulated.
     """
     u = stable_at(branch, float(at))
-    problem = branch.problem
+    problem = branch.attached
     population = population_of(problem)
     section = section_of(problem, float(at))
     sizes = np.array([float((units or {}).get(name, 1.0)) for name in section.names])

@@ -154,7 +154,7 @@ class Windows:
             return []
         new = [branch for label, branch in self.apart.graph.branches.items() if label not in known]
         return [
-            (branch.problem, branch.points[i], float(branch.values[i]))
+            (branch.attached, branch.points[i], float(branch.values[i]))
             for branch in new
             if branch.real
             for i in _middles(branch, ATLAS.narrow * (self.run.graph.within[1] - self.run.graph.within[0]))

@@ -545,6 +545,7 @@ class _Work:
         from contvines.survey.work import Job, work
         from orbits.attractors.search import beginning_with
         from orbits.attractors.sweeping import sweep
+        from orbits.orbit import Orbit
 
         over, (low, high) = self.study.parameter, self.study.within
         seen: list[Curve] = []
@@ -562,7 +563,9 @@ class _Work:
             top = highest(parts)
             if top is not None:  # from itself: other starts may miss a motion that few of them lead to
                 u, p, response = inside(top, 0.5 * AGREES)
-                met = beginning_with(top.stretch.branch.problem.orbit(u, p), REPLAYED, LONGEST)
+                orbit = top.stretch.branch.attached.orbit(u, p)
+                assert isinstance(orbit, Orbit)
+                met = beginning_with(orbit, REPLAYED, LONGEST)
                 compared.append((response, met.get(measure, -math.inf)))
             free = max(found.unbranched, key=response_of, default=None)
             if (

@@ -12,7 +12,7 @@ from contvines.shared.floating_point import EPSILON
 from ..core.table import TableKernels
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Adaptive, Nearing, Rough
-from ..problems.protocol import KernelFunctions, Problem
+from ..problems.protocol import KernelFunctions, Problem, array_of
 from . import layout
 from .aims import NO_COLUMNS, NOTHING, Aim
 from .layout import Found, Metric, Scratch, solved_point
@@ -301,7 +301,7 @@ class Engine(Rows):
 
     def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
         """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
-        self.work[0].reshape(-1)[:] = -side[: self.n]
+        array_of(self.work).reshape(-1)[:] = -side[: self.n]
         self._part(layout.ELIMINATE, border, float(side[self.n]))
         return self.scratch.step.copy()
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..flows.cycle_mesh import CycleMesh
 from ..provenance import as_text, provenance
 from .columns import measures_of
 
@@ -148,10 +149,11 @@ def _solutions(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
         own = _parameters(branch)
         for name, place in named.items():
             values[place - 1] = point.value if name == branch.parameter else own[name]
-        if "cycle" in branch.description and point.problem is not None:
+        cycles = point.problem
+        if isinstance(cycles, CycleMesh):
             orbit = point.orbit
-            degree, intervals = point.problem.rule.degree, point.problem.intervals
-            times = _equidistant(point.problem.parts(point.u, point.value)[2], degree)
+            degree, intervals = cycles.rule.degree, cycles.intervals
+            times = _equidistant(cycles.parts(point.u, point.value)[2], degree)
             states = orbit(times[:-1] * orbit.period)
             states = np.vstack([states, states[:1]])
             values += [0.0] * (PERIOD - len(values))

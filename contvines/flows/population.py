@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from contvines.shared.floating_point import TINY
+from contvines.shared.floating_point import ROUNDED, TINY
 
 from ..problems.registry import rebuild
 from .attractors import AtRest, Escaped, Irregular, Stopped
@@ -41,7 +41,7 @@ GROWTH = 4000  # times the time scale of a motion over which a vector's growth i
 BLOCKS = 20
 FEW = 8  # motions at least, copies of those there are ...
 SIGMAS = 3.0
-RANK = 512 * np.finfo(float).eps  # singular values below this part of the largest one are zero
+RANK = 8.0 * ROUNDED  # singular values below this part of the largest one are zero
 
 
 @dataclass(frozen=True, eq=False)

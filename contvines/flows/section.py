@@ -11,14 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from contvines.shared.floating_point import CENTRAL, ROUNDED
+
 from . import mesh
 from .returns import ReturnMap
 from .simulation import rates
 
-SOLVED = (
-    512 * np.finfo(float).eps
-)  # change of the place at which a cycle passes the plane, in units of the period
-STEP = np.cbrt(np.finfo(float).eps)  # of a central difference
+SOLVED = 8.0 * ROUNDED  # change of the place at which a cycle passes the plane, in units of the period
 SWEEPS = 30
 AWAY, LATEST = 0.5, 1.6  # periods after which, and until when, the next passage is looked for
 
@@ -66,7 +65,7 @@ class FlowSection:
         x, _, widths = problem.parts(u, self.p)
         if not self.free:
             return mesh.evaluate(problem.rule, widths, x, np.arange(problem.rounds) / problem.rounds)
-        place, h = 0.0, STEP
+        place, h = 0.0, CENTRAL
         for _ in range(SWEEPS):
             here, ahead, back = mesh.evaluate(
                 problem.rule, widths, x, np.array([place, place + h, place - h])

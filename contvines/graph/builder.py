@@ -167,7 +167,7 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
         return None
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
-        itself = run.engine(known.problem)[0]
+        itself = run.engine(known.attached)[0]
         known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:

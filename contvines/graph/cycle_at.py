@@ -8,7 +8,6 @@ from ..bifurcation.switching import departures
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..problems.registry import without_problem
 
 HALVINGS = 4  # of the amplitude, until a cycle is found
 
@@ -21,10 +20,7 @@ def cycle_at(point: SpecialPoint) -> object:
     ValueError
         If the problem has no cycles, or none is found.
     """
-    problem = point.problem
-    if problem is None:
-        raise ValueError(without_problem(point.label))
-    children = problem.offspring("hopf", point.u, point.value, point.tangent, 1j)
+    children = point.attached.offspring("hopf", point.u, point.value, point.tangent, 1j)
     settings = Settings()
     width = 1.0 + abs(point.value)
     for child in children:

@@ -86,12 +86,12 @@ def may_be_one(
 
     Only problems of one kind tell: those that can compare motions, and others where their forms have as many entries.
     """
-    if type(point.problem) is not type(problem):
+    if type(point.attached) is not type(problem):
         return True
-    alike = problem.same_motion(u, p, point.problem, point.u)
+    alike = problem.same_motion(u, p, point.attached, point.u)
     if alike is not None:
         return alike
-    one, other = problem.canonical(u, p)[1], point.problem.canonical(point.u, point.value)[1]
+    one, other = problem.canonical(u, p)[1], point.attached.canonical(point.u, point.value)[1]
     scales = problem.scales
     return one.shape != other.shape or same_vector(
         one, other, singular(tolerance), None if scales is None else scales.vector

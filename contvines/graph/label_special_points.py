@@ -290,7 +290,7 @@ def _special(run: Run, kind: str, engine: Engine, branch: Branch, event: Located
         problem=engine.problem,
         own_kind=run.kind(kind) if run.kind(kind).test else None,
     )
-    special.replay = partial(_replay, special.problem, special.u, special.value) if special.real else None
+    special.replay = partial(_replay, engine.problem, special.u, special.value) if special.real else None
     _doubt(engine, special)
     if event.role is Role.MEETING:
         special.met_from = branch.label

@@ -28,12 +28,12 @@ def same_border(run: Run, label: str, known: Branch) -> str:
     """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
     graph = run.graph
     here = graph.special[label]
-    engine, _ = run.engine(known.problem)
+    engine, _ = run.engine(known.attached)
     for i, other in known.marks:
         point = graph.special[other]
         if other == label or point.kind not in BORDERS or not _in_one_place(run, point, here):
             continue
-        if may_be_one(here.problem, here.u, here.value, point, run.settings.same) or is_end(
+        if may_be_one(here.attached, here.u, here.value, point, run.settings.same) or is_end(
             known, engine, i, *run.form(here)
         ):
             run.merge(label, other)
@@ -61,7 +61,7 @@ def tie_borders(run: Run) -> None:
                 continue
             if any(s.point == other.label and point.branch in (s.source, s.target) for s in graph.switches):
                 continue  # its branch was reached through the other one: this is the far end of a very short branch
-            if other.problem is not None and point.problem.same_motion(
+            if other.problem is not None and point.attached.same_motion(
                 point.u, point.value, other.problem, other.u
             ):
                 run.merge(label, other.label)

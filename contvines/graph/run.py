@@ -218,7 +218,7 @@ class Run:
         """Canonical form of a special point, computed once."""
         known = self.forms.get(point.label)
         if known is None or known[0] is not point:
-            known = self.forms[point.label] = (point, point.problem.canonical(point.u, point.value))
+            known = self.forms[point.label] = (point, point.attached.canonical(point.u, point.value))
         return known[1]
 
     def merge(self, label: str, into: str) -> None:

@@ -80,7 +80,7 @@ def _solved(run: Run, engine: Engine, point: SpecialPoint) -> Solved:
 
 
 def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
-    problem = point.problem
+    problem = point.attached
     engine, detector = run.engine(problem)
     here = _solved(run, engine, point)
     spectrum = engine.spectrum(_row(run, engine, point))
@@ -151,13 +151,13 @@ def _classify(point: SpecialPoint, curvature: float, speed: float | None, name: 
 
     Amplitudes of unknowns that differ much in size say less.
     """
-    problem = point.problem
+    problem = point.attached
     point.criticality, rough = criticality(curvature, speed, flip=name == "minus")
     exact = problem.normal_form(point.kind, point.u, point.value) if isinstance(problem, Adaptive) else None
     if exact is not None:
         rough = exact[0]
         point.criticality = "supercritical" if (rough > 0.0) == (name == "minus") else "subcritical"
-    exactly = partial(_cubic, point.problem, point.u, point.value, name, rough)
+    exactly = partial(_cubic, problem, point.u, point.value, name, rough)
     point.coefficient = rough if point.criticality is None else exactly
 
 
@@ -188,7 +188,7 @@ def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """The cycles that are born at a Hopf point, of problems that have cycles."""
     if depth + 1 > run.depth:
         return
-    for child in point.problem.offspring("hopf", point.u, point.value, point.tangent, 1j):
+    for child in point.attached.offspring("hopf", point.u, point.value, point.tangent, 1j):
         target, _ = run.engine(child.problem)
         direction = target.unit(np.asarray(child.tangent, dtype=float))
         start, nothing = np.asarray(child.u, dtype=float), np.zeros(target.n + 1)
@@ -294,7 +294,7 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
     """A side branch has come back to the more symmetric solutions before they were known."""
     if depth + 1 > run.depth:
         return
-    engine, detector = run.engine(point.problem)
+    engine, detector = run.engine(point.attached)
     event = run.events.get(point.label)
     if event is None:  # of a graph that was loaded
         met = [
@@ -325,7 +325,7 @@ def _root(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         )
         return
     # in the same problem: both ways from a point on the other branch, through the special point
-    engine, _ = run.engine(point.problem)
+    engine, _ = run.engine(point.attached)
     for departure in departures(
         engine, point.u, point.value, point.tangent, run.settings.amplitude, one_sided=False
     ):
@@ -379,7 +379,7 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
                 )
             )
     if run.virtual:
-        engine, _ = run.engine(point.problem)
+        engine, _ = run.engine(point.attached)
         origin = engine.polish(
             point.u,
             point.value,
@@ -391,7 +391,7 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
             origin = origin._replace(tangent=engine.unit(outward))  # solved for, it may be rounding
         run.queue.append(
             Pending(
-                point.problem,
+                point.attached,
                 point.u,
                 point.value,
                 outward,
@@ -408,7 +408,7 @@ def _cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
 
 def tell_dead_end(run: Run, point: SpecialPoint) -> None:
     """Say why nothing goes on at a border."""
-    run.remark(point.label, run.attempt(point.label, CROSSING, partial(point.problem.dead_end, point), ""))
+    run.remark(point.label, run.attempt(point.label, CROSSING, partial(point.attached.dead_end, point), ""))
 
 
 def _cost(seed: Seed) -> int:
@@ -418,13 +418,14 @@ def _cost(seed: Seed) -> int:
 
 def _seeds(run: Run, point: SpecialPoint, every: bool) -> list[Seed]:
     """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
-    problem, brief = point.problem, not every and isinstance(point.problem, Onward)
-    key = f"{run.serial}/{'onward' if brief else 'beyond'}/{point.label}"
+    problem = point.attached
+    onward = problem.onward if isinstance(problem, Onward) and not every else None
+    key = f"{run.serial}/{'beyond' if onward is None else 'onward'}/{point.label}"
     recorded = run.journal.recall(key)
     known = _rebuilt(recorded)
     if known is not None:
         return known
-    ask = problem.onward if brief else problem.beyond
+    ask = onward or problem.beyond
     seeds = run.attempt(point.label, CROSSING, lambda: list(ask(point)), None)
     if seeds is None:
         return []

@@ -162,7 +162,7 @@ class Charting:
             self.refused.append(f"{point.label}: {type(error).__name__}: {error}")
             return
         candidate = Candidate(
-            point.problem, point.kind, point.u, point.value, value, point.margin_index or 0, point.label
+            point.attached, point.kind, point.u, point.value, value, point.margin_index or 0, point.label
         )
         self.queue.append((candidate, 0))
 
@@ -323,7 +323,7 @@ class Charting:
             values = each.values.copy()
             values[~each.real] = np.nan
             curves.append(values)
-        problem = next(iter(self.graph.branches.values())).problem
+        problem = next(iter(self.graph.branches.values())).attached
         regions = divide(curves, self.chart.within)
         known = KnownMotions(
             self.graph.branches.values(), self.chart.loci.values(), self.over, self.chart.within

@@ -13,7 +13,7 @@ from ..flows.equilibria import Equilibria
 from ..graph.automatic import diagram
 from ..graph.cycle_at import cycle_at
 from .born import Candidate
-from .long_period import lengthened
+from .long_period import lengthened, on_mesh
 from .plane_point import PlanePoint
 from .starts import begin
 from .tracing import trace_locus
@@ -54,8 +54,8 @@ def homoclinic_of(
         if end is not None:
             there = float(locus.branch.values[i])
             with contextlib.suppress(ValueError):  # the nearer to the point, the longer is a long period
-                end = lengthened(end, LONGER * float(end.u[end.problem.period_place]))
-            return [Candidate(end.problem, "homoclinic", end.u, end.value, there, 0, point.label)]
+                end = lengthened(end, LONGER * float(end.u[on_mesh(end.attached).period_place]))
+            return [Candidate(end.attached, "homoclinic", end.u, end.value, there, 0, point.label)]
     return []
 
 

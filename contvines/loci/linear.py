@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..interrupts import HELD
-from ..problems.protocol import Problem
+from ..problems.protocol import Problem, array_of
 
 SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
 STIRRED = 0.1  # part of a random vector in those of a neighbour
@@ -51,8 +51,8 @@ class Linearisation:
         self.units, self.rows = sizes_of(problem)
         self.work, self.other = problem.workspace(), problem.workspace()
         column = self.kernels.column
-        self.F, self.Q = self.work[0].reshape(-1), self.work[column].reshape(-1)
-        self.other_F = self.other[0].reshape(-1)
+        self.F, self.Q = array_of(self.work).reshape(-1), array_of(self.work, column).reshape(-1)
+        self.other_F = array_of(self.other).reshape(-1)
         self.line, self.step, self.tangent = (np.zeros(self.size + 1) for _ in range(3))
         self.residual = self.slope = np.zeros(self.size)
         self.point: tuple[np.ndarray, float] = (np.zeros(self.size), 0.0)

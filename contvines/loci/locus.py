@@ -80,7 +80,8 @@ class Locus:
     @property
     def problem(self) -> LocusProblem | None:
         """None after loading without the problem."""
-        return self.branch.problem
+        problem = self.branch.problem
+        return problem if isinstance(problem, LocusProblem) else None
 
     @property
     def size(self) -> int:

@@ -24,8 +24,7 @@ def lengthened(point: SpecialPoint, period: float) -> SpecialPoint:
     ValueError
         If the period is not positive, or no such cycle is found.
     """
-    assert point.problem is not None
-    problem = on_mesh(point.problem)
+    problem = on_mesh(point.attached)
     u, p = np.array(point.u), float(point.value)
     if not period > 0.0:
         raise ValueError(f"period = {period!r} must be positive")

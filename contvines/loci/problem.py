@@ -12,7 +12,7 @@ from contvines.shared.near_names import did_you_mean
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
-from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults
+from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, array_of
 from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
@@ -48,8 +48,8 @@ class Work(NamedTuple):
     """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`. ``memory`` is the struct `Work` of native/loci.hpp."""
 
     residual: np.ndarray
-    base: Any  # a workspace in its own right
-    trial: Any
+    base: object
+    trial: object
     base_F: np.ndarray
     base_Q: np.ndarray
     trial_F: np.ndarray
@@ -186,10 +186,10 @@ class LocusProblem(ProblemDefaults):
             residual=np.zeros(self.dimension),
             base=base,
             trial=trial,
-            base_F=base[0].reshape(-1),
-            base_Q=base[column].reshape(-1),
-            trial_F=trial[0].reshape(-1),
-            trial_Q=trial[column].reshape(-1),
+            base_F=array_of(base).reshape(-1),
+            base_Q=array_of(base, column).reshape(-1),
+            trial_F=array_of(trial).reshape(-1),
+            trial_Q=array_of(trial, column).reshape(-1),
             point=np.zeros(self.dimension + 1),
             columns=np.zeros((2, n)),
             solutions=np.zeros((6, n + 1)),

@@ -94,7 +94,7 @@ def regular_side(point: SpecialPoint) -> SpecialPoint:
     A stick that shrinks to nothing leaves two events at one place, and equations that are singular all along the border. The motion behind it has
     no such stick, and grazes there.
     """
-    problem = point.problem
+    problem = point.attached
     if (
         condition(problem, point.kind) != MARGIN
         or singularity(problem, point.u, point.value) >= VANISHING.singular

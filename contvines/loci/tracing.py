@@ -106,17 +106,17 @@ def locus(
         point = lengthened(point, period)
     if not of_own_kind(point):
         point = regular_side(point)
-    assert point.problem is not None
-    known = point.problem.parameters
+    motion = point.attached
+    known = motion.parameters
     own = of_own_kind(point)
-    base: Any = with_condition(point.problem, point.own_kind, point.label) if own else point.problem
+    base: Any = with_condition(motion, point.own_kind, point.label) if own else motion
     problem = begin(
         base,
         point.kind,
         point.u,
         point.value,
         over,
-        int(point.problem.n_margins) if own else point.margin_index or 0,
+        int(motion.n_margins) if own else point.margin_index or 0,
         (-np.inf, np.inf) if bounds is None else check_interval(bounds),
     )
     q = known[over]
@@ -125,7 +125,7 @@ def locus(
             f"the diagram was made at {over} = {q:.10g}, outside of within = [{within[0]:.10g}, {within[1]:.10g}]; "
             "widen the interval"
         )
-    checked_ends(point.problem, over, within)
+    checked_ends(motion, over, within)
     settings = Settings.of(settings)
     found = trace_locus(
         problem,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
     from .populations import Population
-    from .protocol import BorderPoint, Problem, Seed, Workspace
+    from .protocol import BorderPoint, Problem, Seed
 
 
 @runtime_checkable
@@ -151,7 +151,7 @@ class Provable(Protocol):
 class Blurred(Protocol):
     """Tells by how much rounding of its linearisation moves a raw eigenvalue."""
 
-    def blur(self, work: Workspace) -> float: ...
+    def blur(self, work: object) -> float: ...
 
 
 @runtime_checkable
@@ -161,7 +161,7 @@ class Doubtful(Protocol):
     `rounding`: of an entry relative to it. None where nobody knows.
     """
 
-    def doubts(self, work: Workspace, rounding: float) -> np.ndarray | csc_array | None: ...
+    def doubts(self, work: object, rounding: float) -> np.ndarray | csc_array | None: ...
 
 
 @runtime_checkable

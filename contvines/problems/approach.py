@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from .protocol import Equations
+from .protocol import Equations, array_of
 from .settings import SCALES
 
 STEPS = 80
@@ -41,6 +41,7 @@ def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | Non
         Of shape (N,), so near that full steps converge; `u` itself where they do from there.
     """
     work, kernels, n = problem.workspace(), problem.kernels, len(u)
+    F = array_of(work)
     border, scale = np.zeros(n + 1), np.maximum(problem.lengths, SCALES.barely * np.abs(u))
     border[n] = 1.0
 
@@ -70,8 +71,8 @@ def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | Non
             if damping < SCALES.shortest:
                 return None
             trial = u + damping * step
-            work[0][:] = _value(problem, trial, p)
-            simplified = correction()[0] if np.isfinite(work[0]).all() else np.full(n, np.nan)
+            F[:] = _value(problem, trial, p)
+            simplified = correction()[0] if np.isfinite(F).all() else np.full(n, np.nan)
             if size(simplified) < (1.0 - 0.25 * damping) * length and linearised(trial):
                 ahead, there = correction()
                 if there * sign >= 0.0:

@@ -59,7 +59,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -67,10 +67,18 @@ if TYPE_CHECKING:
     from .scales import Scales
 
 
-class Workspace(Protocol):
-    """The last argument of the kernels: F is the first of its arrays, F_p that at the kernels' ``column``."""
+@runtime_checkable
+class Places(Protocol):
+    """What has arrays by their places."""
 
-    def __getitem__(self, place: int, /) -> np.ndarray: ...
+    def __getitem__(self, place: int, /) -> object: ...
+
+
+def array_of(work: object, place: int = 0) -> np.ndarray:
+    """An array of a workspace: F is the first, F_p that at the kernels' ``column``."""
+    found = work[place] if isinstance(work, Places) else None
+    assert isinstance(found, np.ndarray)
+    return found
 
 
 class KernelFunctions(Protocol):
@@ -223,7 +231,7 @@ class Equations(Protocol):
     def kernels(self) -> KernelFunctions: ...
     @property
     def data(self) -> object: ...
-    def workspace(self) -> Workspace: ...
+    def workspace(self) -> object: ...
     def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Problem: ...
     def check_value(self, name: str, value: float) -> None: ...
     @property

@@ -140,7 +140,7 @@ def _size(graph: Graph, before: Collection[str]) -> int:
 
 def _run(graph: Graph) -> Run:
     """A run that goes on with a graph, with the settings it was made with."""
-    first = next(iter(graph.branches.values())).problem
+    first = next(iter(graph.branches.values())).attached
     kept = graph.settings
     limits = Limits.of(None, kept.get("bounds"), first)
     depth, virtual = int(kept.get("depth", 0)), bool(kept.get("virtual", False))

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problems.abilities import Evaluable
-from ...problems.protocol import Problem
+from ...problems.protocol import Problem, array_of
 from ...shared.floating_point import TINY
 from ..settings import NORMAL_FORMS
 from .taylor import Line, along_line
@@ -233,7 +233,7 @@ class Forms:
                     return np.full(self.n, np.nan)
         if not math.isfinite(self.open.kernels.linearise(self.open.data, moved, self.p, self.open_work)):
             return np.full(self.n, np.nan)
-        return np.array(self.open_work[0].reshape(-1)[: self.n]) / rows
+        return np.array(array_of(self.open_work).reshape(-1)[: self.n]) / rows
 
     @cached_property
     def _carrier(self) -> np.ndarray:

@@ -15,7 +15,8 @@ from .factors import (
     scaled,
     sort_eigenvalues,
 )
-from .product_of_two import CERTAIN, CERTIFIED, UNCERTAIN, UNDEFINED
+from .product_of_two import CERTAIN, UNCERTAIN, UNDEFINED
+from .settings import CERTIFIED
 
 
 def _in_range(matrix):

@@ -3,12 +3,8 @@
 import math
 
 from .factors import LARGE, SMALL, UNIT_ROUNDOFF, scaled
+from .settings import CERTIFIED, EXCESS, PASSABLE, SETTLED, STILL
 
-CERTIFIED = 1e-10  # relative error of a multiplier up to which the scaled product is trusted
-EXCESS = (
-    50.0  # also trusted: a bound that exceeds the effect of rounding the factors themselves by less than this
-)
-PASSABLE = 1e-7
 CERTAIN, UNCERTAIN, BROKEN, UNDEFINED = 1, 0, 2, -1
 
 
@@ -175,7 +171,7 @@ def dominant_of_two(length, twist, re, im, scratch):
                 power += shift
         y *= twist
         turned = abs(x * y0 - y * x0)
-        if turned <= 1e-15 or (turned <= 1e-13 and turned >= 0.5 * before):
+        if turned <= STILL or (turned <= SETTLED and turned >= 0.5 * before):
             value = math.copysign(value, x * x0 + y * y0)
             det = scratch[9 * length]
             re[0], re[1] = scaled(value, power), scaled(det / value, int(scratch[9 * length + 1]) - power)
