@@ -213,4 +213,4 @@ class Values:
             ValueError,
             TypeError,
         ):  # a root of less than zero: no number, here as everywhere
-            return self(state[None], np.array([clock]), numbers[None])[0]
+            return Values.__call__(self, state[None], np.array([clock]), numbers[None])[0]

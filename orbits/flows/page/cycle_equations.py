@@ -65,7 +65,8 @@ KERNELS = PageKernels()
 
 
 def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
-    """States along which any motion with this word may be shifted: no rate and no event of the word knows them."""
+    """States along which any motion with this word may be shifted: no rate and no event of the word knows them (an absorber that slides between its
+    walls while another one hits its own)."""
     e, names = machine.equations, machine.equations.layout.states
     known: set[str] = set()
     for i, mode in enumerate(word.modes):
@@ -75,7 +76,7 @@ def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
             if guard.kind != HIT:
                 known |= variables_of(guard.value)
         if len(word) and word.letter(i).kind == HIT:
-            return ()
+            known |= e.deciding(word.letter(i).contact)
     return tuple(j for j, name in enumerate(names) if name not in known)
 
 

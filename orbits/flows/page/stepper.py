@@ -184,22 +184,25 @@ class Stepper:
         self.state[:] = row[:n]
         for j, place in self._touched[wall]:
             sign = 1 if row[place] > 0.0 else -1
-            if sign != self.modes[j] and row[place] != 0.0:
+            if sign != self.modes[j] and row[place] != 0.0 and self.modes[j] != ABSENT:
                 self.modes = self._with(j, sign)
         after = self._gap_rate(wall)
-        push = self._push_back(wall) if after * after < EVENTS.slow else 0.0
+        size = 1.0 + np.abs(self.state).max()
+        push = self._push_back(wall) if after * after < EVENTS.slow * size * size else 0.0
         if push < 0.0:
-            if before * before < EVENTS.together * abs(push) * (1.0 + np.abs(self.state).max()):
+            if before * before < EVENTS.together * abs(push) * size:
                 return self._hold(wall)
             self._hop = -after / push
         return HIT
 
     def _struck(self, wall: int) -> int:
-        """An impact, and what it does to the other walls that are touched: one that holds lets go; one that is pressed hits at the same instant."""
+        """An impact, and what it does to the other walls that are touched: one that holds lets go, unless it would be back at once; one that is
+        pressed hits at the same instant."""
         kind = self._impact(wall)
         near = EVENTS.zero * (1.0 + np.abs(self.state).max())
         gaps = self.contact_values()
         self._due = []
+        resting = []
         for other in self._touched:
             if other == wall or (self.modes[other] != HELD and abs(gaps[other]) > near):
                 continue
@@ -207,10 +210,33 @@ class Stepper:
             if abs(rate) <= near:
                 continue
             if self.modes[other] == HELD:
+                if self._piled_up(other, rate):
+                    resting.append(other)
+                    continue
                 self._let_go(other, opening=rate > 0.0)
             if rate < 0.0:
                 self._due.append(other)
+        if resting:
+            self._rest(resting if self.modes[wall] != HELD else [*resting, wall], near)
         return kind
+
+    def _piled_up(self, wall: int, rate: float) -> bool:
+        """Whether the hop from a wall that holds, at this rate of the gap, is one of those that have piled up."""
+        kept, fresh = self.modes, self._fresh
+        self._let_go(wall, opening=rate > 0.0)
+        push = self._push_back(wall)
+        self.modes, self._fresh = kept, fresh
+        return push < 0.0 and rate * rate < EVENTS.together * abs(push) * (1.0 + np.abs(self.state).max())
+
+    def _rest(self, walls: list[int], near: float) -> None:
+        """Take out the rates of gaps of walls that hold, each of which changes the others by as much as the masses differ."""
+        numbers = self.compiled.numbers(self.params, self.modes)
+        for _ in range(HALVINGS):
+            moving = [wall for wall in walls if abs(self._gap_rate(wall)) > near]
+            if not moving:
+                return
+            for wall in moving:
+                self.state[:] = self.compiled.settled(wall).one(self.state, self.clock, numbers)
 
     def _let_go(self, wall: int, opening: bool = True) -> None:
         """A wall holds no more; frictions that it held slide as its gap opens or closes."""
@@ -244,7 +270,8 @@ class Stepper:
         modes = list(self._with(wall, HELD))
         values = self.contact_values()
         for j, _ in self._touched[wall]:  # the last impact may have turned a velocity that is left as it was
-            modes[j] = 1 if values[j] > 0.0 else -1 if values[j] < 0.0 else self.modes[j]
+            if modes[j] != ABSENT:
+                modes[j] = 1 if values[j] > 0.0 else -1 if values[j] < 0.0 else modes[j]
         for j in self._tied[wall]:  # the same contact keeps the velocity at zero: friction need not
             modes[j] = ABSENT
         self.modes = tuple(modes)

@@ -143,6 +143,7 @@ class Equations:
         self.states, self.contacts, self.factors = states, contacts, dict(factors or {})
         self.formulas_of_motion = motion
         self._patterns: dict[PatternKey, Pattern] = {}
+        self._deciding: dict[int, frozenset[str]] = {}
         self.flips: Mapping[tuple[int, int], int | None] = {}
         signed = [j for j, c in enumerate(contacts) if isinstance(c, (DryFriction, Switch))]
         numbers = (*(f"p_{name}" for name in parameters), *(f"sign_{contacts[j].name}" for j in signed))
@@ -242,17 +243,25 @@ class Equations:
         return self.along(self.gap[j], self.motion_with(frictions))
 
     def impact(self, j: int, rest: bool = False) -> list[Symbol]:
-        """The states after an impact on wall j: x + I d, with the impulse I that turns the gap's rate g into -e g (`rest`: into 0).
+        """The states after an impact on wall j: x + I d, with the impulse I that turns the gap's rate g into -e g (`rest`: into 0)."""
+        impulse = self._impulse(j, rest)
+        return [x + impulse * push for x, push in zip(self.x, self.push[j])]
 
-        g(x + I d) = g(x) + I (dg/dx . d), so I = -(1 + e) g / (dg/dx . d).
-        """
+    def deciding(self, j: int) -> frozenset[str]:
+        """Names of what decides when an impact on wall j happens, and what it does."""
+        if j not in self._deciding:
+            deciders = (self.gap[j], self._impulse(j, False), *self.push[j])
+            self._deciding[j] = frozenset().union(*map(variables_of, deciders))
+        return self._deciding[j]
+
+    def _impulse(self, j: int, rest: bool) -> Symbol:
+        """g(x + I d) = g(x) + I (dg/dx . d), so I = -(1 + e) g / (dg/dx . d)."""
         rate = self.gap_rate(j)
         (slopes,) = derivatives([rate], self.x)
         effect: Symbol | float = 0.0
         for slope, push in zip(slopes, self.push[j]):
             effect = slope * push + effect
-        impulse = -rate / effect if rest else -(1.0 + self.restitution[j]) * rate / effect
-        return [x + impulse * push for x, push in zip(self.x, self.push[j])]
+        return -rate / effect if rest else -(1.0 + self.restitution[j]) * rate / effect
 
     def pattern(self, key: PatternKey) -> Pattern:
         """The flow while these frictions stick, these walls hold and these frictions are absent."""
