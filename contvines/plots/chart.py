@@ -138,8 +138,11 @@ def _draw(axes: Axes, locus: Locus, handles: dict[str, Artist]) -> None:
         0.07,
         0.23,
     )  # of the axes' diagonal: a few on each locus, for those who see no colours
-    (line,) = axes.plot(solid[:, 0], solid[:, 1], label=mark.name, zorder=3, **look, **marked)
-    axes.plot(dotted[:, 0], dotted[:, 1], linestyle=":", zorder=3, **{**look, "linewidth": 1.0})
+    (line,) = axes.plot(
+        dotted[:, 0], dotted[:, 1], label=mark.name, linestyle=":", zorder=3, **{**look, "linewidth": 1.0}
+    )
+    if np.isfinite(solid).any():  # of a locus that is virtual all along nothing is
+        (line,) = axes.plot(solid[:, 0], solid[:, 1], label=mark.name, zorder=3, **look, **marked)
     handles.setdefault(mark.name, line)
 
 

@@ -1,6 +1,8 @@
 """Charts: loci none twice, points on them, regions, kept in files, resumed, from the command line."""
 
+import copy
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -57,6 +59,19 @@ def test_json_is_the_documented_one(chart):
     (point,) = data["points"]
     assert point["kind"] == "cusp" and set(point["value"]) == {"a", "b"}
     assert {"label", "on", "coefficients", "real"} <= set(point)
+
+
+def test_a_locus_that_is_virtual_all_along_is_drawn_dotted(chart, tmp_path):
+    virtual = copy.copy(chart)
+    virtual.loci = {
+        label: replace(locus, real=np.zeros(len(locus), bool)) for label, locus in chart.loci.items()
+    }
+    figure = virtual.plot()
+    figure.savefig(tmp_path / "chart.png")
+    (line,) = (
+        line for line in figure.axes[0].lines if len(line.get_xdata()) == len(next(iter(chart.loci.values())))
+    )
+    assert line.get_linestyle() == ":" and np.isfinite(line.get_ydata()).all()
 
 
 def test_a_chart_is_kept_in_a_file(chart, tmp_path):
