@@ -15,6 +15,7 @@ from ..problems.protocol import array_of
 from ..shared.floating_point import EPSILON
 from .located import Located
 from .segment import Segment
+from .settings import LOCATING
 
 ENTRY = 4.0 * EPSILON  # relative error of an entry: of several roundings, half a unit in the last place each
 SAMPLES = 4  # random signs of errors
@@ -95,7 +96,7 @@ def missed(engine: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> floa
         engine.residual(u, p)
         rest = np.array([_image(engine, left, way) for way in ways])
         bent = np.array([[_slope(engine, u, p, way, left, other) for other in ways] for way in ways])
-        if not (np.isfinite(bent).all()):
+        if not (np.isfinite(bent).all() and np.linalg.cond(bent) < LOCATING.bent):
             return 0.0
         step = np.linalg.solve(bent.T, -rest)
     found = abs(float(step @ [way[-1] for way in ways]))

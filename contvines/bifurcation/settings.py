@@ -23,6 +23,8 @@ class Locating:
         Times the noise of the equations: places are no better than this, and matrices no nearer to singular ones.
     past : float
         How far past the circle (the axis) a multiplier is more than rounding; native/scan.hpp has the same.
+    bent : float
+        Condition of the second derivatives from which one Newton step for a branch point says nothing; the demo "chu" meets singular ones.
     """
 
     bracket: float = 1e-12
@@ -31,6 +33,7 @@ class Locating:
     halved: float = 1e-3
     noisy: float = 2e3
     past: float = 1e-10
+    bent: float = 1e6
 
 
 @dataclass(frozen=True)
