@@ -135,8 +135,8 @@ class Varying:
         return 1.0
 
     def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
-        """What one of these coordinates (w, w_rate, v, v_rate) is in the unit that is shown, and that unit; none here."""
-        return {}
+        """What one of these coordinates is in the unit that is shown, and that unit; of those that have one."""
+        return {name: (1.0, self.units[name]) for name in names if self.units.get(name)}
 
     def middle(self, params: np.ndarray) -> Reals:
         """The position about which mirror images are taken."""
