@@ -163,16 +163,20 @@ def _end(run: Run, engine: Engine, half: HalfBranch, index: int) -> Located:
 
 
 def _kind(run: Run, engine: Engine, event: Located) -> str:
-    """The kind of an event; a branch point is classed by the symmetry of its null vector."""
+    """The kind of an event; a branch point is classed by the symmetry of its null vector.
+
+    The image of a single null vector is that vector or its opposite, and the nearer of both: beside homoclinic orbits it is known to few digits.
+    """
     if event.kind != "branch-point":
         return event.kind
     for test in run.engine(engine.problem)[1].symmetries:
         if np.abs(test.part(event.point.u[None, :], [event.point.p])).max() > engine.settings.symmetric:
             continue
-        for vector in null_vectors(engine, event.point.u, event.point.p, event.point.tangent):
-            u = vector[:-1]
+        vectors = null_vectors(engine, event.point.u, event.point.p, event.point.tangent)
+        for u in (vector[:-1] for vector in vectors):
             image = test.image_direction(event.point.u, u)
-            if np.abs(image + u).max() < engine.settings.aside * np.abs(u).max():
+            itself = np.abs(image - u).max() if len(vectors) == 1 else engine.settings.aside * np.abs(u).max()
+            if np.abs(image + u).max() < itself:
                 return test.kind
     return event.kind
 
