@@ -32,6 +32,9 @@ PASSES = 3  # over the gaps with one value in each, for a branch that is found p
 PATIENT = (
     512.0  # forcing periods (of a self-excited machine: events) over which the largest response is measured
 )
+PROMISING = (
+    0.7  # of the largest response of all branches: one without a branch is followed to where it is largest
+)
 HALVINGS = 5  # of the distance between values about the largest response that was simulated, ...
 NEARLY = 0.998  # ... to where it is nearly as large
 ON_ITS_WAY = ("slow", "impossible")  # a transient that has not ended; a start inside a wall
@@ -66,7 +69,8 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     2. The attractors that a brief look meets, with many starts at a few values.
     3. What takes over where a stable stretch ends.
     4. What a few starts settle on where nothing stable is known.
-    5. The same between these values, about the largest response, where that is of a motion without a branch, which is followed to there.
+    5. The same between these values, about the largest response of a motion without a branch, which is followed to there, unless branches have much
+       larger ones.
 
     A motion of more than `Settings.longest` unknowns is not traced, for its window is narrow, and none is where `Settings.completion` is spent (the graph
     is not complete then, and says so): these are among what is returned, as they are simulated.
@@ -192,21 +196,19 @@ def _of_branches(graph: Graph) -> float:
 def _about_the_largest(
     graph: Graph, left: Sequence[Unbranched], looked: Collection[float]
 ) -> tuple[list[float], np.ndarray | None]:
-    """Values half-way from the largest response to its neighbours that are not as large, and a state on its motion; no values where it is that of a
-    branch, or these are near."""
+    """Values half-way from the largest response without a branch to its neighbours that are not as large, and a state on its motion; no values where
+    branches have much larger ones, or these are near."""
     name, (low, high) = default_measure(graph), graph.within
     known: dict[float, float] = {}
     for one in left:
         known[one.value] = max(known.get(one.value, -np.inf), one.measures.get(name, -np.inf))
     top = max(known, key=lambda value: known[value], default=low)
-    if not known.get(top, -np.inf) > _of_branches(graph):
+    if not known.get(top, -np.inf) > PROMISING * _of_branches(graph):
         return [], None
     places = sorted({low, high, *known, *looked, *(end for gap in gaps(graph) for end in gap)})
-    at = places.index(top)
-    beside = [
-        other
-        for other in (places[max(at - 1, 0)], places[min(at + 1, len(places) - 1)])
-        if abs(other - top) > PART * (high - low) and known.get(other, -np.inf) < NEARLY * known[top]
-    ]
+    least = PART * (high - low)
+    below = max((p for p in places if p < top - least), default=top)
+    above = min((p for p in places if p > top + least), default=top)
+    beside = [p for p in (below, above) if p != top and known.get(p, -np.inf) < NEARLY * known[top]]
     state = next(one.state for one in left if one.value == top and one.measures.get(name) == known[top])
     return [0.5 * (top + other) for other in beside], state

@@ -183,3 +183,16 @@ def test_what_is_not_known_is_said_and_never_the_best():
 def test_stability_that_is_not_computed_is_no_gap():
     made = survey(Circles(), {"radius": [1.0]}, over="p", within=(-3.0, 3.0), workers=1)
     assert np.isnan(made["covered"][0]) and np.isnan(made["peak"][0]) and made.notes[0] == ""
+
+
+def test_a_modulated_motion_beside_a_stable_branch_is_followed_to_where_it_is_largest():
+    """An inclined cavity: right of the resonance the motion without a period coexists with a branch, and is larger where no start led to it."""
+    case = {**CASE, "half_width": "175 mm", "slope": "10 deg", "restitution": 0.7, "friction": 0.155}
+    machine = physical("coupled", case)
+    made = survey(
+        Family(machine, None, over="frequency", within=(7.0, 9.0)), {"half_width": [175.0]}, over="frequency", within=(7.0, 9.0), depth=0, workers=1,
+    )  # fmt: skip
+    largest = max(
+        row.measures["max_abs_q1"] for row in sweep(machine, "frequency", np.linspace(8.2, 8.08, 49))
+    )
+    assert made["peak"][0] == pytest.approx(largest, rel=0.03) and largest > 65.0
