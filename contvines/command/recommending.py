@@ -165,6 +165,8 @@ def recommend(
         best = _best([place for place in places if place.samples == work.samples])
         if best is None:
             break
+    if best is not None:
+        places, best = work.passed_over(places, best, cost)
     jumps: list[Jump] = []
     if best is not None:
         places, best, jumps = work.away_from_jumps(places, best, cost)
@@ -310,6 +312,25 @@ class _Work:
         self._look([v for v in new if known[v].known[worst[0]] <= limit], np.setdiff1d(every, worst))
         return [_place(value, row, self.samples) for value, row in known.items()]
 
+    def passed_over(self, places: list[Place], best: Place, cost: float) -> tuple[list[Place], Place]:
+        """Places, and the best one: values at which the study's own machine has a much lower response than the best has in its worst sample
+        are looked at in all samples, the lowest first, and then between their neighbours.
+        """
+        while True:
+            alone = _best([place for place in places if place.value not in self.rows])
+            if alone is None or alone.worst >= (1.0 - cost) * best.worst:
+                return places, best
+            places = _merged(places, self.later_look([alone.value], alone.value, cost))
+            found = _best([place for place in places if place.samples == self.samples and not place.left])
+            if found is not None and found.worst < best.worst:
+                low, high = _neighbours(places, found.value)
+                values = map(_tidy, np.linspace(low, high, LATER[-1]))
+                places = _merged(places, self.later_look(values, found.value, cost))
+                best = (
+                    _best([place for place in places if place.samples == self.samples and not place.left])
+                    or found
+                )
+
     def _look(self, values: Sequence[float], samples: np.ndarray) -> None:
         """Diagrams at these values, of these samples."""
         from contvines.survey.plan import Plan
@@ -336,7 +357,7 @@ class _Work:
         self.round += 1
         rest = "" if self.pace is None else f", about {_duration(self.pace * machines)}"
         said = f"{machines} {'machine' if machines == 1 else 'machines'}"
-        self.tell(f"round {self.round} of {len(LATER) + 2}: {at_most}{said}{rest}")
+        self.tell(f"round {self.round} of {max(self.round, len(LATER) + 2)}: {at_most}{said}{rest}")
 
     def surveyed(self, plan: Plan, outcomes: Sequence[Any], **ways: Any) -> Survey:
         """The rows of a plan, kept in the journal of the round."""

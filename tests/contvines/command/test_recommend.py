@@ -109,6 +109,32 @@ def test_a_larger_response_by_simulation_is_the_one_that_counts():
 
 
 @pytest.mark.parametrize("seed", range(20))
+def test_a_value_that_is_good_for_the_studys_own_machine_alone_does_not_hide_a_better_one(seed, monkeypatch):
+    """Drawn responses: in the end no value that was looked at has a lower worst response, but for those whose own response costs as much."""
+    generator, cost = np.random.default_rng(seed), 0.05
+    values = np.round(np.linspace(10.0, 20.0, 81), 3)
+    table = 1.0 + generator.random((81, 4))
+    work = object.__new__(recommending._Work)
+    work.name, work.samples, work.drawn = "gap", 4, {"restitution": np.arange(4.0)}
+    work.rows, work.pace, work.round, work.tell, work.integrated = {}, None, 0, lambda _: None, False
+
+    def surveyed(plan, outcomes, swept):
+        rows = table[np.searchsorted(values, plan.axes["gap"])][:, plan.samples["restitution"].astype(int)]
+        return recommending._Looked(rows, rows, np.full(rows.shape, "", object))
+
+    monkeypatch.setattr(work, "surveyed", surveyed)
+    monkeypatch.setattr(recommending, "_looked", lambda found: found)
+    monkeypatch.setattr(recommending, "_tidy", lambda value: float(values[np.abs(values - value).argmin()]))
+    own, worst = dict(zip(values, table[:, 0])), dict(zip(values, table.max(axis=1)))
+    places = [Place(v, own[v], own[v], own[v], 0, 1) for v in values[::10]]
+    best = min(places, key=lambda place: place.worst)
+    places = recommending._merged(places, work.later_look([best.value], best.value, cost))
+    places, best = work.passed_over(places, next(p for p in places if p.value == best.value), cost)
+    assert best.worst == worst[best.value]
+    assert all(worst[p.value] >= best.worst or own[p.value] >= (1.0 - cost) * best.worst for p in places)
+
+
+@pytest.mark.parametrize("seed", range(20))
 def test_machines_that_are_left_out_change_neither_the_choice_nor_the_tolerance(seed, monkeypatch):
     """Beside the worst of all samples at all values, drawn; a few are not known."""
     generator, cost = np.random.default_rng(seed), 0.1
