@@ -315,6 +315,9 @@ class Recommendation:
         place = next((place for place in self.places if place.value == self.own), None)
         if self.tolerance[0] <= self.own <= self.tolerance[1]:
             return f"The study's own {self.shown(self.name, self.own)} is as good."
+        chosen = self.chosen
+        if place is not None and chosen is not None and place.worst < chosen.worst:
+            return f"Whether the study's {self.shown(self.name, self.own)} is better is not known: {self.shown('peak', place.worst)}, not of all samples or not by diagrams."
         ratio = self.value / self.own
         small, factor = ratio > 1.0, max(ratio, 1.0 / ratio)
         by = (

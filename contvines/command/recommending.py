@@ -43,7 +43,7 @@ REPLAYED, LONGEST = (
 )  # forcing periods of a motion simulated from itself, and of the longest that may recur
 CHECK = 61  # values of the simulation up and down
 SWEPT = 25  # values at which a machine whose flights are integrated is simulated in place of a diagram
-TRIED = 3  # choices of such machines that are looked at by diagrams, until one is the best of all
+TRIED = 5  # choices of such machines that are looked at by diagrams, until one is the best of all
 SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
 ABOUT, FINE = 8, 321  # steps to either side of the largest response where it looks closer, at so many values
 ROUGH = 33  # the same where flights are integrated
@@ -172,7 +172,7 @@ def recommend(
         places, best, jumps = work.away_from_jumps(places, best, cost)
     rows = None
     if best is not None:
-        places, best, rows = work.at_choice(places, best)
+        places, best, rows = work.at_choice(places, best, cost)
     return work.recommendation(places, best, rows, jumps, cost, target)
 
 
@@ -434,7 +434,9 @@ class _Work:
         steep = abs(bad.value - best.value) <= STEEP * abs(best.value)
         return Jump(bad.value, bad.value, bad.worst) if steep else None
 
-    def at_choice(self, places: list[Place], best: Place) -> tuple[list[Place], Place | None, Survey | None]:
+    def at_choice(
+        self, places: list[Place], best: Place, cost: float
+    ) -> tuple[list[Place], Place | None, Survey | None]:
         """Diagrams of all samples at the choice, with simulated starts: all places, the choice, its rows.
 
         Where places were simulated alone and the diagrams know a larger response, another one may be the best, which is looked at in its turn.
@@ -453,8 +455,8 @@ class _Work:
             )
             seen[choice.value] = rows
             if self.integrated:
-                looked = (column.ravel() for column in _looked(rows))
-                exact = _place(choice.value, _Looked(*looked), self.samples)
+                row = self.rows[choice.value] = _Looked(*(column.ravel() for column in _looked(rows)))
+                exact = _place(choice.value, row, self.samples)
                 places = _merged(places, [exact])
                 if exact.worst <= (1.0 + AGREES) * choice.worst:
                     choice = exact
@@ -465,6 +467,8 @@ class _Work:
                         f"({figures(choice.worst)}, by diagrams {figures(exact.worst)})"
                     )
                 choice = _best([place for place in places if place.samples == self.samples])
+                if choice is not None:
+                    places, choice = self.passed_over(places, choice, cost)
         if choice is not None and choice.value not in seen:
             choice = _best([place for place in places if place.value in seen])
         return places, choice, None if choice is None else seen[choice.value]
