@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from contvines.core.build import NotBuilt, build, up_to_date
 from tests.children import adopt, no_child_survives_its_test
@@ -10,8 +10,11 @@ from tests.children import adopt, no_child_survives_its_test
 __all__ = ["no_child_survives_its_test"]
 adopt()
 
-settings.register_profile("repeatable", derandomize=True, deadline=None)
-settings.register_profile("search", derandomize=False, deadline=None)
+settings.register_profile(
+    "patient", deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)  # on a loaded machine
+settings.register_profile("repeatable", settings.get_profile("patient"), derandomize=True)
+settings.register_profile("search", settings.get_profile("patient"), derandomize=False)
 settings.load_profile("repeatable")
 
 if not up_to_date():
