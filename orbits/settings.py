@@ -28,6 +28,12 @@ class Solving:
         Clock of one flight beyond which the iteration has lost its way.
     shift : float
         Change of the parameter, relative, with which a secant or a difference begins.
+    mesh_error : float
+        Of cycles without events, by collocation.
+    equilibrium : float
+        How far from a state at which a motion has come to rest the equilibrium may be, relative to 1 + its size.
+    safe_product : float
+        Product of the factors' norms up to which their product keeps the multipliers that matter.
     """
 
     residual: float = 1e-10
@@ -38,6 +44,9 @@ class Solving:
     free_step: float = 1e-7
     longest_flight: float = 1e3
     shift: float = 1e-6
+    mesh_error: float = 1e-9
+    equilibrium: float = 1e-3
+    safe_product: float = 1e5
 
 
 @dataclass(frozen=True)
@@ -351,6 +360,49 @@ class Proving:
     largest: float = 1e280
 
 
+@dataclass(frozen=True)
+class Stepping:
+    """Steps from event to event along closed forms; the native core has the same numbers (`native/`).
+
+    Attributes
+    ----------
+    forever : float
+        Forcing periods: the most that one call follows a motion.
+    chatter : float
+        Time in which all further impacts of a chatter happen, below which the absorber is put to rest.
+    still : float
+        Speed after an impact, or time, that is none.
+    least_speed : float
+        That of an impact which roundoff leaves none.
+    last_step, curved : float
+        Newton's method ends with a step that is this small a share of the time, and whose part of third order is this small a share of the rate.
+    leave : float
+        Time by which a zero is left behind, at least, when the next one is looked for.
+    minimum : float
+        Time to which the place of a minimum is known.
+    slip : float
+        Phase by which a slip may miss the instant at which friction gives way: the equations solve for it.
+    """
+
+    forever: float = 1e7
+    chatter: float = 1e-7
+    still: float = 1e-13
+    least_speed: float = 1e-30
+    last_step: float = 1e-6
+    curved: float = 1e-9
+    leave: float = 1e-8
+    minimum: float = 1e-5
+    slip: float = 1e-6
+
+
+@dataclass(frozen=True)
+class Integrating:
+    """Error of a step of scipy's integrator (heyoka's goes to rounding by itself), relative and absolute."""
+
+    relative: float = 1e-13
+    absolute: float = 1e-14
+
+
 SOLVING = Solving()
 EVENTS = Events()
 GROWING = Growing()
@@ -360,3 +412,5 @@ SIMULATING = Simulating()
 REPLAYING = Replaying()
 DESIGNING = Designing()
 PROVING = Proving()
+STEPPING = Stepping()
+INTEGRATING = Integrating()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, overload
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -213,11 +213,20 @@ for _name in ("sin", "cos", "tan"):
     setattr(Symbol, f"arc{_name}", _method(f"a{_name}"))
 
 
-def _elementary(name: str, numeric: Callable, says: str) -> Callable:
-    def function(x: Any) -> Any:
-        if isinstance(x, Symbol):
-            return Symbol(name, x)
-        return numeric(x)
+class Elementary(Protocol):
+    """An elementary function: of a symbol a symbol, of a number a number, of an array an array."""
+
+    @overload
+    def __call__(self, x: Symbol, /) -> Symbol: ...
+    @overload
+    def __call__(self, x: float, /) -> float: ...
+    @overload
+    def __call__(self, x: np.ndarray, /) -> np.ndarray: ...
+
+
+def _elementary(name: str, numeric: Callable, says: str) -> Elementary:
+    def function(x: Plain, /):
+        return numeric(x)  # numpy calls the method of a symbol
 
     function.__name__ = function.__qualname__ = name
     function.__doc__ = f"{says}, on a number, an array or a symbol."

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, TypeVar
 
 from orbits.flows.protocol import Flow
 
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
 
-def flow_of(model: Any) -> Flow:
+Model = TypeVar("Model", bound="Varying")
+
+
+def flow_of(model: Model) -> Flow[Model]:
     """The flow of a machine."""
     return _flow(model.flow)
 

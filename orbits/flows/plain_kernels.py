@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -14,7 +14,11 @@ FLAT = 2
 """Steps from a solution to itself after which its residual is roundoff."""
 
 
-class PlainKernels(ABC):
+Data = TypeVar("Data")
+Work = TypeVar("Work")
+
+
+class PlainKernels(ABC, Generic[Data, Work]):
     """The functions that a continuation calls, and two of this package's own; signatures as in `contvines.core.table.TableKernels`."""
 
     compiled = False
@@ -24,25 +28,25 @@ class PlainKernels(ABC):
     """Evaluations, as a share of the steps, that Newton's method may spend on steps that do not halve the residual."""
 
     @abstractmethod
-    def linearise(self, data: Any, u: np.ndarray, p: float, work: Any) -> float:
+    def linearise(self, data: Data, u: np.ndarray, p: float, work: Work) -> float:
         """Residual and derivatives into `work`; returns the largest residual, infinity where it cannot be evaluated."""
 
     @abstractmethod
     def bordered(
-        self, data: Any, work: Any, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+        self, data: Data, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
     ) -> float:
         """Solve the bordered system with the linearisation in `work`; returns the determinant's sign."""
 
     @abstractmethod
-    def inspect(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> None:
+    def inspect(self, data: Data, u: np.ndarray, p: float, work: Work, row: np.ndarray) -> None:
         """Multipliers of the closure map as (re, im) pairs, then margins, into `row`."""
 
     def newton(
         self,
-        data: Any,
+        data: Data,
         u: np.ndarray,
         p: float,
-        work: Any,
+        work: Work,
         border: np.ndarray,
         step: np.ndarray,
         tangent: np.ndarray,
@@ -74,7 +78,7 @@ class PlainKernels(ABC):
                 return residual, iteration + 1, p
         return residual if residual < self.accepted else math.inf, limit, p
 
-    def examine(self, data: Any, u: np.ndarray, p: float, work: Any, row: np.ndarray) -> float:
+    def examine(self, data: Data, u: np.ndarray, p: float, work: Work, row: np.ndarray) -> float:
         """Residual, and the row of `inspect`, of one solution; the row is not a number where it cannot be evaluated."""
         residual = self.linearise(data, u, p, work)
         if math.isfinite(residual):

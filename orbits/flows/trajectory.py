@@ -6,18 +6,22 @@ from abc import ABC, abstractmethod
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.words import Word
 
+if TYPE_CHECKING:
+    from orbits.machines.varying import Varying
+
 TWO_PI = 2.0 * np.pi
+ModelOf = TypeVar("ModelOf", bound="Varying", covariant=True)
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(ABC):
+class Trajectory(ABC, Generic[ModelOf]):
     """A simulated motion; a flow says what lies between the events.
 
     Attributes
@@ -35,7 +39,7 @@ class Trajectory(ABC):
         Why the run ended; `ended` says it in words.
     """
 
-    model: Any
+    model: ModelOf
     params: np.ndarray
     clocks: np.ndarray
     finish: float

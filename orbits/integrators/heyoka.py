@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -25,6 +25,30 @@ if TYPE_CHECKING:
 
 LANES = 4  # flights that are integrated side by side
 FEW = 2  # points up to which plain Python works formulas out faster than a call of compiled code
+
+
+class Compiled(Protocol):
+    """Formulas that heyoka has compiled."""
+
+    nparams: int
+
+    def __call__(
+        self, states: np.ndarray, *, pars: np.ndarray, time: np.ndarray, outputs: np.ndarray
+    ) -> np.ndarray: ...
+
+
+class Dense(Protocol):
+    """An integrator that knows the states inside its last step."""
+
+    d_output: np.ndarray
+
+    def update_d_output(self, clock: float) -> np.ndarray: ...
+
+
+class System(Protocol):
+    """A flow with its variations."""
+
+    sys: Sequence[object]
 
 
 @cache
@@ -59,18 +83,20 @@ def _variables(layout: Layout) -> list[Any]:
 class Values(expressions.Values):
     """Functions of states, clock and numbers, compiled for many points at once."""
 
-    _compiled: Any = None
+    _compiled: Compiled | None = None
 
     def __call__(self, states: np.ndarray, clock: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """Values, shape (m, count), at `states` (m, n), `clock` (m,), `numbers` (m, P)."""
         if len(states) <= FEW:
             return np.array([self.one(*row) for row in zip(states, clock, numbers)])
-        if self._compiled is None:
-            self._compiled = _heyoka().cfunc(lowered(self.layout, self.values), vars=_variables(self.layout))
+        compiled = self._compiled
+        if compiled is None:
+            made = _heyoka().cfunc(lowered(self.layout, self.values), vars=_variables(self.layout))
+            self._compiled = compiled = made
         out = np.empty((self.count, len(states)))
-        self._compiled(
+        compiled(
             np.ascontiguousarray(states.T),
-            pars=np.ascontiguousarray(numbers.T[: int(self._compiled.nparams)]),
+            pars=np.ascontiguousarray(numbers.T[: int(compiled.nparams)]),
             time=np.ascontiguousarray(clock),
             outputs=out,
         )
@@ -160,7 +186,7 @@ class Watch:
         found = self._found
 
         def note(place: int) -> Callable:
-            def callback(ta: Any, clock: float, sign: int) -> None:
+            def callback(ta: Dense, clock: float, sign: int) -> None:
                 ta.update_d_output(clock)
                 found.append((clock, place, ta.d_output.copy()))
 
@@ -280,7 +306,7 @@ LARGE = 12  # states from which compact code compiles much faster and runs nearl
 MANY = 40  # and equations of states with their variations: six states compile in 0.5 s in place of 3, and fly half as fast
 
 
-def _variational(layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> Any:
+def _variational(layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> System:
     """The flow with its first variations by the states and by some of the numbers."""
     heyoka = _heyoka()
     variables = _variables(layout)
@@ -292,5 +318,5 @@ def _large(system: Sequence[Any]) -> bool:
     return len(system) >= LARGE
 
 
-def _many(variational: Any) -> bool:
+def _many(variational: System) -> bool:
     return len(variational.sys) >= MANY

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import minimize_scalar, root_scalar
 
 from orbits.integrators.expressions import Layout, Values, constant, derivatives, variable, written
 from orbits.integrators.protocol import Crossing
+from orbits.numbers import ROUNDOFF
+from orbits.settings import INTEGRATING
 from orbits.symbols import Symbol
 
-RELATIVE, ABSOLUTE = 1e-13, 1e-14  # error of a step
 BETWEEN = np.linspace(0.0, 1.0, 13)[1:]  # parts of a step at which functions are sampled
 MOST_STEPS = 100_000
 LANES = 1  # flights are integrated one by one
@@ -43,7 +44,9 @@ class _Path:
 
         self.final = np.array(state, dtype=float)
         with np.errstate(all="ignore"):
-            solver = DOP853(rates, begin, self.final, end, rtol=RELATIVE, atol=ABSOLUTE)
+            solver = DOP853(
+                rates, begin, self.final, end, rtol=INTEGRATING.relative, atol=INTEGRATING.absolute
+            )
             for _ in range(MOST_STEPS if end != begin else 0):
                 solver.step()
                 if solver.status == "failed" or not np.isfinite(solver.y).all():
@@ -67,7 +70,8 @@ class _Path:
 
         last = at(begin, np.asarray(state, dtype=float)[None])
         for solver in self.steps(state, begin, end, numbers):
-            path, before = solver.dense_output(), float(solver.t_old)  # type: ignore[arg-type]
+            assert solver.t_old is not None
+            path, before = solver.dense_output(), float(solver.t_old)
             clocks = np.append(before, before + BETWEEN * (solver.t - before))
             table = np.concatenate([last, at(clocks[1:], path(clocks[1:]).T)])
             found = []
@@ -94,7 +98,8 @@ def _rises(value: Callable[[float], float], clocks: np.ndarray, row: np.ndarray)
                 marks.insert(place, top.x)
                 heights.insert(place, -top.fun)
     places = [k for k in range(len(marks) - 1) if heights[k] <= 0.0 < heights[k + 1]]
-    return [float(brentq(value, marks[k], marks[k + 1], xtol=4e-16, rtol=1e-15)) for k in places]  # type: ignore[arg-type]
+    near = {"method": "brentq", "xtol": 2.0 * ROUNDOFF, "rtol": 4.0 * ROUNDOFF}
+    return [float(root_scalar(value, bracket=(marks[k], marks[k + 1]), **near).root) for k in places]
 
 
 class Flight:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from orbits.machines.catalogue import model_class
 
+if TYPE_CHECKING:
+    from orbits.machines.base import Model
+    from orbits.machines.structure.structure import Structure
 
-def build(settings: Mapping[str, Any]) -> Any:
+
+def build(settings: Mapping[str, Any]) -> Model | Structure:
     """The machine with these settings, `name` among them (see `Model.settings`)."""
     values = dict(settings)
     if "structure" in values:

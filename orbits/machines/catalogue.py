@@ -5,15 +5,18 @@ from __future__ import annotations
 import copyreg
 import importlib
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.parameters import ParameterError
 from orbits.machines.stepping import Machine
+from orbits.machines.varying import Varying
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from orbits.machines.native_stepper import NativeStepper
     from orbits.machines.reference.machine import Reference
 
@@ -46,7 +49,7 @@ def model_class(name: str) -> type[Model]:
     return getattr(importlib.import_module(module), place)
 
 
-def page_machine(name: str) -> Any:
+def page_machine(name: str) -> Varying:
     """The machine of `PAGES` called `name`."""
     return getattr(importlib.import_module(PAGES[name]), name)
 
@@ -90,7 +93,7 @@ def _machine(name: str, functions: NativeStepper | Reference) -> Machine:
     )
 
 
-def _by_name(machine: Machine) -> tuple[Any, tuple[str]]:
+def _by_name(machine: Machine) -> tuple[Callable[[str], Machine], tuple[str]]:
     return stepper, (machine.name,)
 
 

@@ -18,7 +18,7 @@ from orbits.symbols import cos, sin
 
 if TYPE_CHECKING:
     from orbits.machines.page.formulas import Named, States
-    from orbits.symbols import Symbol
+    from orbits.symbols import Plain
 
 TURN = 6.283185307179586  # radians
 
@@ -43,7 +43,7 @@ PARAMETERS = {  # name: (usual value, unit, meaning)
 STATES = {"q": "mm", "x1": "mm", "x2": "mm", "q_rate": "m/s", "x1_rate": "m/s", "x2_rate": "m/s"}
 
 
-def _motion(state: States, phase: Symbol, p: Named, contact: Named) -> tuple[Symbol, ...]:
+def _motion(state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:
     q, _, _, v, v1, v2 = state
     rate = TURN * p.natural_frequency
     ahead = p.base_amplitude * sin(phase) - q
@@ -53,7 +53,7 @@ def _motion(state: States, phase: Symbol, p: Named, contact: Named) -> tuple[Sym
     return v, v1, v2, push, -contact.floor1, -contact.floor2
 
 
-def _energy(state: States, phase: Symbol, p: Named) -> Symbol:
+def _energy(state: States, phase: Plain, p: Named) -> Plain:
     """Kinetic energies, and that of the spring."""
     stiffness = p.oscillator_mass * (TURN * p.natural_frequency) ** 2
     stretch = state.q - p.base_amplitude * sin(phase)
@@ -64,10 +64,10 @@ def _energy(state: States, phase: Symbol, p: Named) -> Symbol:
 def _wall(absorber: int, side: int) -> Wall:
     """The left (side = 1) or the right wall of an absorber's cavity."""
 
-    def gap(state: States, phase: Symbol, p: Named) -> Symbol:
+    def gap(state: States, phase: Plain, p: Named) -> Plain:
         return getattr(p, f"clearance_{absorber}") - side * (state.q - getattr(state, f"x{absorber}"))
 
-    def back(state: States, phase: Symbol, p: Named) -> Symbol:
+    def back(state: States, phase: Plain, p: Named) -> Plain:
         return -side * getattr(p, f"absorber_mass_{absorber}") / p.oscillator_mass
 
     letter = f"{'L' if side > 0 else 'R'}{absorber}"
@@ -75,10 +75,10 @@ def _wall(absorber: int, side: int) -> Wall:
 
 
 def _floor(absorber: int) -> DryFriction:
-    def speed(state: States, phase: Symbol, p: Named) -> Symbol:
+    def speed(state: States, phase: Plain, p: Named) -> Plain:
         return state.q_rate - getattr(state, f"x{absorber}_rate")
 
-    def limit(state: States, phase: Symbol, p: Named) -> Symbol:
+    def limit(state: States, phase: Plain, p: Named) -> Plain:
         return getattr(p, f"friction_{absorber}") * p.gravity
 
     return DryFriction(

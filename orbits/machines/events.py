@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 
@@ -65,7 +65,20 @@ def contacts(model: Model, word: Word, params: np.ndarray) -> tuple[np.ndarray, 
     return hits, walls, np.where(left, by_left[:, None], by_right[:, None])
 
 
-def events_of(motion: Any) -> EventTable:
+class Placed(Protocol):
+    """A motion with its nodes, shape (L, n), and its parameters."""
+
+    @property
+    def model(self) -> Model: ...
+    @property
+    def word(self) -> Word: ...
+    @property
+    def nodes(self) -> np.ndarray: ...
+    @property
+    def params(self) -> np.ndarray: ...
+
+
+def events_of(motion: Placed) -> EventTable:
     """What happens at the events of one motion (its model, word, nodes and params); arrays of shape (L,)."""
     table = event_table(motion.model, motion.word, motion.nodes[None], motion.params[None])
     return EventTable(**{name: values[0] for name, values in vars(table).items()})

@@ -40,12 +40,12 @@ class Mechanics(Varying):
         def parameter(cls, name: str) -> Parameter: ...
 
     @classmethod
-    def column(cls, params: np.ndarray, name: str) -> Any:
+    def column(cls, params: np.ndarray, name: str) -> Reals:
         """Entry `name` of a parameter vector, or that column of many of them."""
         j = cls.parameter_names.index(name)
         return params[j] if params.ndim == 1 else params[..., j]
 
-    def phase_speed(self, params: np.ndarray) -> Any:
+    def phase_speed(self, params: np.ndarray) -> Reals:
         """How fast the phase grows, in radians per unit of the machine's own time; shapes follow `params` (..., P)."""
         return self.column(params, self.phase_rate)
 
@@ -82,7 +82,7 @@ class Mechanics(Varying):
         return both, both
 
     @classmethod
-    def weight(cls, params: np.ndarray) -> Any:
+    def weight(cls, params: np.ndarray) -> Reals:
         """g cos(slope), with which gravity presses the absorber on its floor."""
         gravity = cls.column(params, "gravity")
         return gravity * np.cos(cls.column(params, "slope")) if "slope" in cls.parameter_names else gravity
@@ -102,7 +102,9 @@ class Mechanics(Varying):
         """v and v' at nodes (m, L, n) with parameter vectors (m, P), each of shape (m, L)."""
         if cls.moving_cavity:
             return nodes[:, :, 2], nodes[:, :, 3]
-        amplitude, omega = (cls.column(params, name)[:, None] for name in (cls.driven_by, cls.phase_rate))
+        amplitude, omega = (
+            params[:, cls.parameter_names.index(name), None] for name in (cls.driven_by, cls.phase_rate)
+        )
         return amplitude * np.sin(nodes[:, :, 0]), amplitude * omega * np.cos(nodes[:, :, 0])
 
     @classmethod
@@ -183,7 +185,7 @@ class Mechanics(Varying):
     @classmethod
     def impact_loss(cls, restitution: np.ndarray, speed: np.ndarray, params: np.ndarray) -> np.ndarray:
         """Energy that impacts of these relative speeds (m, L) take, (1 - r^2) w'^2 / (2 (1 + eps)), per unit of the absorber's mass."""
-        eps = cls.column(params, "mass_ratio")[..., np.newaxis]
+        eps = np.asarray(cls.column(params, "mass_ratio"))[..., np.newaxis]
         return (1.0 - restitution**2) * speed**2 / (2.0 * (1.0 + eps))
 
     @classmethod

@@ -8,6 +8,7 @@ import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
 from orbits.machines.stepping import PAUSED, TURNS
+from orbits.settings import STEPPING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,8 +17,6 @@ if TYPE_CHECKING:
 
 NUMBERS = {"absorber": 0, "cavity": 1, "coupled": 2}
 """Numbers of the machines in the native core."""
-
-FOREVER = 1e7  # forcing periods: the most that one call follows a motion
 
 
 def floats(array: np.ndarray) -> np.ndarray:
@@ -79,7 +78,7 @@ class NativeStepper:
     ) -> tuple[int, int]:
         """Run from event to event; contract, item 3. Between slices of a long run an interrupt is seen."""
         params = floats(params)
-        until = min(float(until), float(state[TURNS]) + FOREVER)
+        until = min(float(until), float(state[TURNS]) + STEPPING.forever)
         count, status, room = 0, PAUSED, len(codes)
         here, numbers = written(state), address(params)
         at_codes, at_modes, at_rows = written(codes), written(modes), written(rows)

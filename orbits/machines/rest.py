@@ -5,8 +5,6 @@ Its equations are linear, K u = f with few unknowns, and its only border is the 
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from orbits.machines.reference.law import DRIVEN, LAWS, Law
@@ -20,9 +18,9 @@ class Rest:
     def __init__(self, name: str) -> None:
         self._law = LAWS[name]
 
-    def law(self, params: np.ndarray) -> Law:
+    def law(self, params: np.ndarray) -> Law[float]:
         """The numbers of the equations of motion."""
-        return self._law(np.asarray(params, dtype=float))
+        return self._law([*np.asarray(params, dtype=float)])
 
     def equations(self, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Matrix K (N, N) and right-hand side f (N,)."""
@@ -100,13 +98,13 @@ class RestOnOscillator(Rest):
         }.get(name, np.nan)
 
 
-def share_of_the_base(law: Law, periods: int, overlap: float) -> float:
+def share_of_the_base(law: Law[float], periods: int, overlap: float) -> float:
     """What the base's motion adds to the loss in the damper: lambda times the integral of (q1' - e')^2 - q1'^2, per mass of the absorber.
 
     By parts the integral of q1' e' is Omega^2 times that of q1 e; `overlap` is the integral of q1 sin Psi over the phase.
     """
     own = np.pi * periods * law.omega * law.force**2
-    chi_lambda: Any = law.base / (law.omega * law.eps)
+    chi_lambda = law.base / (law.omega * law.eps)
     return float(chi_lambda * (own - 2.0 * law.omega * law.force * overlap))
 
 

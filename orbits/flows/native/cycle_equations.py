@@ -21,6 +21,8 @@ from orbits.words.alphabet import LEFT, Watch
 from orbits.words.margins import index_of, margin_name
 
 if TYPE_CHECKING:
+    from orbits.flows.native.kernels import NativeKernels
+    from orbits.flows.native.reference_kernels import ReferenceKernels
     from orbits.flows.native.rest_equations import RestEquations
 
 _shared = lru_cache(maxsize=64)(workspace)
@@ -97,8 +99,8 @@ class Equations:
         if self.units == PLAIN:
             self.path = self.data.path
 
-    @cached_property
-    def kernels(self):
+    @property
+    def kernels(self) -> NativeKernels | ReferenceKernels:
         """linearise, bordered, inspect, newton, examine of the model."""
         return assemble(self.model)
 
@@ -115,7 +117,7 @@ class Equations:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
-    @cached_property
+    @property
     def scratch(self) -> Workspace:
         """A workspace for single calls, whose contents nobody relies on; cycles of one length share it."""
         return _shared(self.length, self.model.node, self.params.size)

@@ -43,7 +43,7 @@ class NativeFlow:
         """w."""
         return ("w",)
 
-    def points(self, motion: Motion) -> np.ndarray:
+    def points(self, motion: Motion[Model]) -> np.ndarray:
         """Positions and velocities in the cavity, and those of the centre of mass."""
         return sampling.points(motion)
 
@@ -64,19 +64,19 @@ class NativeFlow:
         """The position, where no wall is hit."""
         return (1,) if word.impact_free and len(word) else ()
 
-    def sample(self, motion: Motion, points: int) -> dict[str, np.ndarray]:
+    def sample(self, motion: Motion[Model], points: int) -> dict[str, np.ndarray]:
         """See `orbits.flows.native.sampling.sample`."""
         return sampling.sample(motion, points)
 
-    def positions(self, motion: Motion, instants: int) -> np.ndarray:
+    def positions(self, motion: Motion[Model], instants: int) -> np.ndarray:
         """w; see `orbits.flows.native.sampling.positions`."""
         return sampling.positions(motion, instants)[:, None]
 
-    def image(self, motion: Motion) -> np.ndarray:
+    def image(self, motion: Motion[Model]) -> np.ndarray:
         """Mirrored about the middle between the walls."""
         return motion.model.image(motion.word.codes, motion.nodes, motion.params)
 
-    def strobed(self, motion: Motion) -> np.ndarray:
+    def strobed(self, motion: Motion[Model]) -> np.ndarray:
         """Nothing to be seen: at rest there are no unknowns."""
         return np.zeros((motion.periods + 1, 0))
 
@@ -113,7 +113,7 @@ class NativeFlow:
         """See `orbits.flows.native.measures.gauged`."""
         return measures.gauged(model, params, values)
 
-    def described(self, motion: Motion) -> dict[str, Any]:
+    def described(self, motion: Motion[Model]) -> dict[str, Any]:
         """Velocities and positions at the events, in the units that are shown."""
         model, table = motion.model, events_of(motion)
         long, fast = (float(model.gauge(kind, motion.params)) for kind in ("length", "velocity"))
@@ -132,21 +132,21 @@ class NativeFlow:
             nodes.append(entry)
         return {"events": "".join(motion.word.events), "nodes": nodes}
 
-    def kind(self, motion: Motion) -> str:
+    def kind(self, motion: Motion[Model]) -> str:
         """Told by the events."""
         return "periodic" if motion.word.impacts else "sliding" if len(motion.word) else "stuck"
 
-    def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing | None:
+    def vanishing(self, motion: Motion[Model], index: int, unit: int) -> Vanishing | None:
         """See `orbits.flows.native.vanishing`."""
         return vanishing.vanishing(motion, index, unit)
 
-    def placed(self, motion: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray:
+    def placed(self, motion: Motion[Model], found: Vanishing, place: int, change: Change) -> np.ndarray:
         """See `orbits.flows.native.vanishing`."""
         return vanishing.placed(motion, found, place, change)
 
-    def restitution(self, motion: Motion, place: int) -> float:
+    def restitution(self, motion: Motion[Model], place: int) -> float:
         """Newton's coefficient of the wall that is hit."""
         return float(motion.model.restitutions(motion.params)[motion.word.letter(place).contact])
 
-    def without_events(self, motion: Motion) -> None:
+    def without_events(self, motion: Motion[Model]) -> None:
         """That is the absorber at rest, whose border has rules of its own."""

@@ -82,7 +82,7 @@ def dimensionless(
 
         result |= own_measures(own, model, word, periods, nodes, params)
     elif own:
-        result["C2"] = model.column(params, model.driven_by) ** 2
+        result["C2"] = np.asarray(model.column(params, model.driven_by)) ** 2
     for name in wanted:
         if name in result:
             continue
@@ -120,7 +120,7 @@ def dimensionless(
 
 def _duration(model: Model, periods: int, params: np.ndarray) -> np.ndarray:
     """Duration of the orbit in the machine's own time, shape (m,)."""
-    return 2.0 * np.pi * periods / model.phase_speed(params)
+    return 2.0 * np.pi * periods / np.asarray(model.phase_speed(params))
 
 
 def _load(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 STICK, SLIP = CODES["s"], CODES["u"]
 
 
-class ReferenceKernels(PlainKernels):
+class ReferenceKernels(PlainKernels[CycleData, Workspace]):
     """Cycles of one model, in plain Python and numpy: what the native core is compared with.
 
     Parameters

@@ -84,7 +84,7 @@ class RestEquations:
         return np.asarray(spectrum, dtype=complex)
 
 
-class RestKernels(PlainKernels):
+class RestKernels(PlainKernels[RestEquations, RestWork]):
     """What a continuation, a locus of its border, and Newton's method call."""
 
     column = 2

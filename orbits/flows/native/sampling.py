@@ -6,6 +6,7 @@ import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
 from orbits.flows.protocol import Motion
+from orbits.machines.base import Model
 from orbits.machines.catalogue import stepper
 from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
 from orbits.machines.states import state_of, states_of
@@ -14,12 +15,12 @@ from orbits.machines.stepping import Machine
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
 
-def flight(orbit: Motion, segment: int, ahead: np.ndarray) -> np.ndarray:
+def flight(orbit: Motion[Model], segment: int, ahead: np.ndarray) -> np.ndarray:
     """w, w', v, v' at phases `ahead` (radians, shape (m,)) after event `segment`, in the mode that follows it; shape (m, 4)."""
     return _ahead(orbit, _begins(orbit, segment), np.ascontiguousarray(ahead, dtype=float))
 
 
-def _begins(orbit: Motion, segment: int) -> np.ndarray:
+def _begins(orbit: Motion[Model], segment: int) -> np.ndarray:
     word = orbit.word
     engine = stepper(orbit.model.name)
     return state_of(
@@ -27,19 +28,19 @@ def _begins(orbit: Motion, segment: int) -> np.ndarray:
     )
 
 
-def _ahead(orbit: Motion, state: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+def _ahead(orbit: Motion[Model], state: np.ndarray, ahead: np.ndarray) -> np.ndarray:
     states, out = np.empty((len(ahead), len(state))), np.empty((len(ahead), 4))
     states[...] = state
     stepper(orbit.model.name).sample(states, orbit.params, ahead, out)
     return out
 
 
-def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
+def sample(orbit: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
     """Positions and velocities over one period, events included with both their velocities.
 
     Parameters
     ----------
-    orbit : Motion
+    orbit : Motion[Model]
     points : int
         About how many points; at least two per segment.
 
@@ -77,7 +78,7 @@ def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
     }
 
 
-def positions(orbit: Motion, instants: int) -> np.ndarray:
+def positions(orbit: Motion[Model], instants: int) -> np.ndarray:
     """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
     count = instants * orbit.periods
     if not len(orbit.nodes):
@@ -136,7 +137,7 @@ def reference_positions(
     return out[:, 0]
 
 
-def _at_rest(orbit: Motion, points: int) -> dict[str, np.ndarray]:
+def _at_rest(orbit: Motion[Model], points: int) -> dict[str, np.ndarray]:
     """The same of the absorber that rides with its cavity."""
     phase = np.linspace(0.0, 2.0 * np.pi, points)
     omega, rest = orbit.parameters["frequency"], orbit.model.rest
@@ -149,14 +150,14 @@ def _at_rest(orbit: Motion, points: int) -> dict[str, np.ndarray]:
     }  # fmt: skip
 
 
-def points(orbit: Motion) -> np.ndarray:
+def points(orbit: Motion[Model]) -> np.ndarray:
     """w, w' (, v, v') just after the events, shape (L, d)."""
     engine, word = stepper(orbit.model.name), orbit.word
     states = states_of(engine, orbit.params, word.codes, word.mode_codes, orbit.nodes)
     return states[:, list(engine.places)]
 
 
-def slowest(orbit: Motion, segment: int) -> tuple[float, np.ndarray]:
+def slowest(orbit: Motion[Model], segment: int) -> tuple[float, np.ndarray]:
     """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
     length, mode, state = float(orbit.durations[segment]), orbit.word.modes[segment], _begins(orbit, segment)
     ahead = np.linspace(0.0, length, 402)[1:-1]

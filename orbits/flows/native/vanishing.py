@@ -14,6 +14,7 @@ from orbits.contacts.dry_friction import STUCK
 from orbits.contacts.letters import HIT, SLIP
 from orbits.flows.native.sampling import flight, slowest
 from orbits.flows.protocol import Motion, Vanishing
+from orbits.machines.base import Model
 from orbits.machines.events import events_of
 from orbits.settings import EVENTS, GROWING
 from orbits.words.alphabet import FLOOR, LEFT, RIGHT, Watch
@@ -22,7 +23,7 @@ from orbits.words.margins import place_of
 FLIGHT = 0  # column of the margin that watches a flight
 
 
-def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing | None:
+def vanishing(orbit: Motion[Model], index: int, unit: int) -> Vanishing | None:
     """What vanishes with margin `index` of a border orbit, over its whole cycle; see `orbits.flows.protocol`."""
     word = orbit.word
     place, watched = place_of(word, index)
@@ -49,7 +50,7 @@ def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing | None:
     return Vanishing(site, FLOOR, (ahead, path))
 
 
-def _soft(orbit: Motion, place: int) -> int | None:
+def _soft(orbit: Motion[Model], place: int) -> int | None:
     """The event at either end of a flight that is an impact of vanishing speed."""
     places = (place, (place + 1) % len(orbit.word))
     speed = EVENTS.touch * math.prod(orbit.model.natural_units(orbit.params))
@@ -57,7 +58,7 @@ def _soft(orbit: Motion, place: int) -> int | None:
     return next((k for k in places if abs(rates[k]) < speed), None)
 
 
-def _touching(orbit: Motion, place: int) -> tuple[tuple[float, np.ndarray] | None, int]:
+def _touching(orbit: Motion[Model], place: int) -> tuple[tuple[float, np.ndarray] | None, int]:
     """Where a flight that reverses freely is closest to a wall, and which."""
     ahead = np.linspace(0.0, float(orbit.durations[place]), 20002)[1:-1]
     path = flight(orbit, place, ahead)
@@ -69,13 +70,13 @@ def _touching(orbit: Motion, place: int) -> tuple[tuple[float, np.ndarray] | Non
     return (float(ahead[touch]), path[touch]), _nearer(orbit, path[touch, 0])
 
 
-def _nearer(orbit: Motion, w: float) -> int:
+def _nearer(orbit: Motion[Model], w: float) -> int:
     """The nearer wall."""
     left, right = orbit.model.walls(orbit.params)
     return LEFT if left - w < w - right else RIGHT
 
 
-def placed(orbit: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray:
+def placed(orbit: Motion[Model], found: Vanishing, place: int, change: Change) -> np.ndarray:
     """The nodes of a change's new events: (Psi, B+) at impacts, (Psi, w) elsewhere, and what the machine adds."""
     word, nodes = orbit.word, orbit.nodes
     letters = word.alphabet.letters
@@ -98,7 +99,7 @@ def placed(orbit: Motion, found: Vanishing, place: int, change: Change) -> np.nd
     return np.array(rows) if rows else nodes[:0]
 
 
-def _at(orbit: Motion, place: int, spot: Spot, found: Vanishing) -> tuple[np.ndarray, float, bool]:
+def _at(orbit: Motion[Model], place: int, spot: Spot, found: Vanishing) -> tuple[np.ndarray, float, bool]:
     """The node of a spot as that of an event off the walls or as the event's own, v' there, and whether it is an impact's."""
     nodes = orbit.nodes
     if spot.node is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,14 +17,20 @@ from orbits.flows.protocol import PLAIN, Approach
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
 from orbits.machines.path import along
+from orbits.numbers import Reals
 from orbits.settings import SOLVING
 from orbits.words import Word
+
+if TYPE_CHECKING:
+    from orbits.integrators.expressions import Values
+    from orbits.integrators.protocol import Watch
+    from orbits.machines.page.patterns import Guard
 
 TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
 
 
-class PageKernels(PlainKernels):
+class PageKernels(PlainKernels["PageEquations", flights.Work]):
     """The functions that a continuation calls; plain Python round integrated flights."""
 
     column = 3
@@ -57,7 +63,7 @@ class PageKernels(PlainKernels):
         """Multipliers as (re, im) pairs, then the margins, into `row`."""
         m = data.n_multipliers
         values = flights.multipliers(data, work)
-        row[0 : 2 * m : 2], row[1 : 2 * m : 2] = values.real, values.imag
+        row[0 : 2 * m : 2], row[1 : 2 * m : 2] = np.real(values), np.imag(values)
         fill_margins(data, u, work, row[2 * m :])
 
 
@@ -158,7 +164,7 @@ class PageEquations:
         self.kernels, self.data = KERNELS, self
         self._assign()
 
-    def _still(self, frictions: Sequence[int]) -> tuple[tuple[int, Any], ...]:
+    def _still(self, frictions: Sequence[int]) -> tuple[tuple[int, Values], ...]:
         """For each friction that sticks for ever: the state whose closing its velocity replaces, and the velocity compiled."""
         e, found, taken = self.machine.equations, [], set(self.loose)
         for j in frictions:
@@ -196,7 +202,7 @@ class PageEquations:
             (compiled.rates(key), np.array([i for i in range(self.length) if keys[i] == key]))
             for key in dict.fromkeys(keys)
         ]
-        events: dict[int, tuple[Any, list[int], bool]] = {}
+        events: dict[int, tuple[Values | None, list[int], bool]] = {}
         for i in range(self.length):
             letter = self.letters[i + 1]
             if letter.kind == STROBE and not self.forced:
@@ -212,7 +218,7 @@ class PageEquations:
         self._keys = keys
 
     @cached_property
-    def guard_groups(self) -> list[tuple[Any, Any, Any, list[int]]]:
+    def guard_groups(self) -> list[tuple[Values, list[Guard], Watch, list[int]]]:
         """(guards compiled, guards, watch, flights) per pattern."""
         compiled, e = self.machine.compiled, self.machine.equations
         return [
@@ -266,7 +272,7 @@ class PageEquations:
         end[-1] = begin[0] + self.shift
         return begin, end
 
-    def clock_rate(self, numbers: np.ndarray) -> np.ndarray:
+    def clock_rate(self, numbers: np.ndarray) -> Reals:
         """Clock per unit of time, from runtime numbers (L, ...)."""
         return self.machine.phase_speed(numbers)
 

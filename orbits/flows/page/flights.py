@@ -12,7 +12,7 @@ c_{i+1} through its ends only: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
@@ -23,8 +23,7 @@ from orbits.numbers import ROUNDOFF
 from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
-    from orbits.machines.page.machine import Machine
-    from orbits.words import Word
+    from orbits.flows.page.cycle_equations import PageEquations
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
@@ -52,46 +51,6 @@ class Work(NamedTuple):
     turned: np.ndarray  # 1 where F_u stands for its transpose
 
 
-class Pieces(Protocol):
-    """What the kernels read of the equations, their `data` (`orbits.flows.page.cycle_equations.PageEquations`)."""
-
-    machine: Machine
-    word: Word
-    parameter: str
-    params: np.ndarray
-    path: np.ndarray
-    index: int
-    size: int
-    length: int
-    dimension: int
-    twist: float
-    shift: float
-    forced: bool
-    symmetric: bool
-    movable: bool
-    pinned: tuple[int, ...]
-    unit: np.ndarray
-    allowed: Any
-    base_numbers: np.ndarray
-    clocks: Any
-    contacts: int
-    event_groups: Any
-    flight_groups: Any
-    guard_groups: Any
-    identity: Any
-    letters: Any
-    minus: Any
-    n_multipliers: int
-    owned: Any
-    rate_groups: Any
-    sparsity: Any
-    still: Any
-    trivial: Any
-    turned: Any
-
-    def clock_rate(self, numbers: np.ndarray) -> Any: ...
-
-
 def workspace(length: int, states: int, numbers: int) -> Work:
     """Arrays for `length` nodes of `states` + 1 unknowns and one active parameter."""
     L, n, d = length, states, states + 1
@@ -112,7 +71,7 @@ def workspace(length: int, states: int, numbers: int) -> Work:
     )
 
 
-def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
+def linearise(data: PageEquations, u: np.ndarray, p: float, work: Work) -> float:
     """F, its blocks and its parameter derivative, into `work`; returns the largest absolute residual (inf: not evaluable)."""
     n, length = data.size, data.length
     nodes = np.asarray(u).reshape(length, n + 1)
@@ -186,7 +145,7 @@ def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
     return size if math.isfinite(size) else math.inf
 
 
-def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
+def _fly(data: PageEquations, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
     """Integrate every flight, into `work.flown`; False if one blows up."""
     numbers, flown = work.numbers, work.flown
     for flight, many, places in data.flight_groups:
@@ -206,7 +165,7 @@ def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, wo
 
 
 def bordered(
-    data: Pieces, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+    data: PageEquations, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`; returns the determinant's sign."""
     size = data.dimension
@@ -236,7 +195,7 @@ def bordered(
     return sign
 
 
-def fill(data: Pieces, work: Work, matrix: np.ndarray) -> None:
+def fill(data: PageEquations, work: Work, matrix: np.ndarray) -> None:
     """The blocks of F_u in a dense matrix."""
     d, length = data.size + 1, data.length
     last_own, last_following = closing(data, work)
@@ -255,7 +214,7 @@ def fill(data: Pieces, work: Work, matrix: np.ndarray) -> None:
         matrix[: length * d, : length * d] = matrix[: length * d, : length * d].T.copy()
 
 
-def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
+def closing(data: PageEquations, work: Work) -> tuple[np.ndarray, np.ndarray]:
     """The blocks of the last row, closed by the mirror."""
     own, following = work.own[-1], work.following[-1] * data.turned
     for row, _ in data.still:
@@ -265,7 +224,12 @@ def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _sparse(
-    data: Pieces, work: Work, border: np.ndarray, sides: np.ndarray, step: np.ndarray, tangent: np.ndarray
+    data: PageEquations,
+    work: Work,
+    border: np.ndarray,
+    sides: np.ndarray,
+    step: np.ndarray,
+    tangent: np.ndarray,
 ) -> float:
     from scipy.sparse import csc_matrix
     from scipy.sparse.linalg import splu
@@ -321,7 +285,7 @@ def sparsity(length: int, d: int) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def factors(data: Pieces, work: Work) -> np.ndarray:
+def factors(data: PageEquations, work: Work) -> np.ndarray:
     """Derivatives of node i + 1 by node i, shape (L, m, m): with the clock for a forced machine, states alone otherwise."""
     own, following = work.own, work.following
     with np.errstate(all="ignore"):
@@ -339,14 +303,14 @@ def factors(data: Pieces, work: Work) -> np.ndarray:
     return result
 
 
-def multipliers(data: Pieces, work: Work) -> Any:
+def multipliers(data: PageEquations, work: Work) -> np.ndarray:
     """Multipliers of the closed map between event surfaces, largest first; the one that is always zero is left out."""
     chain = factors(data, work)
     if not np.all(np.isfinite(chain)):
         return np.full(data.n_multipliers, np.nan, complex)
     size = chain.shape[1]
     norms = np.abs(chain).sum(axis=2).max(axis=1)
-    if np.log(np.maximum(norms, 1.0)).sum() < np.log(SAFE) or len(chain) == 1:
+    if np.log(np.maximum(norms, 1.0)).sum() < np.log(SOLVING.safe_product) or len(chain) == 1:
         product = chain[0]
         for factor in chain[1:]:
             product = factor @ product
@@ -357,9 +321,6 @@ def multipliers(data: Pieces, work: Work) -> Any:
     for _ in range(data.trivial):  # a motion that may be shifted as a whole, a friction that sticks for ever
         values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
     return values[: data.n_multipliers]
-
-
-SAFE = 1e5  # product of norms up to which the product of the factors keeps the multipliers that matter
 
 
 def _periodic(chain: np.ndarray, size: int) -> np.ndarray:

@@ -45,7 +45,7 @@ class PageFlow:
         """The same by name."""
         return tuple(model.states[j] for j in unmoved(model))
 
-    def points(self, motion: Motion) -> np.ndarray:
+    def points(self, motion: Motion[Machine]) -> np.ndarray:
         """The states."""
         return motion.nodes[:, 1:]
 
@@ -66,22 +66,22 @@ class PageFlow:
         """States that no rate and no event of the word knows."""
         return tuple(1 + j for j in loose_states(model, word))
 
-    def sample(self, motion: Motion, points: int) -> dict[str, np.ndarray]:
+    def sample(self, motion: Motion[Machine], points: int) -> dict[str, np.ndarray]:
         """See `orbits.flows.page.sampling.sample`."""
         return sampling.sample(motion, points)
 
-    def positions(self, motion: Motion, instants: int) -> np.ndarray:
+    def positions(self, motion: Motion[Machine], instants: int) -> np.ndarray:
         """States that no wall pushes; see `orbits.flows.page.sampling.states_at`."""
         phases = np.linspace(0.0, 2.0 * np.pi * motion.periods, instants * motion.periods, endpoint=False)
         return sampling.states_at(motion, phases)[:, unmoved(motion.model)]
 
-    def image(self, motion: Motion) -> np.ndarray:
+    def image(self, motion: Motion[Machine]) -> np.ndarray:
         """All states with the other sign."""
         image = -motion.nodes
         image[:, 0] = motion.nodes[:, 0]
         return image
 
-    def strobed(self, motion: Motion) -> np.ndarray:
+    def strobed(self, motion: Motion[Machine]) -> np.ndarray:
         """See `orbits.flows.page.sampling.strobed`."""
         return sampling.strobed(motion.model, motion.word, motion.periods, motion.nodes[0], motion.params)[
             :, 1:
@@ -124,7 +124,7 @@ class PageFlow:
         """They are."""
         return values
 
-    def described(self, motion: Motion) -> dict[str, Any]:
+    def described(self, motion: Motion[Machine]) -> dict[str, Any]:
         """Clock and states after the events."""
         clock = "phase" if motion.model.forced else "duration"
         nodes = [
@@ -133,7 +133,7 @@ class PageFlow:
         ]
         return {"nodes": nodes, **({} if len(motion.word) else {"rest": "no events"})}
 
-    def kind(self, motion: Motion) -> str:
+    def kind(self, motion: Motion[Machine]) -> str:
         """A motion without events is one, too, unless no state changes."""
         if len(motion.word):
             return "periodic"
@@ -141,15 +141,15 @@ class PageFlow:
         moves = any(np.ptp(table[name]) > EVENTS.still for name in motion.model.states)
         return "periodic" if moves else "stuck"
 
-    def vanishing(self, motion: Motion, index: int, unit: int) -> Vanishing:
+    def vanishing(self, motion: Motion[Machine], index: int, unit: int) -> Vanishing:
         """See `orbits.flows.page.vanishing`."""
         return vanishing.vanishing(motion, index, unit)
 
-    def placed(self, motion: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray:
+    def placed(self, motion: Motion[Machine], found: Vanishing, place: int, change: Change) -> np.ndarray:
         """See `orbits.flows.page.vanishing`."""
         return vanishing.placed(motion, found, place, change)
 
-    def restitution(self, motion: Motion, place: int) -> float:
+    def restitution(self, motion: Motion[Machine], place: int) -> float:
         """Of the wall that is hit, as its formula has it there."""
         model, node = motion.model, motion.nodes[place]
         clock = node[:1] if model.forced else np.zeros(1)
@@ -157,7 +157,7 @@ class PageFlow:
         rebound = model.compiled.rebound(motion.word.letter(place).contact)
         return float(rebound(node[None, 1:], clock, numbers[None])[0, 1])
 
-    def without_events(self, motion: Motion) -> np.ndarray:
+    def without_events(self, motion: Motion[Machine]) -> np.ndarray:
         """The nodes at phase zero; of a self-excited motion at the extreme of the first state that moves."""
         if not motion.model.forced:
             table = sampling.sample(motion, 4000)

@@ -131,7 +131,7 @@ def _loads(
 def _periods(machine: Machine, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
     if not machine.forced:
         return nodes[:, :, 0].sum(axis=1)
-    return 2.0 * np.pi * periods / machine.phase_speed(params)
+    return 2.0 * np.pi * periods / np.asarray(machine.phase_speed(params))
 
 
 def _spans(machine: Machine, periods: int, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -17,7 +17,7 @@ def strobed(machine: Machine, word: Word, periods: int, node: np.ndarray, params
     return np.column_stack([clocks, watch.path(node[1:], clocks, machine.compiled.numbers(params, mode))])
 
 
-def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
+def sample(orbit: Motion[Machine], points: int = 400) -> dict[str, np.ndarray]:
     """States over one period, events included with the states before and after them.
 
     Returns
@@ -55,7 +55,7 @@ def sample(orbit: Motion, points: int = 400) -> dict[str, np.ndarray]:
     return result
 
 
-def states_at(orbit: Motion, phases: np.ndarray) -> np.ndarray:
+def states_at(orbit: Motion[Machine], phases: np.ndarray) -> np.ndarray:
     """States of a forced motion at phases from 0 on, shape (m, n)."""
     compiled, e = orbit.model.compiled, orbit.model.equations
     whole, word = 2.0 * np.pi * orbit.periods, orbit.word

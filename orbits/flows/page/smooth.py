@@ -8,7 +8,6 @@ rules of the contacts: the cycle is read as an orbit with the word "", counted f
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -19,13 +18,14 @@ from contvines.flows.equilibria import Equilibria
 from contvines.flows.files import problem_of
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
+from orbits.flows.catalogue import flow_of
 from orbits.flows.page import measures
-from orbits.flows.page.cycle_equations import PageEquations
 from orbits.flows.protocol import checked_start
 from orbits.flows.solving import newton
 from orbits.integrators.expressions import derivatives, variable, written
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.stored import machine_again
+from orbits.settings import EVENTS, SOLVING
 from orbits.words.margins import border_kind
 from orbits.words.word import Word
 
@@ -33,22 +33,27 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from contvines.flows.flow import Problem
+    from contvines.flows.equilibria import Equilibria
+    from contvines.flows.problem import BorderPoint
+    from orbits.flows.protocol import Equations, Motion
     from orbits.machines.page.machine import Machine
+    from orbits.problem import OrbitProblem
 
 SAMPLES = (
     800  # of a motion that is handed over to collocation, and of a cycle that is searched for its extreme
 )
-DEGREE, ERROR = (
-    7,
-    1e-9,
-)  # of cycles, whose distances from contacts are to be known well between the mesh points, too
-ROUNDED = 1e-12  # states that are smaller than this part of the largest are zero but for rounding
-AT_BORDER = 1e-13  # of a guard, relative to the states
+DEGREE = 7  # of cycles, whose distances from contacts are to be known well between the mesh points, too
 SECANTS = 20
-SWEEPS, NEAR = (
-    6,
-    1e-3,
-)  # of Newton's method to an equilibrium, and how far from a state, relative to 1 + its size, that may be
+SWEEPS = 6  # of Newton's method to an equilibrium
+
+
+class Touching(NamedTuple):
+    """A motion that touches a contact, as a border of orbits."""
+
+    u: np.ndarray
+    value: float
+    tangent: np.ndarray
+    margin_index: int
 
 
 class WithoutEvents(FlowProblem):
@@ -91,7 +96,7 @@ class WithoutEvents(FlowProblem):
         self.contacts = [guard.contact for guard in pattern.guards]
         super().__init__(
             function(pattern.rates),
-            np.where(np.abs(state) > ROUNDED * np.abs(state).max(), state, 0.0),
+            np.where(np.abs(state) > EVENTS.zero * np.abs(state).max(), state, 0.0),
             dict(zip(names, map(float, params), strict=True)),
             jacobian=rows(derivatives(pattern.rates, e.x)),
             derivative={name: function([row[0] for row in slopes]) for name, slopes in by_parameters.items()},
@@ -103,7 +108,7 @@ class WithoutEvents(FlowProblem):
             mirror=(lambda x: -x) if image else None,
             name=machine.name,
             degree=DEGREE,
-            error=ERROR,
+            error=SOLVING.mesh_error,
         )
 
     # ------------------------------------------------------------------ names, measures, files
@@ -142,8 +147,13 @@ class WithoutEvents(FlowProblem):
         return "orbits.flows.page.smooth:rebuild"
 
     # ------------------------------------------------------------------ what else there is
-    def population(
-        self, over: str | None = None, *, box: Any = None, around: Any = None, **values: float
+    def population(  # of the machine's own class, with other columns than that of a flow
+        self,
+        over: str | None = None,
+        *,
+        box: Sequence[tuple[float, float]] | None = None,
+        around: np.ndarray | None = None,
+        **values: float,
     ) -> Any:
         """Starts of the machine."""
         over = over or self.values.varying
@@ -169,7 +179,7 @@ class WithoutEvents(FlowProblem):
         """That of the contact whose guard becomes zero."""
         return border_kind(self.word, self.contacts[k])
 
-    def beyond(self, problem: Problem, point: Any, k: int) -> list[Any]:
+    def beyond(self, problem: Problem, point: BorderPoint, k: int) -> list[Any]:
         """What goes on from a cycle that touches a contact, as the contacts' rules have it."""
         if not isinstance(problem, CycleProblem):
             return []
@@ -180,11 +190,9 @@ class WithoutEvents(FlowProblem):
         row = np.zeros(orbits.dimension + 1)
         row[-1] = 1.0
         tangent = newton(orbits.equations, u, p, row)[3]
-        return list(
-            orbits.beyond(SimpleNamespace(u=u, value=p, tangent=tangent, margin_index=self.contacts[k]))
-        )
+        return list(orbits.beyond(Touching(u, p, tangent, self.contacts[k])))
 
-    def dead_end(self, problem: Problem, point: Any, k: int) -> str:
+    def dead_end(self, problem: Problem, point: BorderPoint, k: int) -> str:
         """Where the contact is touched."""
         return (
             super()
@@ -193,7 +201,7 @@ class WithoutEvents(FlowProblem):
             .replace(" stops the motion: it", " is touched: its guard")
         )
 
-    def _orbits(self, problem: Problem, p: float) -> Any:
+    def _orbits(self, problem: Problem, p: float) -> OrbitProblem:
         """The same motions as orbits with the word ""."""
         from orbits.problem import OrbitProblem
 
@@ -221,9 +229,7 @@ def extreme_of(machine: Machine, word: Word, states: np.ndarray, period: float) 
     return np.append(period, states[int(np.argmax(states[:, first]))])
 
 
-def on_border(
-    equations: PageEquations, u: np.ndarray, p: float, margin: int
-) -> tuple[np.ndarray | None, float]:
+def on_border(equations: Equations, u: np.ndarray, p: float, margin: int) -> tuple[np.ndarray | None, float]:
     """The orbit beside a guess on which a margin is zero, by the secant method in the parameter."""
     row = np.empty(2 * equations.n_multipliers + equations.n_margins)
 
@@ -234,15 +240,15 @@ def on_border(
         equations.kernels.examine(equations, found, p, equations.scratch, row)
         return found, float(row[2 * equations.n_multipliers + margin])
 
-    before, here, q = at(p)[1], np.nan, p + 1e-6 * max(abs(p), 1e-3)
+    before, here, q = at(p)[1], np.nan, p + SOLVING.shift * (1.0 + abs(p))
     for _ in range(SECANTS):
         u, here = at(q)
         if not np.isfinite(here) or here == before:
             break
-        if abs(here) <= AT_BORDER * (1.0 + np.abs(u).max()):
+        if abs(here) <= EVENTS.zero * (1.0 + np.abs(u).max()):
             return u, q
         p, q, before = q, q - here * (q - p) / (here - before), here
-    return (u, q) if np.isfinite(here) and abs(here) < 1e-9 else (None, q)
+    return (u, q) if np.isfinite(here) and abs(here) < SOLVING.near else (None, q)
 
 
 def smooth(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state: np.ndarray) -> WithoutEvents:
@@ -279,7 +285,7 @@ def beside(machine: Machine, state: Mapping[str, float] | None = None, **paramet
     return smooth(machine, mode, params, x)
 
 
-def cycles_of(orbit: Any):
+def cycles_of(orbit: Motion[Machine]):
     """The cycle, by collocation, of a self-excited orbit without events.
 
     Raises
@@ -287,10 +293,11 @@ def cycles_of(orbit: Any):
     ValueError
         If Newton's method does not lead to it.
     """
-    table = orbit.flow.sample(orbit, SAMPLES)
+    table = flow_of(orbit.model).sample(orbit, SAMPLES)
     states = np.column_stack([table[name] for name in orbit.model.states])
     flow = smooth(orbit.model, orbit.word.modes[0], orbit.params, states[0])
-    return flow.cycle(table["time"], states, **orbit.parameters)
+    values: dict[str, Any] = dict(orbit.parameters)
+    return flow.cycle(table["time"], states, **values)
 
 
 def cycle_near(machine: Machine, word: Word, params: np.ndarray, state: np.ndarray) -> np.ndarray | None:
@@ -330,12 +337,12 @@ def rest_near(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state
     field = flow.field.against(flow.values.against(flow.values.varying, values))
     x, p = np.array(state, dtype=float), values[flow.values.varying]
     for _ in range(SWEEPS):
-        x = x - np.linalg.lstsq(field.jacobian(x[None], p)[0], field(x[None], p)[0], rcond=1e-13)[0]
-    near = NEAR * (1.0 + np.abs(state).max())
+        x = x - np.linalg.lstsq(field.jacobian(x[None], p)[0], field(x[None], p)[0], rcond=EVENTS.zero)[0]
+    near = SOLVING.equilibrium * (1.0 + np.abs(state).max())
     return Rest(flow, x, values) if np.abs(x - state).max() <= near else None
 
 
-def rebuild(description: Mapping[str, Any], trust: bool = False) -> Any:
+def rebuild(description: Mapping[str, Any], trust: bool = False) -> Equilibria | CycleProblem | None:
     """Equilibria or cycles of a machine without events, from what ``describe()`` returned; None where its machine file is not to be run."""
     about = description["flow"]
     machine = machine_again(about["machine"], trust)

@@ -6,12 +6,13 @@ import numpy as np
 
 from orbits.contacts.changes import Change, Site, Spot
 from orbits.flows.protocol import Motion, Vanishing
+from orbits.machines.page.machine import Machine
 from orbits.numbers import SMALLEST
 from orbits.settings import EVENTS, GROWING
 from orbits.words.margins import place_of
 
 
-def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing:
+def vanishing(orbit: Motion[Machine], index: int, unit: int) -> Vanishing:
     """What vanishes with margin `index` of a border orbit, over its whole cycle; see `orbits.flows.protocol`."""
     place, watched = place_of(orbit.word, index)
     spans = orbit.durations
@@ -24,14 +25,14 @@ def vanishing(orbit: Motion, index: int, unit: int) -> Vanishing:
     return Vanishing(site, watched, (ahead, state))
 
 
-def _end(orbit: Motion, place: int, share: float) -> int:
+def _end(orbit: Motion[Machine], place: int, share: float) -> int:
     """The event at that end of a flight at which a guard vanishes; -1 inside it."""
     if not len(orbit.word) or EVENTS.at_end <= share <= 1.0 - EVENTS.at_end:
         return -1
     return (place if share < EVENTS.at_end else place + 1) % len(orbit.word)
 
 
-def _closest(orbit: Motion, place: int, contact: int) -> tuple[float, np.ndarray, int]:
+def _closest(orbit: Motion[Machine], place: int, contact: int) -> tuple[float, np.ndarray, int]:
     """Where the guards of a contact come closest to zero in a flight: clock from its start, state, sign of the guard's event."""
     compiled, e = orbit.model.compiled, orbit.model.equations
     mode = orbit.word.mode(place)
@@ -58,13 +59,13 @@ def _closest(orbit: Motion, place: int, contact: int) -> tuple[float, np.ndarray
     return found
 
 
-def placed(orbit: Motion, found: Vanishing, place: int, change: Change) -> np.ndarray:
+def placed(orbit: Motion[Machine], found: Vanishing, place: int, change: Change) -> np.ndarray:
     """The nodes of a change's new events."""
     rows = [_at(orbit, place, spot, found) for spot in change.spots]
     return np.array(rows) if rows else orbit.nodes[:0]
 
 
-def _at(orbit: Motion, place: int, spot: Spot, found: Vanishing) -> np.ndarray:
+def _at(orbit: Motion[Machine], place: int, spot: Spot, found: Vanishing) -> np.ndarray:
     """Clock and states of a spot; a self-excited orbit's inserted events have the clock from the flight's start."""
     forced, nodes = orbit.model.forced, orbit.nodes
     if spot.node is None:

@@ -88,6 +88,6 @@ def check_energy(e: Equations, values: list[float], wall: int) -> None:
     """
     if not all(value > 0.0 for value in values):
         raise PageError(
-            f"energy: the push of wall {e.contacts[wall].letter!r} moves a mass of {min(values):.4g}; give the energy of all bodies, "
+            f"energy: the push of {e.contacts[wall].described} moves a mass of {min(values):.4g}; give the energy of all bodies, "
             "their kinetic energies among it, in joules"
         )

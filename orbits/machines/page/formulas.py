@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, overload
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from typing import NoReturn
+
+    from orbits.symbols import Plain
 
 
 class PageError(ValueError):
     """A page that is no machine; the sentence names the contact or field, what is wrong with it, and the way out."""
 
 
-class States(Sequence):
+class States(Sequence["Plain"]):
     """The states as a page sees them: a sequence that also knows their names."""
 
-    def __init__(self, names: Sequence[str], values: Sequence[Any]) -> None:
+    def __init__(self, names: Sequence[str], values: Sequence[Plain]) -> None:
         self._values = tuple(values)
         self.__dict__.update(zip(names, self._values))
 
-    def __getitem__(self, place: int | slice) -> Any:
+    @overload
+    def __getitem__(self, place: int) -> Plain: ...
+    @overload
+    def __getitem__(self, place: slice) -> tuple[Plain, ...]: ...
+    def __getitem__(self, place: int | slice) -> Plain | tuple[Plain, ...]:
         return self._values[place]
 
     def __len__(self) -> int:
         return len(self._values)
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> Plain:
         known = ", ".join(k for k in self.__dict__ if k != "_values")
         raise PageError(f"state.{name}: there is no state of this name; the states are {known}")
 
@@ -35,11 +40,11 @@ class States(Sequence):
 class Named:
     """Parameters, or contact forces and signs, by name; an unknown one is refused with a sentence."""
 
-    def __init__(self, what: str, values: Mapping[str, Any]) -> None:
+    def __init__(self, what: str, values: Mapping[str, Plain]) -> None:
         self._what = what
         self.__dict__.update(values)
 
-    def __getattr__(self, name: str) -> Any:
+    def __getattr__(self, name: str) -> Plain:
         known = ", ".join(k for k in self.__dict__ if k != "_what")
         raise PageError(
             f"{self._what}.{name}: the machine declares no such {'parameter' if self._what == 'p' else 'contact'}; "
@@ -60,7 +65,7 @@ class NoPhase:
     __pow__ = __neg__ = __float__ = __array__ = _refuse
 
 
-def called(what: str, function: Callable, *arguments: object) -> Any:
+def called(what: str, function: object, *arguments: object) -> object:
     if not callable(function):
         given = "state, phase, p, contact" if what == "motion" else "state, phase, p"
         raise PageError(f"{what} is {function!r}; give a function, for example lambda {given}: ...")

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.page import module_at
 
 
-def load_page(path: str | Path, name: str) -> Any:
+def load_page(path: str | Path, name: str) -> Machine:
     """Run a page and take the machine that it names.
 
     The page is Python and is run: only call this for a file that the user has named.

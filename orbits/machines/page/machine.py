@@ -20,10 +20,11 @@ from orbits.machines.page.energies import CONTACT, UNITS, check_energy, impact_m
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.mirror import MirrorImage
 from orbits.machines.page.page import Page, again, object_name, page_of
-from orbits.machines.page.patterns import Equations
+from orbits.machines.page.patterns import Contact, Equations
 from orbits.machines.page.si import Units
 from orbits.machines.parameters import ParameterError
 from orbits.machines.varying import Varying
+from orbits.numbers import Reals
 from orbits.words import Word
 from orbits.words.alphabet import Alphabet
 
@@ -80,7 +81,7 @@ class Machine(Varying):
         states: Sequence[str],
         parameters: Mapping[str, float],
         motion: Callable,
-        contacts: Sequence[Any] = (),
+        contacts: Sequence[Contact] = (),
         phase_rate: str | None = None,
         mirror: Mapping[str, str] | None = None,
         starts: Mapping[str, tuple[float, float]] | None = None,
@@ -97,7 +98,8 @@ class Machine(Varying):
         self.parameters = {key: float(value) for key, value in parameters.items()}
         self.parameter_names = tuple(self.parameters)
         self.starts = names.check_starts(starts, self.states)
-        self.phase_rate, self.contacts = phase_rate, tuple(contacts)
+        self.phase_rate = phase_rate
+        self.contacts: tuple[Any, ...] = tuple(contacts)
         self.forced = phase_rate is not None
         self.default_parameter = phase_rate or self.parameter_names[0]
         self.node_names = ("phase" if self.forced else "duration", *self.states)
@@ -195,7 +197,7 @@ class Machine(Varying):
             self.check_value(key, value)
         return np.array([merged[key] for key in self.parameter_names])
 
-    def phase_speed(self, params: np.ndarray) -> Any:
+    def phase_speed(self, params: np.ndarray) -> Reals:
         """How fast the phase grows, in radians per unit of time; of a self-excited machine 1: shapes follow `params` (..., P)."""
         if self.phase_rate is None:
             return 1.0

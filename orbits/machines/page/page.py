@@ -11,7 +11,14 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, Protocol
+
+
+class FromPage(Protocol):
+    """What a page has declared."""
+
+    @property
+    def page(self) -> Page: ...
 
 
 @dataclass(frozen=True)
@@ -34,7 +41,7 @@ class Page:
         """Of the text."""
         return digest_of(self.text)
 
-    def describe(self, machine: Any) -> dict[str, Any]:
+    def describe(self, machine: FromPage) -> dict[str, Any]:
         """Path, object, text and digest, ready for JSON."""
         return {"page": self.path, "object": object_name(machine), "source": self.text, "digest": self.digest}
 
@@ -69,7 +76,7 @@ def module_at(path: str | Path) -> ModuleType:
     return module
 
 
-def again(path: str, name: str) -> Any:
+def again(path: str, name: str) -> object:
     """A machine in another process, which runs the page itself."""
     return getattr(module_at(path), name)
 
@@ -89,7 +96,7 @@ def page_of(function: Callable) -> Page:
         return Page("", "")
 
 
-def object_name(machine: Any) -> str:
+def object_name(machine: FromPage) -> str:
     """The name under which the page's module holds the machine; empty where it does not."""
     for module in list(sys.modules.values()):
         file = getattr(module, "__file__", None)

@@ -10,9 +10,12 @@ Independent variable (`clock`) of every compiled flow: the forcing phase (radian
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, SupportsFloat
+
+import numpy as np
 
 from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
 from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 CLOCK = "phase"
+Contact = Wall | DryFriction | Switch
 PatternKey = tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]
 
 
@@ -136,7 +140,7 @@ class Equations:
         parameters: tuple[str, ...],
         phase_rate: str | None,
         motion: Callable,
-        contacts: tuple[Any, ...],
+        contacts: tuple[Contact, ...],
         factors: Mapping[str, float] | None = None,
         energy: Callable | None = None,
     ) -> None:
@@ -179,7 +183,7 @@ class Equations:
         self.energy: Symbol | None = None if energy is None else self.value(energy, "energy")
 
     # ------------------------------------------------------------------ reading the page
-    def value(self, function: Any, what: str) -> Symbol:
+    def value(self, function: object, what: str) -> Symbol:
         """A function of (state, phase, p), as a symbol."""
         return self._symbol(called(what, function, self.state, self.phase, self.p), what)
 
@@ -192,13 +196,13 @@ class Equations:
                 raise PageError(f"{what} = {given!r} is no parameter ({error})") from None
         return self.value(given, what) if callable(given) else self._symbol(given, what)
 
-    def _symbol(self, value: Any, what: str) -> Symbol:
+    def _symbol(self, value: object, what: str) -> Symbol:
         if isinstance(value, Symbol):
             return value
-        try:
-            return constant(float(value))
-        except (TypeError, ValueError):
-            raise PageError(f"{what} is {value!r}; it must be one formula or number") from None
+        with suppress(TypeError, ValueError):
+            if isinstance(value, SupportsFloat):
+                return constant(float(value))
+        raise PageError(f"{what} is {value!r}; it must be one formula or number")
 
     def motion_with(self, forces: Mapping[int, Symbol]) -> list[Symbol]:
         """Rates of the states with these friction forces; switches have their signs."""
@@ -213,7 +217,7 @@ class Equations:
         )
         if rates is None:
             raise PageError("motion returns nothing; return one rate per state, in their order")
-        if isinstance(rates, Symbol) or not hasattr(rates, "__len__"):
+        if not isinstance(rates, Sequence | np.ndarray):
             rates = (rates,)
         if len(rates) != len(self.states):
             raise PageError(
@@ -313,9 +317,11 @@ def _solved(
 def _determinant(matrix: Sequence[Sequence[Symbol]]) -> Symbol:
     if len(matrix) == 1:
         return matrix[0][0]
-    total: Any = 0.0
-    for k, entry in enumerate(matrix[0]):
-        minor = [[v for c, v in enumerate(row) if c != k] for row in matrix[1:]]
-        term = entry * _determinant(minor)
-        total = total + term if k % 2 == 0 else total - term
+    terms = [
+        entry * _determinant([[v for c, v in enumerate(row) if c != k] for row in matrix[1:]])
+        for k, entry in enumerate(matrix[0])
+    ]
+    total = terms[0]
+    for k, term in enumerate(terms[1:], start=1):
+        total = total - term if k % 2 else total + term
     return total

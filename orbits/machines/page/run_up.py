@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
 from orbits.machines.page.formulas import Named, PageError, States
 from orbits.machines.page.machine import Machine
+from orbits.machines.page.patterns import Contact
 
 if TYPE_CHECKING:
     from orbits.symbols import Symbol
@@ -75,7 +76,7 @@ def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> M
     )
 
 
-def _contact(contact: Any, wrapped: Callable[[Any], Any]) -> Any:
+def _contact(contact: Contact, wrapped: Callable) -> Contact:
     """The same contact with its functions wrapped."""
     if isinstance(contact, Wall):
         push = {key: wrapped(value) for key, value in contact.push.items()}

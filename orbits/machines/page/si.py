@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TypeVar
 
 from contvines.shared.modulation import BAND
 from contvines.shared.near_names import did_you_mean
@@ -13,6 +13,9 @@ from orbits.machines.physical.units import counted, in_si, size
 
 OF_A_STATE = ("max", "min", "first", "strobe")
 """Measures that are values of a state."""
+
+
+Given = TypeVar("Given")
 
 
 class Units:
@@ -46,7 +49,7 @@ class Units:
                     raise PageError(f"units: {name} = {unit!r}: a forcing's frequency is in 'Hz' or 'rad/s'")
                 self.factors[name] = turns
 
-    def number(self, name: str, value: Any) -> Any:
+    def number(self, name: str, value: Given | str) -> Given | float:
         """A value, such as "1.2 mm", counted in the unit of its name; what is no text is a number in that unit already."""
         return counted(name, value, self.said.get(name, "")) if isinstance(value, str) else value
 

@@ -66,7 +66,8 @@ def machine_again(settings: dict[str, Any], trust: bool) -> Machine | None:
     """
     machine = loaded(settings)
     if machine is None and _comes_along(settings):
-        machine = page_machine(settings["object"])
+        found = page_machine(settings["object"])
+        machine = found if isinstance(found, Machine) else None
     if machine is not None or not trust:
         return machine
     problem = page_changed(settings)

@@ -145,7 +145,7 @@ def _made(
 ) -> Physical:
     """The machine with these numbers, and what was said of it."""
     cls = _class_of(base)
-    own = cls.__dataclass_fields__
+    own = cls.field_names()
     machine = cls(contact_time=contact_time, **{name: numbers[name] for name in numbers if name in own})
     loose = {name: value for name, value in numbers.items() if name not in own}
     for name, value in {
@@ -156,7 +156,7 @@ def _made(
 
 
 @cache
-def _class_of(base: type[Model]) -> Any:
+def _class_of(base: type[Model]) -> type[Physical]:
     """The machine's class with the scales among its fields."""
     table = tables(base)
     body: dict[str, Any] = {

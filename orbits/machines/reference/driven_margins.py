@@ -17,6 +17,8 @@ from orbits.machines.reference.oscillation import (
     leg,
     push,
 )
+from orbits.numbers import ROUNDOFF, SMALLEST
+from orbits.settings import STEPPING
 from orbits.words.alphabet import CODES
 
 if TYPE_CHECKING:
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 TURN, STICK, SLIP = (CODES[letter] for letter in "tsu")
 
 
-def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
+def margins(law: Law[float], data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
     """Margins of admissibility, none negative for an orbit that a machine can follow.
 
     `out` has shape (4 L,), four numbers per node; infinity where there is nothing to watch. Reads sines and cosines of the last `linearise` from
@@ -90,15 +92,15 @@ def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.n
             out[k + 1] = (1.0 - 2.0 * arrival) * rate / law.restitution_left
 
 
-def _bounds(q: Oscillation, order: int, start: float, end: float) -> tuple[float, float]:
+def _bounds(q: Oscillation[float], order: int, start: float, end: float) -> tuple[float, float]:
     """Of a derivative of q1: what bounds its second derivative from a time on, and its rounding."""
     drift = abs(q.q2_rate) + abs(q.q2_pull) * end if order == 1 else 0.0
-    return q.driven(order + 2) + q.own(order + 2, start), 4e-16 * (
+    return q.driven(order + 2) + q.own(order + 2, start), 2.0 * ROUNDOFF * (
         drift + 2.0 * q.driven(order) + 2.0 * q.own(order, 0.0)
     )
 
 
-def _slide(q: Oscillation) -> Callable[[float], tuple[float, float]]:
+def _slide(q: Oscillation[float]) -> Callable[[float], tuple[float, float]]:
     """w' and w'' by time."""
 
     def look(tau: float) -> tuple[float, float]:
@@ -108,7 +110,7 @@ def _slide(q: Oscillation) -> Callable[[float], tuple[float, float]]:
     return look
 
 
-def _extrema(q: Oscillation, order: int, psi: float, end: float) -> Iterator[Point]:
+def _extrema(q: Oscillation[float], order: int, psi: float, end: float) -> Iterator[Point[float]]:
     """The motion where q1''' vanishes."""
 
     def look(tau: float) -> tuple[float, float]:
@@ -117,15 +119,15 @@ def _extrema(q: Oscillation, order: int, psi: float, end: float) -> Iterator[Poi
 
     tau = 0.0
     while (tau := first_zero(look, tau, end, *_bounds(q, order, tau, end), psi)) < end:
-        at: Point = q.at(tau)
+        at: Point[float] = q.at(tau)
         yield at
 
 
-def _slowest(law: Law, q: Oscillation, s: float, start: float, end: float) -> float:
+def _slowest(law: Law[float], q: Oscillation[float], s: float, start: float, end: float) -> float:
     """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none.
 
     w'' = q1'' - q2'' is followed from zero to zero by steps that cannot pass one (`certain`); the fourth derivative of q1 is an oscillator's
-    response to a force of amplitude Omega^4 `strength`, which bounds it. A zero needs to be known to 1e-5 only: the minimum is then taken from
+    response to a force of amplitude Omega^4 `strength`, which bounds it. A zero need not be known well (`STEPPING.minimum`): the minimum is then taken from
     the Taylor series, exact to roundoff.
     """
     brake = s * q.q2_pull
@@ -136,18 +138,18 @@ def _slowest(law: Law, q: Oscillation, s: float, start: float, end: float) -> fl
         if bound < 0.0:
             bound = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa)
             bound += q.omega**4 * law.strength * (end - start) / np.sqrt(q.kappa)
-            if not bound > 1e-300:
+            if not bound > SMALLEST:
                 return smallest
         sign = 1.0 if y > 0.0 else -1.0
         step = certain(abs(y), sign * slope, bound)
-        if step < 1e-5:
+        if step < STEPPING.minimum:
             zero = -y / slope if sign * slope < 0.0 else 0.0
             if tau + zero >= end:
                 return smallest
             if slope > 0.0:
                 speed = s * (q.h1 + q.z1 + at.speed - q.q2_rate) - brake * tau
                 smallest = min(smallest, speed + (y + 0.5 * slope * zero) * zero)
-            step = zero + max(abs(slope) / bound, 1e-5)
+            step = zero + max(abs(slope) / bound, STEPPING.minimum)
         tau += step
         if not tau < end:
             return smallest

@@ -13,11 +13,12 @@ import numpy as np
 from orbits.machines.reference.law import Law
 from orbits.machines.reference.oscillation import Oscillation, State, after, first_zero, oscillation
 from orbits.machines.stepping import LOW, MODE, PSI, RATE, V_RATE, V, W
+from orbits.numbers import ROUNDOFF
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
-def sample(law: Law, states: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+def sample(law: Law[float], states: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
     """w, w', v, v' at given phases after given states; contract, item 4."""
     for state, phase, row in zip(states, ahead, out):
         q, tau = oscillation(state, law), phase / law.omega
@@ -37,7 +38,7 @@ def quadrature(phase: float, span: float) -> tuple[np.ndarray, np.ndarray]:
     return (middles[:, None] + half * NODES).ravel(), np.tile(half * WEIGHTS, pieces)
 
 
-def works(law: Law, states: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+def works(law: Law[float], states: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
     """Work of the excitation, of the damper and of friction inside pieces of segments; contract, item 5.
 
     Per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the way
@@ -55,7 +56,7 @@ def works(law: Law, states: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> N
         row[2] = eps * law.friction_left * abs(slid)
 
 
-def energies(law: Law, states: np.ndarray, out: np.ndarray) -> None:
+def energies(law: Law[float], states: np.ndarray, out: np.ndarray) -> None:
     """Kinetic and potential energy per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2 + eps g sin(slope) w; contract, item 5."""
     eps, lean, whole = law.eps, law.lean, law.whole
     q1 = (states[:, V] + eps * states[:, W]) / whole
@@ -64,7 +65,7 @@ def energies(law: Law, states: np.ndarray, out: np.ndarray) -> None:
     out[:] = 0.5 * (q1_rate**2 + q1**2 + eps * q2_rate**2) + eps * lean * states[:, W]
 
 
-def shapes(law: Law, states: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
+def shapes(law: Law[float], states: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
     """Per segment: largest |q1|, and the integrals of v sin Psi, v cos Psi and q1 sin Psi over the phase, into `out` (m, 4)."""
     eps, omega = law.eps, law.omega
     for state, length, row in zip(states, lengths, out):
@@ -81,14 +82,14 @@ def shapes(law: Law, states: np.ndarray, lengths: np.ndarray, out: np.ndarray) -
         row[3] = omega * (weights * (q1 + way)) @ np.sin(Psi)
 
 
-def _extrema(q: Oscillation, end: float) -> Iterator[float]:
+def _extrema(q: Oscillation[float], end: float) -> Iterator[float]:
     """Times up to `end` at which q1 has an extremum."""
 
     def look(tau: float) -> tuple[float, float]:
         at = q.at(tau)
         return q.h1 + q.z1 + at.speed, at.h2 + at.z2
 
-    tiny = 4e-16 * (2.0 * q.driven(1) + 2.0 * q.own(1, 0.0))
+    tiny = 2.0 * ROUNDOFF * (2.0 * q.driven(1) + 2.0 * q.own(1, 0.0))
     tau = 0.0
     while (tau := first_zero(look, tau, end, q.driven(3) + q.own(3, tau), tiny)) < end:
         yield tau

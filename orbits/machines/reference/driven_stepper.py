@@ -42,15 +42,16 @@ from orbits.machines.stepping import (
     V,
     W,
 )
+from orbits.numbers import ROUNDOFF, SMALLEST
+from orbits.settings import EVENTS, STEPPING
 
 _L, _R, _T, _S, _U = range(5)
 _TWO_PI = 2.0 * math.pi
 _HORIZON = 2.5  # M is renewed after this time
-_FOREVER = 1e7  # forcing periods
 _HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # how a leg ends
 
 
-def launch(law: Law, state: np.ndarray) -> None:
+def launch(law: Law[float], state: np.ndarray) -> None:
     """Reduce the phase and set the mode of a start; contract, item 2."""
     a = law.whole * law.friction_left
     state[PSI], more = wrap(state[PSI])
@@ -70,7 +71,7 @@ def launch(law: Law, state: np.ndarray) -> None:
 
 
 def advance(
-    law: Law, state: np.ndarray, until: float, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
+    law: Law[float], state: np.ndarray, until: float, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
 ) -> tuple[int, int]:
     """Run from event to event; contract, item 3."""
     return _Run(state, law).advance(until, codes, modes, rows)
@@ -81,7 +82,7 @@ class _Sliding(NamedTuple):
 
     outcome: int
     tau: float
-    at: Point
+    at: Point[float]
     y: float
     y_rate: float
     gain: float
@@ -90,7 +91,7 @@ class _Sliding(NamedTuple):
 class _Run:
     """A motion on its way."""
 
-    def __init__(self, state: np.ndarray, law: Law) -> None:
+    def __init__(self, state: np.ndarray, law: Law[float]) -> None:
         self.state, self.law = state, law
         self.a, self.b = law.whole * law.friction_left, law.whole * law.lean
         self.force = law.strength
@@ -102,7 +103,7 @@ class _Run:
         known = [*law.slide, *law.stuck]
         if not np.isfinite([*known, *state, a, self.b]).all():
             return 0, FAILED
-        limit = min(until, state[TURNS] + _FOREVER)
+        limit = min(until, state[TURNS] + STEPPING.forever)
         fresh = False  # the leg starts with a slip: w' = w'' = 0
         idle = 0  # legs in a row without progress
         count = 0
@@ -133,16 +134,20 @@ class _Run:
             s = float(state[MODE])
             Y0 = s * state[RATE]
             Y1 = 0.0 if fresh else s * (begin.h2 + begin.z2) - s * q.q2_pull
-            if Y0 < 1e-6 and s * state[W] == -1.0 and state[LOW] == 0.0 and Y1 + 2.0 * a < 0.0:
+            if EVENTS.slow > Y0 and s * state[W] == -1.0 and state[LOW] == 0.0 and Y1 + 2.0 * a < 0.0:
                 # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
                 shove = -Y1 - a  # |v'' - b|
                 factor = law.restitution_left * np.sqrt((shove - a) / (shove + a))
                 rest = Y0 * (1.0 / (shove + a) + 1.0 / np.sqrt((shove - a) * (shove + a)))
                 if factor < 1.0:
                     rest /= 1.0 - factor
-                small = factor < 1.0 and rest < 1e-7 and rest * abs(begin.h3 + begin.z3) < 0.01 * (shove - a)
-                if small or Y0 < 1e-13:
-                    rest = min(rest, 1e-7)
+                small = (
+                    factor < 1.0
+                    and rest < STEPPING.chatter
+                    and rest * abs(begin.h3 + begin.z3) < 0.01 * (shove - a)
+                )
+                if small or STEPPING.still > Y0:
+                    rest = min(rest, STEPPING.chatter)
                     state[V] += rest * state[V_RATE]
                     state[V_RATE] += rest * (self.b - s * shove)
                     self._turn(rest)
@@ -153,7 +158,7 @@ class _Run:
             end = self._slide(q, s, Y0, Y1, target, left)
             fresh = False
             tau = left if end.outcome == _NEVER else end.tau
-            idle = idle + 1 if tau < 1e-11 else 0
+            idle = idle + 1 if tau < EVENTS.together else 0
             if idle > 10000:
                 status = FAILED
                 break
@@ -161,7 +166,7 @@ class _Run:
             state[V_RATE] += end.at.speed + law.eps * q.q2_pull * tau
             self._turn(tau)
             if end.outcome == _HIT:
-                y = end.y if end.y > 1e-30 else 1e-30
+                y = max(STEPPING.least_speed, end.y)
                 state[W], state[LOW] = s, 0.0
                 state[RATE], state[MODE] = -s * law.restitution_left * y, -s
                 add(_L if s > 0.0 else _R, s * y, state[RATE])
@@ -202,14 +207,14 @@ class _Run:
         state[RATE] = 0.0
         return outcome, way
 
-    def _until_slip(self, q: Oscillation, left: float) -> tuple[int, float, Point, float]:
+    def _until_slip(self, q: Oscillation[float], left: float) -> tuple[int, float, Point[float], float]:
         a, b, w, whole, omega = self.a, self.b, self.state[W], self.law.whole, q.omega
         hold = min(
             a + way * b for way in (1.0, -1.0) if way * w < 1.0
         )  # what holds the absorber where it may slip
         driven = whole * omega * omega * math.hypot(q.h0, q.h1 / omega)  # bounds of |v''|
         free = whole * q.kappa * math.hypot(q.z0, (q.z1 + q.alpha * q.z0) / q.beta)
-        tiny = 4e-16 * (driven + free + abs(b))
+        tiny = 2.0 * ROUNDOFF * (driven + free + abs(b))
         at, tau, renew, bound = q.start(), 0.0, -1.0, 0.0
         first = True  # a zero right at the start is judged by its slope, and left behind
         while tau < left:
@@ -229,23 +234,25 @@ class _Run:
                 if y <= tiny:
                     if not first or y_rate < 0.0 or y < -tiny:
                         return _SLIPS, tau, at, way
-                    step = min(step, max(y_rate / bound if bound > 0.0 else step, 1e-9))
+                    step = min(step, max(y_rate / bound if bound > 0.0 else step, STEPPING.leave))
                 else:
                     ahead = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else step
                     step = min(step, ahead)
-                    if ahead < 2.3e-16 * (1.0 + tau):
+                    if ahead < ROUNDOFF * (1.0 + tau):
                         return _SLIPS, tau, at, way
             first = False
             tau = min(tau + step if step < renew - tau else renew, left)
             at = q.at(tau)
         return _TIME_IS_OVER, tau, at, 0.0
 
-    def _slide(self, q: Oscillation, s: float, Y0: float, Y1: float, target: float, left: float) -> _Sliding:
+    def _slide(
+        self, q: Oscillation[float], s: float, Y0: float, Y1: float, target: float, left: float
+    ) -> _Sliding:
         """Slide until the wall ahead is hit or the absorber halts, or for the time `left`."""
         brake = s * q.q2_pull
         third = q.omega**3 * self.force * _HORIZON / np.sqrt(q.kappa)
 
-        def look(tau: float) -> tuple[Point, float, float, float]:
+        def look(tau: float) -> tuple[Point[float], float, float, float]:
             at = q.at(tau)
             y, y_rate = Y0 + s * at.speed - brake * tau, s * (at.h2 + at.z2) - brake
             return at, y, y_rate, s * (at.way - q.travel(tau))
@@ -258,7 +265,7 @@ class _Run:
             if tau >= renew:
                 bound = np.sqrt((at.h3 + at.z3) ** 2 + q.fourth(at) ** 2 / q.kappa) + third
                 renew = tau + _HORIZON
-            if y <= 1e-300:
+            if y <= SMALLEST:
                 if tau > 0.0:
                     return _Sliding(_HALT, tau, at, y, y_rate, gain)
                 # from rest: y' or, after a slip, y'' opens the flight
@@ -272,10 +279,12 @@ class _Run:
                     y_rate / bound if bound > 0.0 else 0.0,
                     1.5 * jerk / further if further > 0.0 else 0.0,
                 )
-                step = max(*steps, 1e-13)  # at least where there is hardly any acceleration in this direction
+                step = max(
+                    *steps, EVENTS.zero
+                )  # at least where there is hardly any acceleration in this direction
             else:
                 step = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else math.inf
-                if step < 2.3e-16 * tau:
+                if step < ROUNDOFF * tau:
                     return _Sliding(_HALT, tau, at, y, y_rate, gain)
                 step = min(step, 2.0 * target / y + 0.5)  # no further beyond the wall
             before = tau
@@ -293,13 +302,15 @@ class _Run:
             step = 2.0 * miss * y / bottom if bottom > 0.0 else math.inf
             new = tau - step
             if not lo < new < hi:
-                if abs(step) <= 4.5e-16 * tau:
+                if abs(step) <= 2.0 * ROUNDOFF * tau:
                     break
                 new = 0.5 * (lo + hi)
             change, tau = abs(new - tau), new
             at, y, y_rate, gain = look(tau)
-            settled = change <= 1e-6 * tau and change * change * abs(y_rate) <= 1e-16 * y * tau
-            if settled or hi - lo <= 2.3e-16 * hi:
+            settled = (
+                change <= STEPPING.last_step * tau and change * change * abs(y_rate) <= ROUNDOFF * y * tau
+            )
+            if settled or hi - lo <= ROUNDOFF * hi:
                 step = (gain - target) / y if y > 0.0 else 0.0  # one Newton step more, from values at hand
                 if abs(step) < change:
                     tau -= step

@@ -12,22 +12,44 @@ Parameters may be numbers or arrays, real or complex (`orbits.machines.reference
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
+Number = TypeVar("Number", float, np.ndarray)
+"""A number, or an array of them, real or complex: all that one formula is given are of one kind."""
 
-class Response(NamedTuple):
+
+class Elementary(Protocol):
+    """A function that gives a number of a number, an array of an array."""
+
+    def __call__(self, x: Number, /) -> Number: ...
+
+
+def _of_numbers(function: np.ufunc) -> Elementary:
+    return function
+
+
+sin, cos, exp, sqrt = (_of_numbers(each) for each in (np.sin, np.cos, np.exp, np.sqrt))
+
+
+def where(condition: np.ndarray | bool, one: Number, other: Number) -> Number:
+    """numpy's ``where``, a number where all are numbers."""
+    found: Any = np.where(condition, one, other)[()]
+    return found
+
+
+class Response(NamedTuple, Generic[Number]):
     """The forced harmonic X sin Psi + Y cos Psi of q1, and decay rate and angular frequency of its own oscillation."""
 
-    X: Any
-    Y: Any
-    alpha: Any
-    beta: Any
+    X: Number
+    Y: Number
+    alpha: Number
+    beta: Number
 
 
-class Law(NamedTuple):
+class Law(NamedTuple, Generic[Number]):
     """The numbers of the equations of motion.
 
     omega: the forcing's frequency. friction_left, friction_right: accelerations of q2 by friction while sliding to either wall; lean: by the
@@ -35,96 +57,102 @@ class Law(NamedTuple):
     share of the oscillator's mass. force, base: amplitudes of the excitation's sine, and of its cosine over that. drag: eps lambda.
     """
 
-    omega: Any
-    friction_left: Any
-    friction_right: Any
-    lean: Any
-    restitution_left: Any
-    restitution_right: Any
-    left: Any
-    right: Any
-    slide: Response
-    stuck: Response
-    eps: Any = 0.0
-    force: Any = 0.0
-    base: Any = 0.0
-    drag: Any = 0.0
-    prescribed: bool = True
+    omega: Number
+    friction_left: Number
+    friction_right: Number
+    lean: Number
+    restitution_left: Number
+    restitution_right: Number
+    left: Number
+    right: Number
+    slide: Response[Number]
+    stuck: Response[Number]
+    eps: Number
+    force: Number
+    base: Number
+    drag: Number
+    prescribed: bool
 
     @property
-    def whole(self) -> Any:
+    def whole(self) -> Number:
         """1 + eps."""
         return 1.0 + self.eps
 
     @property
-    def amplitude(self) -> Any:
+    def amplitude(self) -> Number:
         """C, of a cavity that is shaken."""
         return self.slide.X
 
     @property
-    def pull_left(self) -> Any:
+    def pull_left(self) -> Number:
         """q2'' while sliding to the left wall."""
         return self.friction_left + self.lean
 
     @property
-    def pull_right(self) -> Any:
+    def pull_right(self) -> Number:
         """q2'' while sliding to the right wall."""
         return self.lean - self.friction_right
 
     @property
-    def frictionless(self) -> bool:
+    def frictionless(self: Law[float]) -> bool:
         """Whether turns are no events."""
         return self.pull_left == self.pull_right
 
     @property
-    def strength(self) -> Any:
+    def strength(self: Law[float]) -> float:
         """Amplitude of the excitation."""
-        return abs(self.force) * np.sqrt(1.0 + self.base * self.base)
+        return abs(self.force) * sqrt(1.0 + self.base * self.base)
 
 
-def absorber(par: Any) -> Law:
+def absorber(par: Sequence[Number]) -> Law[Number]:
     """Amplitude, restitution, friction, gravity, mass ratio, frequency."""
     C, r, mu, g, eps, omega = par[:6]
     a = (1.0 + eps) * mu * g
-    free = Response(C, 0.0, 0.0, 1.0)
-    return Law(omega, a, a, 0.0, r, r, 1.0, -1.0, free, free)
+    zero, one = 0.0 * eps, 1.0 + 0.0 * eps
+    return _shaken(C, omega, a, a, zero, r, r, one, -one)
 
 
-def cavity(par: Any) -> Law:
+def cavity(par: Sequence[Number]) -> Law[Number]:
     """Amplitude, restitutions, frictions, gravity, mass ratio, frequency, slope, distances of the walls."""
     C, r_left, r_right, mu_left, mu_right, g, eps, omega, slope, left, right = par[:11]
-    cosine, weight = np.cos(slope), (1.0 + eps) * g
-    free = Response(C, 0.0, 0.0, 1.0)
+    cosine, weight = cos(slope), (1.0 + eps) * g
     to_left, to_right = (1.0 + eps) * mu_left * g * cosine, (1.0 + eps) * mu_right * g * cosine
-    return Law(omega, to_left, to_right, weight * np.sin(slope), r_left, r_right, left, -right, free, free)
+    return _shaken(C, omega, to_left, to_right, weight * sin(slope), r_left, r_right, left, -right)
 
 
-def coupled(par: Any) -> Law:
+def _shaken(
+    C: Number,
+    omega: Number,
+    to_left: Number,
+    to_right: Number,
+    lean: Number,
+    r_left: Number,
+    r_right: Number,
+    left: Number,
+    right: Number,
+) -> Law[Number]:
+    """Of a cavity that moves as prescribed, C sin Psi."""
+    zero = 0.0 * omega
+    free = Response(C, zero, zero, 1.0 + zero)
+    return Law(
+        omega, to_left, to_right, lean, r_left, r_right, left, right,
+        free, free, zero, zero, zero, zero, prescribed=True,
+    )  # fmt: skip
+
+
+def coupled(par: Sequence[Number]) -> Law[Number]:
     """Forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation, slope."""
     G, omega, damping, eps, r, mu, g, chi, slope = par[:9]
-    a, drag, force = mu * g * np.cos(slope), eps * damping, eps * G
-    slide, stuck = (_response(mass, force, chi, drag, omega) for mass in (1.0, 1.0 + eps))
-    base = chi * drag * omega
+    a, drag, force = mu * g * cos(slope), eps * damping, eps * G
+    one = 1.0 + 0.0 * eps
+    slide, stuck = (_response(mass, force, chi, drag, omega) for mass in (one, 1.0 + eps))
     return Law(
-        omega,
-        a,
-        a,
-        g * np.sin(slope),
-        r,
-        r,
-        1.0,
-        -1.0,
-        slide,
-        stuck,
-        eps,
-        force,
-        base,
-        drag,
-        prescribed=False,
-    )
+        omega, a, a, g * sin(slope), r, r, one, -one,
+        slide, stuck, eps, force, chi * drag * omega, drag, prescribed=False,
+    )  # fmt: skip
 
 
-def _response(mass: Any, force: Any, chi: Any, damping: Any, omega: Any) -> Response:
+def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: Number) -> Response[Number]:
     """Of a mass to the moving base: infinite at an undamped resonance; beta is not a number where it is overdamped."""
     drag, stiffness = damping * omega, 1.0 - mass * omega * omega
     scale = force / (stiffness * stiffness + drag * drag)
@@ -132,12 +160,21 @@ def _response(mass: Any, force: Any, chi: Any, damping: Any, omega: Any) -> Resp
     still = np.real(force) == 0.0
     alpha = 0.5 * damping / mass
     square = 1.0 / mass - alpha * alpha
-    beta = np.sqrt(np.where(np.real(square) > 0.0, square, np.nan))
+    beta = sqrt(where(np.real(square) > 0.0, square, np.nan * square))
     return Response(
-        np.where(still & ~np.isfinite(X), 0.0, X), np.where(still & ~np.isfinite(Y), 0.0, Y), alpha, beta
+        where(still & ~np.isfinite(X), 0.0 * force, X),
+        where(still & ~np.isfinite(Y), 0.0 * force, Y),
+        alpha,
+        beta,
     )
+
+
+class LawOf(Protocol):
+    """A machine's parameters in the order of its table, as the numbers of its equations."""
+
+    def __call__(self, par: Sequence[Number], /) -> Law[Number]: ...
 
 
 DRIVEN = frozenset({"coupled"})
 """Machines whose cavity rides on an oscillator."""
-LAWS: dict[str, Callable[[Any], Law]] = {"absorber": absorber, "cavity": cavity, "coupled": coupled}
+LAWS: dict[str, LawOf] = {"absorber": absorber, "cavity": cavity, "coupled": coupled}

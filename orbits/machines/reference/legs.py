@@ -9,6 +9,8 @@ import math
 from typing import NamedTuple
 
 from orbits.machines.digits import remainders, wrap
+from orbits.numbers import ROUNDOFF
+from orbits.settings import EVENTS, STEPPING
 
 TWO_PI = 2.0 * math.pi
 
@@ -29,12 +31,13 @@ def fall(lo, hi, p0, q0, C, A, k0, m0):
         new = x - p / q if q < 0.0 else hi
         change = abs(new - x)
         if q < 0.0 and (
-            change <= 2.3e-16 * x or (change <= 1e-8 * x and C * change * change <= -1e-16 * q * x)
+            change <= ROUNDOFF * x
+            or (change <= STEPPING.last_step * x and C * change * change <= -ROUNDOFF * q * x)
         ):
             return min(max(new, lo), hi)  # what is left is of second order
         if not (lo < new < hi):
             new = 0.5 * (lo + hi)
-            if hi - lo <= 2.3e-16 * hi:
+            if hi - lo <= ROUNDOFF * hi:
                 return new
         x = new
     return x
@@ -60,7 +63,7 @@ def direction(pull, law, reach, restitution):
     """What a leg needs to know of its direction of sliding, for the acceleration `pull` against it."""
     C = law.amplitude
     A = pull / (law.omega * law.omega)
-    driven = C - A > 1e-12 * C
+    driven = EVENTS.zero * C < C - A
     always = A <= -C and driven
     ratio = 1.0
     if always:

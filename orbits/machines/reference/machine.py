@@ -37,10 +37,10 @@ class Reference:
         self._launch = legs.launch if shaken else driven_stepper.launch
         self._advance = shaken_stepper.advance if shaken else driven_stepper.advance
 
-    def law(self, params: np.ndarray) -> Law:
+    def law(self, params: np.ndarray) -> Law[float]:
         """The numbers of the equations of motion."""
         with np.errstate(all="ignore"):
-            return self.law_of(np.asarray(params, dtype=float))
+            return self.law_of([*np.asarray(params, dtype=float)])
 
     # ------------------------------------------------------------------ cycles
     def linearise(self, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:

@@ -26,27 +26,23 @@ one equation is redundant (the absorber's total displacement): row 1 of the last
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.machines.path import place
-from orbits.machines.reference.law import Law
+from orbits.machines.reference.law import Law, LawOf
 from orbits.machines.reference.oscillation import Point, State, after, chosen, leg
+from orbits.numbers import COMPLEX_STEP
 from orbits.words.alphabet import CODES
 
 if TYPE_CHECKING:
     from orbits.arguments import CycleData, Workspace
-    from orbits.numbers import Reals
 
-STEP = 1e-200  # its square is zero, so that real parts are those of real arithmetic
 STICK, SLIP = CODES["s"], CODES["u"]
 
 
-def linearise(
-    law_of: Callable[[np.ndarray], Law], data: CycleData, u: np.ndarray, p: float, work: Workspace
-) -> float:
+def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:
     """Residuals F, blocks A = dg_i/dx_i and D = dg_i/dx_{i+1}, and the column Q = dg_i/dp at the cycle `u`.
 
     Parameters
@@ -76,16 +72,16 @@ def linearise(
     # one direction for each entry of the node before, one for the phase after, one for the parameter
     size, count = n + 2, data.params.shape[0]
     numbers = np.repeat(par[:count, None, None].astype(complex), size, axis=1)
-    numbers[:, -1, 0] += 1j * STEP * par[count:]
+    numbers[:, -1, 0] += 1j * COMPLEX_STEP * par[count:]
     node = np.repeat(x.T[:, None, :].astype(complex), size, axis=1)
     for k in range(n):
-        node[k, k] += 1j * STEP
+        node[k, k] += 1j * COMPLEX_STEP
     following = np.roll(x, -1, axis=0)
     following[-1] *= twist
     following[-1, 0] = x[0, 0] + data.shift
     phase = np.repeat(following[None, :, 0].astype(complex), size, axis=0)
-    phase[n] += 1j * STEP
-    law = law_of(numbers)
+    phase[n] += 1j * COMPLEX_STEP
+    law = law_of([*numbers])
     arrival, then = np.roll(events, -1), np.roll(modes, -1)
     then[-1] *= twist
     if twist < 0.0 and events[0] < 2:
@@ -101,7 +97,7 @@ def linearise(
     back = end.v_rate + np.where(left, law.restitution_left, law.restitution_right) * end.rate - y
     place_ = end.w - np.where(left, law.left, law.right)
     sign = -1.0 if law.prescribed else 1.0
-    rows: list[Any] = [
+    rows: list[np.ndarray] = [
         np.where(
             hits, back * sign if law.prescribed else place_, np.where(arrival == SLIP, sign * slips, stops)
         ),
@@ -112,9 +108,9 @@ def linearise(
     D[:] = 0.0
     for j, row in enumerate(rows):
         F[:, j] = row[-1].real
-        A[:, j, :] = row[:n].imag.T / STEP
-        D[:, j, 0] = row[n].imag / STEP
-        Q[:, j] = row[-1].imag / STEP
+        A[:, j, :] = np.imag(row[:n]).T / COMPLEX_STEP
+        D[:, j, 0] = np.imag(row[n]) / COMPLEX_STEP
+        Q[:, j] = row[-1].imag / COMPLEX_STEP
     D[:, 1, 1] = np.where(hits & law.prescribed, 0.0, -1.0)
     D[:, 0, 1] = np.where(hits & law.prescribed, 1.0, 0.0)
     D[:, range(2, n), range(2, n)] = -1.0
@@ -126,8 +122,8 @@ def linearise(
 
 
 def _flight(
-    law: Law, events: np.ndarray, modes: np.ndarray, node: np.ndarray, phase: np.ndarray
-) -> tuple[State, State, Point, Reals, Reals]:
+    law: Law[np.ndarray], events: np.ndarray, modes: np.ndarray, node: np.ndarray, phase: np.ndarray
+) -> tuple[State[np.ndarray], State[np.ndarray], Point[np.ndarray], np.ndarray, np.ndarray]:
     """Start and end of each segment, the motion at its end, q2'' in it, its duration."""
     hit = events < 2
     if law.prescribed:
@@ -158,7 +154,7 @@ def _pin(data: CycleData, u: np.ndarray, work: Workspace, middle: complex) -> fl
     A[last, 1, 1] = D[last, 1, 1] = 1.0
     y = u[n * last + n + 1] if last + 1 < length else data.twist * u[1]
     F[last, 1] = u[n * last + 1] + y - middle.real
-    Q[last, 1] = -middle.imag / STEP
+    Q[last, 1] = -middle.imag / COMPLEX_STEP
     return abs(float(F[last, 1]))
 
 

@@ -2,40 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Generic, NamedTuple
 
 import numpy as np
 
-from orbits.machines.reference.law import Law, Response
+from orbits.machines.reference.law import Law, Number, Response, cos, exp, sin, where
 from orbits.machines.stepping import MODE, PSI, RATE, V_RATE, V, W
+from orbits.numbers import ROUNDOFF, SMALLEST
+from orbits.settings import STEPPING
 
 NEAR = 0.03  # Taylor series to order 8 up to here: relative error below roundoff
 
 
-class State(NamedTuple):
+class State(NamedTuple, Generic[Number]):
     """Absorber in its cavity and centre of mass, with their rates."""
 
-    w: Any
-    rate: Any
-    v: Any
-    v_rate: Any
+    w: Number
+    rate: Number
+    v: Number
+    v_rate: Number
 
 
-class Point(NamedTuple):
+class Point(NamedTuple, Generic[Number]):
     """q1 and q1' less those at the start, the mean of q1'' since then; second and third derivatives of h and of z."""
 
-    way: Any
-    speed: Any
-    mean: Any
-    h2: Any
-    z2: Any
-    h3: Any
-    z3: Any
+    way: Number
+    speed: Number
+    mean: Number
+    h2: Number
+    z2: Number
+    h3: Number
+    z3: Number
 
 
 @dataclass(frozen=True)
-class Oscillation:
+class Oscillation(Generic[Number]):
     """The motion of q1, and q2' and q2'' at its start.
 
     Parameters
@@ -48,22 +51,22 @@ class Oscillation:
         q2' at the start and q2'', which is constant (of no use while the absorber sticks).
     """
 
-    omega: Any
-    alpha: Any
-    beta: Any
-    h0: Any
-    h1: Any
-    z0: Any
-    z1: Any
-    q2_rate: Any = 0.0
-    q2_pull: Any = 0.0
+    omega: Number
+    alpha: Number
+    beta: Number
+    h0: Number
+    h1: Number
+    z0: Number
+    z1: Number
+    q2_rate: Number
+    q2_pull: Number
 
     @property
-    def kappa(self) -> Any:
+    def kappa(self) -> Number:
         """alpha^2 + beta^2."""
         return self.alpha * self.alpha + self.beta * self.beta
 
-    def derivatives(self) -> tuple[list[Any], list[Any]]:
+    def derivatives(self) -> tuple[list[Number], list[Number]]:
         """Of h and of z at the start, up to the eighth."""
         h, z = [self.h0, self.h1], [self.z0, self.z1]
         for _ in range(7):
@@ -71,26 +74,26 @@ class Oscillation:
             z.append(-2.0 * self.alpha * z[-1] - self.kappa * z[-2])
         return h, z
 
-    def at(self, tau: Any) -> Point:
+    def at(self, tau: Number) -> Point[Number]:
         """The motion after a time: from Taylor series close to the start, from the closed form beyond."""
         if np.ndim(tau) == 0:
             return self._near(tau) if abs(tau) < NEAR else self._far(tau)
         near = np.abs(np.real(tau)) < NEAR
-        return Point(*(np.where(near, a, b) for a, b in zip(self._near(tau), self._far(tau))))
+        return Point(*(where(near, a, b) for a, b in zip(self._near(tau), self._far(tau))))
 
-    def _near(self, tau: Any) -> Point:
+    def _near(self, tau: Number) -> Point[Number]:
         h, z = self.derivatives()
         d = [a + b for a, b in zip(h, z)]
         mean = _quotient(d, 1, tau)
         higher = (of[k] + tau * _quotient(of, k, tau) for k in (2, 3) for of in (h, z))
         return Point(tau * _quotient(d, 0, tau), tau * mean, mean, *higher)
 
-    def _far(self, tau: Any) -> Point:
-        s, c = np.sin(self.omega * tau), np.cos(self.omega * tau)
+    def _far(self, tau: Number) -> Point[Number]:
+        s, c = sin(self.omega * tau), cos(self.omega * tau)
         H0 = self.h0 * c + self.h1 / self.omega * s
         H1 = self.h1 * c - self.omega * self.h0 * s
-        decay = np.exp(-self.alpha * tau)
-        cosine, sine = decay * np.cos(self.beta * tau), decay * np.sin(self.beta * tau) / self.beta
+        decay = exp(-self.alpha * tau)
+        cosine, sine = decay * cos(self.beta * tau), decay * sin(self.beta * tau) / self.beta
         Z0 = self.z0 * cosine + (self.z1 + self.alpha * self.z0) * sine
         Z1 = self.z1 * cosine - (self.alpha * self.z1 + self.kappa * self.z0) * sine
         Z2 = -2.0 * self.alpha * Z1 - self.kappa * Z0
@@ -100,35 +103,35 @@ class Oscillation:
             -square * H0, Z2, -square * H1, -2.0 * self.alpha * Z2 - self.kappa * Z1,
         )  # fmt: skip
 
-    def start(self) -> Point:
+    def start(self: Oscillation[float]) -> Point[float]:
         """The motion at the start."""
         h, z = self.derivatives()
         return Point(0.0, 0.0, h[2] + z[2], h[2], z[2], h[3], z[3])
 
-    def travel(self, tau: Any) -> Any:
+    def travel(self, tau: Number) -> Number:
         """The way of q2 after a time."""
         return (self.q2_rate + 0.5 * self.q2_pull * tau) * tau
 
-    def fourth(self, at: Point) -> Any:
+    def fourth(self, at: Point[Number]) -> Number:
         """The fourth derivative of q1."""
         return -self.omega * self.omega * at.h2 - 2.0 * self.alpha * at.z3 - self.kappa * at.z2
 
-    def fifth(self, at: Point) -> Any:
+    def fifth(self, at: Point[Number]) -> Number:
         """The fifth derivative of q1."""
         own = 2.0 * self.alpha * (2.0 * self.alpha * at.z3 + self.kappa * at.z2) - self.kappa * at.z3
         return own - self.omega * self.omega * at.h3
 
-    def driven(self, order: int) -> Any:
+    def driven(self: Oscillation[float], order: int) -> float:
         """Bound of the harmonic's derivative of this order."""
         return self.omega**order * np.hypot(self.h0, self.h1 / self.omega)
 
-    def own(self, order: int, start: float) -> Any:
+    def own(self: Oscillation[float], order: int, start: float) -> float:
         """Bound of the free oscillation's derivative of this order from a time on."""
         size = np.hypot(self.z0, (self.z1 + self.alpha * self.z0) / self.beta)
-        return size * np.exp(-self.alpha * start) * self.kappa ** (0.5 * order)
+        return size * exp(-self.alpha * start) * self.kappa ** (0.5 * order)
 
 
-def _quotient(derivatives: list[Any], order: int, t: Any) -> Any:
+def _quotient(derivatives: list[Number], order: int, t: Number) -> Number:
     """(f(t) - f(0))/t of the derivative `order`, from those above it."""
     total = 0.0
     for k in range(8, order + 1, -1):
@@ -136,20 +139,18 @@ def _quotient(derivatives: list[Any], order: int, t: Any) -> Any:
     return derivatives[order + 1] + total
 
 
-def chosen(s: Any, left: Any, right: Any, stuck: Any) -> Any:
+def chosen(s: float | np.ndarray, left: Number, right: Number, stuck: Number) -> Number:
     """What belongs to sliding to the left wall (s > 0), to the right one, or to sticking."""
-    if np.ndim(s) == 0:
-        return left if s > 0 else right if s < 0 else stuck
-    return np.where(s > 0, left, np.where(s < 0, right, stuck))
+    return where(s > 0, left, where(s < 0, right, stuck))
 
 
-def leg(law: Law, psi: Any, x: State, s: Any) -> Oscillation:
+def leg(law: Law[Number], psi: Number, x: State[Number], s: float | np.ndarray) -> Oscillation[Number]:
     """The closed form of the leg that begins with a state, in mode s."""
     response = Response(*(chosen(s, a, a, b) for a, b in zip(law.slide, law.stuck)))
     X, Y, alpha, beta = response
-    sine, cosine = np.sin(psi), np.cos(psi)
+    sine, cosine = sin(psi), cos(psi)
     h0, h1 = X * sine + Y * cosine, law.omega * (X * cosine - Y * sine)
-    pull = chosen(s, law.pull_left, law.pull_right, 0.0)
+    pull = chosen(s, law.pull_left, law.pull_right, 0.0 * psi)
     q2_rate = (x.v_rate - x.rate) / law.whole
     if law.prescribed:
         return Oscillation(law.omega, alpha, beta, h0, h1, 0.0 * h0, 0.0 * h1, q2_rate, pull)
@@ -158,32 +159,34 @@ def leg(law: Law, psi: Any, x: State, s: Any) -> Oscillation:
     return Oscillation(law.omega, alpha, beta, h0, h1, z0, z1, q2_rate, pull)
 
 
-def after(law: Law, q: Oscillation, p: Point, x: State, s: Any, t: Any, low: Any = 0.0) -> State:
+def after(
+    law: Law[Number],
+    q: Oscillation[Number],
+    p: Point[Number],
+    x: State[Number],
+    s: float | np.ndarray,
+    t: Number,
+    low: Number | float = 0.0,
+) -> State[Number]:
     """Where such a leg is after a time; `low`: digits of w below its roundoff."""
     travel, fallen, sliding = q.travel(t), q.q2_pull * t, s != 0
     w, rate = x.w + (low + (p.way - travel)), x.rate + p.speed - fallen
     v, v_rate = x.v + p.way + law.eps * travel, x.v_rate + p.speed + law.eps * fallen
-    if np.ndim(s) == 0:
-        return (
-            State(w, rate, v, v_rate)
-            if sliding
-            else State(x.w, 0.0, x.v + law.whole * p.way, x.v_rate + law.whole * p.speed)
-        )
     return State(
-        np.where(sliding, w, x.w),
-        np.where(sliding, rate, 0.0),
-        np.where(sliding, v, x.v + law.whole * p.way),
-        np.where(sliding, v_rate, x.v_rate + law.whole * p.speed),
+        where(sliding, w, x.w),
+        where(sliding, rate, 0.0 * x.rate),
+        where(sliding, v, x.v + law.whole * p.way),
+        where(sliding, v_rate, x.v_rate + law.whole * p.speed),
     )
 
 
-def oscillation(state: np.ndarray, law: Law) -> Oscillation:
+def oscillation(state: np.ndarray, law: Law[float]) -> Oscillation[float]:
     """The closed form of the leg that begins with a stepper's state, of a cavity that is not shaken."""
     rate = state[RATE] if state[MODE] != 0.0 else 0.0
     return leg(law, state[PSI], State(state[W], rate, state[V], state[V_RATE]), state[MODE])
 
 
-def push(law: Law, x: State, sine: Any, cosine: Any) -> Any:
+def push(law: Law[Number], x: State[Number], sine: Number, cosine: Number) -> Number:
     """v'', which neither friction nor the slope enters."""
     if law.prescribed:
         return -law.omega * law.omega * (law.slide.X * sine + law.slide.Y * cosine)
@@ -197,7 +200,14 @@ def certain(y: float, slope: float, bound: float) -> float:
     return (root + slope) / bound if slope > 0.0 else 2.0 * y / (root - slope)
 
 
-def first_zero(look: Any, start: float, end: float, bound: float, tiny: float, phase: float = 0.0) -> float:
+def first_zero(
+    look: Callable[[float], tuple[float, float]],
+    start: float,
+    end: float,
+    bound: float,
+    tiny: float,
+    phase: float = 0.0,
+) -> float:
     """First zero in start < tau < end of a number of which `look(tau)` is the value and the slope; `end` when there is none.
 
     With abs(y'') <= `bound`, steps of the length of `certain` approach a simple zero like Newton's method, from one side, and never jump over
@@ -205,11 +215,11 @@ def first_zero(look: Any, start: float, end: float, bound: float, tiny: float, p
     where the motion began.
     """
     tau = start
-    if bound <= 1e-300:
+    if bound <= SMALLEST:
         return end
     value, slope = look(tau)
-    if abs(value) <= tiny + 1e-15 * (1.0 + start + abs(phase)) * abs(slope):
-        tau += max(abs(slope) / bound, 1e-8)
+    if abs(value) <= tiny + 4.0 * ROUNDOFF * (1.0 + start + abs(phase)) * abs(slope):
+        tau += max(abs(slope) / bound, STEPPING.leave)
         if not tau < end:
             return end
         value, slope = look(tau)
@@ -218,7 +228,7 @@ def first_zero(look: Any, start: float, end: float, bound: float, tiny: float, p
         if sign * value <= tiny:
             return tau
         step = certain(sign * value, sign * slope, bound)
-        if step <= 2e-16 * (1.0 + tau):
+        if step <= ROUNDOFF * (1.0 + tau):
             return tau
         tau += step
         if not tau < end:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-SLIPPING = 1e-6  # phase by which the slip may miss the instant at which friction gives way: the equations solve for it
+from orbits.settings import EVENTS, STEPPING
 
 
 def reversal(pull, peak):
@@ -19,7 +19,7 @@ def _ahead(angle):
     """An angle modulo a turn: 0 or ahead, but for rounding, which must not make a turn of an instant that is now."""
     turn = 2.0 * np.pi
     rest = angle - turn * np.floor(angle / turn)
-    return rest - turn if rest > turn - SLIPPING else rest
+    return rest - turn if rest > turn - STEPPING.slip else rest
 
 
 def _reach(law, w0, beta, psi0, psi1):
@@ -37,7 +37,7 @@ def _reach(law, w0, beta, psi0, psi1):
         if -1.0 < ratio < 1.0:  # sin Psi = -b/(C Omega^2)
             for base in (-angle, np.pi + angle):
                 zero = base + 2.0 * np.pi * (np.floor((begin - base) / (2.0 * np.pi)) + 1.0)
-                if begin + 1e-12 < zero < end:
+                if begin + EVENTS.zero < zero < end:
                     end = zero
         after = speed * np.cos(end) - beta - b * (end - psi0) / omega
         if before * after < 0.0:
@@ -105,7 +105,7 @@ def margins(law, data, u, work, out):
                 if right_ratio < 1.0:
                     first = min(first, _ahead(right_reversal - psi0))
                 late = (psi1 - psi0) - first
-                flight = d if abs(late) < SLIPPING else -abs(late)
+                flight = d if abs(late) < STEPPING.slip else -abs(late)
             else:
                 flight = -1.0
         elif not free:
@@ -119,10 +119,10 @@ def margins(law, data, u, work, out):
                 # mode +: Psi = pi + reversal (cos < 0);  mode -: Psi = reversal (cos > 0)
                 base = np.pi + turning if mode > 0 else turning
                 last = base + two_pi * np.floor((psi1 - base) / two_pi)
-                if last >= psi1 - 1e-9 * (1.0 if arrival >= 2 else 0.0):
+                if last >= psi1 - EVENTS.at_end * (1.0 if arrival >= 2 else 0.0):
                     last -= two_pi
                 # a slip starts at such a minimum, which is not inside the flight; the next one is 2 pi away
-                early = 1.0 if event == 4 else (1e-9 if event >= 2 else 0.0)
+                early = 1.0 if event == 4 else (EVENTS.at_end if event >= 2 else 0.0)
                 if last > psi0 + early:
                     cosine = left_cosine if mode > 0 else right_cosine
                     # s w' = s (speed cos - beta) - k_s (t - t0): the last minimum is the lowest one, the first one if k_s < 0

@@ -25,11 +25,12 @@ import numpy as np
 
 from orbits.machines.digits import remainders, shift, wrap
 from orbits.machines.reference.legs import angle_of, directions, fall
+from orbits.numbers import ROUNDOFF
+from orbits.settings import EVENTS, STEPPING
 
 _L, _R, _T, _S, _U, _HOLD = 0, 1, 2, 3, 4, 5
 _EVENTS_FULL, _TIME_REACHED, _REST, _FAILED = 0, 1, 2, 3
 _TWO_PI = 2.0 * math.pi
-_TINY = 1e-30
 
 
 def advance(law, state, until, codes, modes, rows):
@@ -60,7 +61,7 @@ def advance(law, state, until, codes, modes, rows):
     at_root = False  # the leg starts exactly where q = 0, q rising
     ahead = leftwards if s > 0.0 else rightwards
     if ahead.driven and s != 0.0 and p == 0.0 and -s * math.cos(psi) > 0.0:
-        at_root = abs(-s * C * math.sin(psi) - ahead.pull) < 1e-13 * C  # a slip
+        at_root = abs(-s * C * math.sin(psi) - ahead.pull) < EVENTS.zero * C  # a slip
     count = 0
     status = _EVENTS_FULL
     while True:
@@ -78,7 +79,7 @@ def advance(law, state, until, codes, modes, rows):
                 if way * w >= ahead.reach or not ahead.driven:
                     continue
                 theta = angle_of(psi, way, ahead.alpha)
-                if ahead.always or ahead.alpha <= theta < math.pi - ahead.alpha - 1e-12:
+                if ahead.always or ahead.alpha <= theta < math.pi - ahead.alpha - EVENTS.zero:
                     delay = 0.0
                 else:
                     delay, _ = wrap(ahead.alpha - theta)
@@ -121,7 +122,7 @@ def advance(law, state, until, codes, modes, rows):
             q0 = C * m0 - A
         away = -m0 * C  # v'' against the motion
         if (
-            p < 1e-6 * size
+            p < EVENTS.slow * size
             and -s * w == behind.reach
             and away > behind.pull
             and away + A > 0.0
@@ -133,9 +134,11 @@ def advance(law, state, until, codes, modes, rows):
             rest = p * (1.0 / brake + 1.0 / np.sqrt(back * brake))
             if factor < 1.0:
                 rest /= 1.0 - factor
-            if (rest * rest * C < 1e-16 * back and factor < 1.0) or p < 1e-13 * size:
-                if p < 1e-13 * size:
-                    rest = min(rest, 1e-13)
+            if (
+                rest * rest * C < 0.01 * STEPPING.chatter**2 * back and factor < 1.0
+            ) or p < STEPPING.still * size:
+                if p < STEPPING.still * size:
+                    rest = min(rest, STEPPING.still)
                 psi, more = wrap(psi + rest)
                 turns += more
                 codes[count] = _HOLD
@@ -189,7 +192,7 @@ def advance(law, state, until, codes, modes, rows):
                     step = (y - target) / rate if rate > 0.0 else x
                     if step >= x:
                         step = 0.5 * x
-                    if not step > 2.3e-16 * x:
+                    if not step > ROUNDOFF * x:
                         break
                     x -= step
                     sine, versine, third, fourth = remainders(x)
@@ -198,9 +201,9 @@ def advance(law, state, until, codes, modes, rows):
                     step = (y - target) / rate
                     pull = q0 + C * (k0 * sine - m0 * versine)
                     if (
-                        step <= 1e-5 * x
-                        and abs(pull) * step <= 1e-5 * rate
-                        and C * step * step <= 1e-9 * rate
+                        step <= STEPPING.last_step * x
+                        and abs(pull) * step <= STEPPING.last_step * rate
+                        and C * step * step <= STEPPING.curved * rate
                     ):
                         step *= 1.0 + 0.5 * step * pull / rate  # the last step from values at hand
                         x -= step
@@ -213,7 +216,7 @@ def advance(law, state, until, codes, modes, rows):
                     kind = 2
                     break
                 step = (target - y) / rate
-                if not step > 2.3e-16 * x:
+                if not step > ROUNDOFF * x:
                     if target - y <= 0.0 or step > 0.0:
                         kind = 1
                     break
@@ -228,8 +231,11 @@ def advance(law, state, until, codes, modes, rows):
                 y = p * x + 0.5 * q0 * x * x + C * (k0 * third - m0 * fourth)
                 step = (target - y) / rate
                 pull = q0 + C * (k0 * sine - m0 * versine)
-                small = abs(pull) * step <= 1e-5 * rate and C * step * step <= 1e-9 * rate
-                if small and 0.0 < step <= 1e-5 * x and x + step < end:
+                small = (
+                    abs(pull) * step <= STEPPING.last_step * rate
+                    and C * step * step <= STEPPING.curved * rate
+                )
+                if small and 0.0 < step <= STEPPING.last_step * x and x + step < end:
                     step *= 1.0 - 0.5 * step * pull / rate  # the last step from values at hand
                     x += step
                     rate += step * (pull + 0.5 * step * C * (k0 * (1.0 - versine) - m0 * sine))
@@ -252,8 +258,7 @@ def advance(law, state, until, codes, modes, rows):
         psi, more = wrap(psi + x)
         turns += more
         if kind == 1:
-            if not rate > _TINY:
-                rate = _TINY
+            rate = max(STEPPING.least_speed, rate)
             w = s * ahead.reach
             low = 0.0
             p = ahead.restitution * rate

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from orbits.machines.parameters import ParameterError
 
+Given = str | np.ndarray | Sequence[Sequence[float]]
 MOST = 3000  # degrees of freedom: the reduction works with full matrices
 ALIKE = 1e-8  # relative: matrices that differ so little from their transposes are symmetric
 
 
-def matrix(name: str, given: Any, folder: Path | None = None) -> np.ndarray:
+def matrix(name: str, given: Given, folder: Path | None = None) -> np.ndarray:
     """A square matrix, shape (n, n).
 
     Parameters
@@ -52,7 +53,7 @@ def matrix(name: str, given: Any, folder: Path | None = None) -> np.ndarray:
     return 0.5 * (found + found.T)
 
 
-def _read(name: str, text: str, folder: Path | None) -> Any:
+def _read(name: str, text: str, folder: Path | None) -> Sequence[Sequence[float]] | np.ndarray:
     file, _, variable = text.partition(":")
     path = Path(file) if folder is None else folder / file
     if path.suffix != ".mat":

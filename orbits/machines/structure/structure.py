@@ -9,9 +9,9 @@ with dry friction in a cavity that rides on a degree of freedom.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,9 +21,14 @@ from orbits.contacts.switch import Switch
 from orbits.contacts.wall import Wall
 from orbits.machines.page.machine import Machine
 from orbits.machines.parameters import ParameterError
-from orbits.machines.structure.matrices import matrix
+from orbits.machines.structure.matrices import Given, matrix
 from orbits.machines.structure.reduction import Reduced, reduced
 from orbits.symbols import cos, sqrt
+
+if TYPE_CHECKING:
+    from orbits.machines.page.formulas import Named, States
+    from orbits.machines.page.patterns import Contact
+    from orbits.symbols import Plain
 
 Element = Mapping[str, float]
 FIELDS: dict[str, dict[str, float | None]] = {  # of each kind of element; None: must be given
@@ -74,9 +79,9 @@ class Structure(Machine):
 
 
 def structure(
-    mass: Any,
-    damping: Any,
-    stiffness: Any,
+    mass: Given,
+    damping: Given,
+    stiffness: Given,
     *,
     forces: Sequence[Element] = (),
     walls: Sequence[Element] = (),
@@ -155,7 +160,7 @@ def structure_again(settings: Mapping[str, Any]) -> Structure:
     return _made(small, kept["elements"], values.get("frequency", 1.0), values)
 
 
-def _element(kind: str, place: int, given: Any, size: int) -> dict[str, float]:
+def _element(kind: str, place: int, given: object, size: int) -> dict[str, float]:
     """An element with all its fields."""
     where, known = f"{kind}s[{place}]", FIELDS[kind]
     if not isinstance(given, Mapping):
@@ -216,14 +221,14 @@ class _Rows:
             found[self.place[int(element["to"])]] = -1.0
         return found
 
-    def stretch(self, state: Any, direction: np.ndarray, speed: bool = False) -> Any:
+    def stretch(self, state: States, direction: np.ndarray, speed: bool = False) -> Plain:
         """x_at - x_to, or its rate."""
         first = len(self.positions) if speed else 0
         return _sum(direction, state[first : first + self.count])
 
 
-def _sum(factors: np.ndarray, values: Sequence[Any]) -> Any:
-    total: Any = 0.0
+def _sum(factors: np.ndarray, values: Sequence[Plain]) -> Plain:
+    total: Plain = 0.0
     for factor, value in zip(factors.tolist(), values):
         if factor:
             total = total + factor * value
@@ -244,7 +249,9 @@ def _made(
             parameters |= {
                 rows.name(kind, k, field): value for field, value in own.items() if field != "loss" or value
             }
-    contacts = [contact for k, wall in enumerate(elements["wall"]) for contact in _wall(rows, k, wall)]
+    contacts: list[Contact] = [
+        contact for k, wall in enumerate(elements["wall"]) for contact in _wall(rows, k, wall)
+    ]
     contacts += [
         _friction(rows.between(f), rows, f"rub{k + 1}", rows.name("friction", k, "limit"), k + 1)
         for k, f in enumerate(elements["friction"])
@@ -264,12 +271,12 @@ def _made(
     return made
 
 
-def _motion(rows: _Rows, elements: Mapping[str, Sequence[Element]]) -> Any:
+def _motion(rows: _Rows, elements: Mapping[str, Sequence[Element]]) -> Callable[..., tuple[Plain, ...]]:
     bodies = len(elements["absorber"])
 
-    def motion(state: Any, phase: Any, p: Any, contact: Any) -> tuple[Any, ...]:
+    def motion(state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:
         x, v = state[: rows.count], state[len(rows.positions) : len(rows.positions) + rows.count]
-        pushes: list[tuple[np.ndarray, Any]] = []
+        pushes: list[tuple[np.ndarray, Plain]] = []
         for k, force in enumerate(elements["force"]):
             swing = cos(force["harmonic"] * phase + force["shift"])
             pushes.append((rows.between(force), getattr(p, rows.name("force", k, "amplitude")) * swing))
@@ -297,7 +304,7 @@ def _motion(rows: _Rows, elements: Mapping[str, Sequence[Element]]) -> Any:
     return motion
 
 
-def _press(rows: _Rows, k: int, wall: Element, state: Any, p: Any) -> Any:
+def _press(rows: _Rows, k: int, wall: Element, state: States, p: Named) -> Plain:
     """The force with which an elastic wall presses."""
     force = getattr(p, rows.name("wall", k, "stiffness")) * _beyond(rows, k, wall, state, p)
     if wall["loss"]:
@@ -306,21 +313,21 @@ def _press(rows: _Rows, k: int, wall: Element, state: Any, p: Any) -> Any:
     return force
 
 
-def _beyond(rows: _Rows, k: int, wall: Element, state: Any, p: Any) -> Any:
+def _beyond(rows: _Rows, k: int, wall: Element, state: States, p: Named) -> Plain:
     """How far the structure has gone beyond the gap of a wall."""
     return rows.stretch(state, wall["side"] * rows.between(wall)) - getattr(p, rows.name("wall", k, "gap"))
 
 
-def _pressed(k: int, wall: Element, contact: Any) -> Any:
+def _pressed(k: int, wall: Element, contact: Named) -> Plain:
     """1 where an elastic wall presses, else 0."""
     deep = 0.5 * (1 + getattr(contact, f"stop{k + 1}"))
     return deep * (0.5 * (1 + getattr(contact, f"holds{k + 1}"))) if wall["loss"] else deep
 
 
-def _wall(rows: _Rows, k: int, wall: Element) -> list[Any]:
+def _wall(rows: _Rows, k: int, wall: Element) -> list[Wall | Switch]:
     direction, gap = wall["side"] * rows.between(wall), rows.name("wall", k, "gap")
 
-    def left(state: Any, phase: Any, p: Any) -> Any:
+    def left(state: States, phase: Plain, p: Named) -> Plain:
         return getattr(p, gap) - rows.stretch(state, direction)
 
     if "restitution" in wall:
@@ -339,7 +346,7 @@ def _friction(direction: np.ndarray, rows: _Rows, name: str, limit: str, number:
     )
 
 
-def _absorber(rows: _Rows, k: int, absorber: Element) -> list[Any]:
+def _absorber(rows: _Rows, k: int, absorber: Element) -> list[Wall | DryFriction]:
     """Two walls and a floor of an absorber's cavity."""
     direction, mass = rows.between(absorber), rows.name("absorber", k, "mass")
     place, speed = rows.count + k, len(rows.positions) + rows.count + k
@@ -364,11 +371,12 @@ def _absorber(rows: _Rows, k: int, absorber: Element) -> list[Any]:
     return [wall(f"L{k + 1}", 1), wall(f"R{k + 1}", -1), floor]
 
 
-def _energy(rows: _Rows, small: Reduced, elements: Mapping[str, Sequence[Element]]) -> Any:
+def _energy(rows: _Rows, small: Reduced, elements: Mapping[str, Sequence[Element]]) -> Callable[..., Plain]:
     """Of the structure, its absorbers and its elastic walls: half the stiffness times the square of how deep they are pressed in."""
 
-    def energy(state: Any, phase: Any, p: Any) -> Any:
-        first, total = len(rows.positions), 0.0
+    def energy(state: States, phase: Plain, p: Named) -> Plain:
+        first = len(rows.positions)
+        total: Plain = 0.0
         for part, values in (
             (small.stiffness, state[: rows.count]),
             (small.mass, state[first : first + rows.count]),

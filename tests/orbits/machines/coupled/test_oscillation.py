@@ -22,7 +22,7 @@ def exact(order, tau):
 @pytest.mark.parametrize("tau", [1e-7, 1e-4, 0.004, 0.0299, 0.0301, 0.4, 3.0])
 def test_small_differences_keep_their_digits(tau):
     """Close to the start of a leg from Taylor series, further on from the closed form: the same motion."""
-    found = Oscillation(OMEGA, ALPHA, BETA, *START).at(tau)
+    found = Oscillation(OMEGA, ALPHA, BETA, *START, 0.0, 0.0).at(tau)
     with mp.workdps(40):
         t = mp.mpf(tau)
         way = sum(exact(0, t)) - sum(exact(0, 0))
