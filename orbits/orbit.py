@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -13,9 +14,10 @@ from contvines.shared.near_names import hinting
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import deviation
 from orbits.flows.protocol import Equations
+from orbits.settings import EVENTS
 from orbits.words.margins import Margin, approaches_of, limits_of, margin_units, named_margins
 
-REAL = -1e-12  # margins from here to zero, in units of the machine's own size, are rounding of zero: a border orbit itself is real
+REAL = -EVENTS.zero  # margins from here to zero, in units of the machine's own size, are rounding of zero: a border orbit itself is real
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -195,7 +197,7 @@ class Orbit(Cycle):
 
         return portrait(self, **options)
 
-    def animate(self, path: Any = None, **options: Any):
+    def animate(self, path: str | Path | None = None, **options: Any):
         """The orbit in motion, written to a gif, mp4 or html file if a path is given; see `orbits.plots.animation.animate`."""
         from orbits.plots.animation import animate
 

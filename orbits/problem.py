@@ -225,7 +225,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         mirrored, same = self._mirrored_at(p), size_of_one(nodes)
         return canonical(self.word, self.periods, nodes, mirrored, forced=self.forced, same=same)
 
-    def same_motion(self, u: np.ndarray, p: float, other: Any, v: np.ndarray) -> bool:
+    def same_motion(self, u: np.ndarray, p: float, other: object, v: np.ndarray) -> bool:
         """Whether a solution of another problem at the same parameter value is this motion, or its mirror image.
 
         At a border one motion has several words, so that `canonical` cannot tell.
@@ -362,7 +362,7 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
     if "page" in settings:
         from orbits.machines.page.stored import machine_again
 
-        model: Any = machine_again(settings, trust)
+        model: Varying | None = machine_again(settings, trust)
         if model is None:
             return None
     else:

@@ -25,7 +25,7 @@ class BorderPoint(Protocol):
     @property
     def tangent(self) -> np.ndarray: ...
     @property
-    def margin_index(self) -> Any: ...
+    def margin_index(self) -> int: ...
 
 
 class CycleProblem(Protocol):
@@ -44,14 +44,14 @@ class CycleProblem(Protocol):
     shift: float
     n_multipliers: int
     n_margins: int
-    data: Any
+    data: object
     equations: Equations
 
     @property
     def spelling(self) -> str: ...
 
     @property
-    def scratch(self) -> Any: ...
+    def scratch(self) -> object: ...
 
     def values(self, p: float | np.ndarray) -> np.ndarray: ...
 
@@ -60,6 +60,8 @@ class CycleProblem(Protocol):
     def reduce(self, nodes: np.ndarray) -> np.ndarray: ...
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray: ...
+
+    def middle(self, p: float) -> float: ...
 
     def orbit(self, u: np.ndarray, p: float) -> Orbit: ...
 
@@ -135,7 +137,7 @@ class Symmetry(NamedTuple):
 class Embedding(NamedTuple):
     """A solution seen in a larger problem, in which it is a branch point."""
 
-    problem: Any
+    problem: object
     u: np.ndarray
     tangent: np.ndarray
     kind: str

@@ -403,6 +403,82 @@ class Integrating:
     absolute: float = 1e-14
 
 
+@dataclass(frozen=True)
+class Formulas:
+    """What a machine file's formulas, a structure's matrices and polynomials with known roots are held to.
+
+    Attributes
+    ----------
+    same : float
+        Relative difference of numbers that a formula gives in two ways, or of a matrix and its transpose.
+    zero : float
+        Share of the largest below which an effect, or a natural frequency squared, is none.
+    real : float
+        Relative imaginary part of a root that is real.
+    runaway : float
+        Size of a state beyond which it is no fault of a formula that it is no number.
+    """
+
+    same: float = 1e-8
+    zero: float = 1e-12
+    real: float = 1e-9
+    runaway: float = 1e8
+
+
+@dataclass(frozen=True)
+class Theory:
+    """Of the method of multiple scales.
+
+    Attributes
+    ----------
+    rounding : float
+        Coefficients and squared amplitudes, relative to the largest, that are rounding.
+    off_end : float
+        Distance (radians, or velocity) from an end of a manifold's piece, where its slope is infinite.
+    relative, absolute : float
+        Error of a step in integrating the slow flow.
+    """
+
+    rounding: float = 1e-14
+    off_end: float = 1e-6
+    relative: float = 1e-9
+    absolute: float = 1e-11
+
+
+@dataclass(frozen=True)
+class Neighbours:
+    """Of two motions next to each other whose distance tells how fast small differences grow.
+
+    Attributes
+    ----------
+    apart : float
+        Their distance, relative to 1 + the states.
+    far : float
+        Distance that tells nothing of small differences.
+    wait : float
+        Clock in which a self-excited machine's event is waited for.
+    """
+
+    apart: float = 1e-7
+    far: float = 1e-2
+    wait: float = 1e4
+
+
+@dataclass(frozen=True)
+class Sameness:
+    """When two motions are one: the largest difference of their positions.
+
+    Attributes
+    ----------
+    closed_form, integrated : float
+        Of flights in closed form (borders whose values agree to 1e-12 may be 5e-6 apart) and of integrated ones (grazes are known to the root
+        of their error).
+    """
+
+    closed_form: float = 1e-7
+    integrated: float = 1e-5
+
+
 SOLVING = Solving()
 EVENTS = Events()
 GROWING = Growing()
@@ -414,3 +490,7 @@ DESIGNING = Designing()
 PROVING = Proving()
 STEPPING = Stepping()
 INTEGRATING = Integrating()
+FORMULAS = Formulas()
+THEORY = Theory()
+NEIGHBOURS = Neighbours()
+SAMENESS = Sameness()

@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-LARGEST = 1e6
+LARGEST = 1_000_000.0
 """Of a number in a study, in the machine's own units, where all numbers are of order one; squares stay far from overflow."""
 
 

@@ -186,17 +186,36 @@ class Varying:
 
         return simulate(self, start, periods=periods, time=time, events=events, **parameters)
 
-    def attractor(self, start: Mapping[str, float] | np.ndarray | None = None, **parameters: Any):
+    def attractor(
+        self,
+        start: Mapping[str, float] | np.ndarray | None = None,
+        *,
+        transient: float | None = None,
+        max_period: int = 16,
+        tolerance: float | None = None,
+        patience: int | None = None,
+        observed: bool = True,
+        **parameters: float,
+    ):
         """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
         from orbits.attractors.search import find_attractor
 
-        return find_attractor(self, start, **parameters)
+        return find_attractor(
+            self,
+            start,
+            transient=transient,
+            max_period=max_period,
+            tolerance=tolerance,
+            patience=patience,
+            observed=observed,
+            **parameters,
+        )
 
-    def attractors(self, count: int, seed: int = 0, size: float = 1.0, **parameters: Any):
+    def attractors(self, count: int, seed: int = 0, size: float = 1.0, **options: float | None):
         """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
         from orbits.attractors.search import different_attractors
 
-        return different_attractors(self, count, seed, size, **parameters)
+        return different_attractors(self, count, seed, size, **options)
 
     def population(self, over: str | None = None, **parameters: float):
         """Many starts and what they settle on; see `orbits.population.Population`."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from orbits.contacts.letters import BORDERS, HIT, STRENGTH, STROBE
+from orbits.numbers import UNBOUNDED
 from orbits.words.alphabet import Watch
 from orbits.words.word import Word
 
@@ -106,13 +107,10 @@ def named_margins(word: Word, values: np.ndarray) -> list[Margin]:
     ]
 
 
-UNBOUNDED = 0.999e15  # multipliers of 1e15, but for rounding, grow without bound towards the border
-
-
 def limits_of(multipliers: np.ndarray) -> np.ndarray:
     """One-sided limits of multipliers at a border: infinite, of their sign, where they grow without bound, as at a graze."""
     limits = np.array(multipliers, dtype=np.complex128)
-    grown = np.abs(limits) >= UNBOUNDED
+    grown = np.abs(limits) >= 0.999 * UNBOUNDED
     for part in limits.view(np.float64).reshape(-1, 2).T:
         part[grown & (np.abs(part) > 1.0)] *= np.inf
     return limits

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -104,13 +104,27 @@ def spliced(
     return np.array(rows) if rows else nodes[:1]
 
 
+class Rounds(Protocol):
+    """The problem of the cycles that a word describes, of which a round is one cycle, or half a symmetric one."""
+
+    @property
+    def word(self) -> Word: ...
+    @property
+    def symmetric(self) -> bool: ...
+    @property
+    def shift(self) -> float: ...
+    @property
+    def length(self) -> int: ...
+    def middle(self, p: float) -> float: ...
+
+
 class Edit(NamedTuple):
     """A change of the word, and the nodes of its new events, a row each: phase or clock first, then what is held there."""
 
     change: Change
     nodes: np.ndarray
 
-    def later(self, rounds: int, problem: Any, p: float) -> Edit:
+    def later(self, rounds: int, problem: Rounds, p: float) -> Edit:
         """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
         if rounds == 0:
             return self

@@ -14,6 +14,7 @@ from orbits.flows.native.cycle_equations import Equations
 from orbits.flows.protocol import Census, Motion, Vanishing
 from orbits.machines.base import Model
 from orbits.machines.events import events_of
+from orbits.settings import SAMENESS
 from orbits.words import Word
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ class NativeFlow:
 
     angles = measures.ANGLES
     closed_form = True
-    resolution = 1e-7  # two borders whose values agree to 1e-12 may be 5e-6 apart
+    resolution = SAMENESS.closed_form
 
     def census(self, model: Model) -> Census:
         """Many at once, in closed form."""

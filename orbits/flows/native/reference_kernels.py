@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contvines.core.multipliers.periodic_schur import reference as multipliers
+from orbits.arguments import CycleData, Workspace
 from orbits.elimination import rearranged
 from orbits.elimination.block_cyclic import bordered
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.machines import path
 from orbits.machines.reference.machine import Reference
 from orbits.words.alphabet import CODES
-
-if TYPE_CHECKING:
-    from orbits.arguments import CycleData, Workspace
 
 STICK, SLIP = CODES["s"], CODES["u"]
 

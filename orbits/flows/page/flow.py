@@ -15,7 +15,7 @@ from orbits.flows.page.cycle_equations import PageEquations, loose_states
 from orbits.flows.protocol import Census, Motion, Vanishing
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
-from orbits.settings import EVENTS
+from orbits.settings import EVENTS, SAMENESS
 from orbits.words import Word
 
 LARGE = 5  # states
@@ -26,7 +26,7 @@ class PageFlow:
 
     angles = ("phase",)
     closed_form = False
-    resolution = 1e-5  # flights know a border to 1e-10, and grazes to its root
+    resolution = SAMENESS.integrated
 
     def census(self, model: Machine) -> Census:
         """Flights are integrated one by one; of a machine with many states words are long, and a start is followed for seconds."""

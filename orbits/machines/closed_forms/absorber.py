@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from orbits.machines.parameters import ParameterError
+from orbits.settings import FORMULAS
 from orbits.words import Word
 
 
@@ -96,7 +97,7 @@ def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
     curvature = 0.25 * np.pi**2 + R**2
     least = float(fold_square(R, H))
     middle = float(fold_beta(R, H))
-    if least * (1.0 - 1e-14) > C**2:
+    if least * (1.0 - FORMULAS.zero) > C**2:
         raise ParameterError(
             f"amplitude = {C:g} has no symmetric orbit with two impacts per period: it begins at {np.sqrt(least):.10g}"
         )

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from orbits.settings import FORMULAS
 from orbits.words import Word
 
 if TYPE_CHECKING:
@@ -261,7 +262,7 @@ def stuck_frequencies(params: np.ndarray) -> np.ndarray:
             "b",
         )
     )
-    real = roots[np.abs(roots.imag) < 1e-9 * np.abs(roots)].real
+    real = roots[np.abs(roots.imag) < FORMULAS.real * np.abs(roots)].real
     return np.sqrt(np.sort(real[real > 0.0]))
 
 

@@ -12,12 +12,12 @@ from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.patterns import Equations
+from orbits.settings import FORMULAS
 
 if TYPE_CHECKING:
     from orbits.symbols import Symbol
 
 DRAWS = 8  # random states at which formulas are compared
-SAME = 1e-9  # relative
 
 
 class Draws:
@@ -73,7 +73,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
                 f"{what}: motion must be affine in contact.{e.contacts[j].name} (force times a mass factor)"
             )
         sizes = draws.of([replaced(effect[0], dict.fromkeys(others | {name}, 0.0))])[:, 0]
-        if not np.all(sizes[np.isfinite(sizes)] > 1e-12):
+        if not np.all(sizes[np.isfinite(sizes)] > FORMULAS.zero):
             raise PageError(
                 f"{what}: a positive contact.{e.contacts[j].name} must speed its velocity up; here it gives the acceleration "
                 f"{float(np.nanmin(sizes)):.3g}. Change the sign of the force in motion, or of the velocity"
@@ -93,16 +93,18 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
         for effect, push in zip(effects, e.push[j]):
             moved = effect * push + moved
         sizes = draws.of([moved])[:, 0]
-        if not np.all(np.abs(sizes[np.isfinite(sizes)]) > 1e-12):
+        if not np.all(np.abs(sizes[np.isfinite(sizes)]) > FORMULAS.zero):
             raise PageError(
                 f"{what}: an impulse along push = {dict(contact.push)!r} does not change the rate of its gap; "
                 "push the velocities of the bodies that meet there"
             )
         table = draws.of([e.gap_rate(j), e.restitution[j], e.gap[j], *after])
         later = draws.of([e.gap_rate(j), e.gap[j]], states=table[:, 3:])
-        if np.abs(later[:, 1] - table[:, 2]).max() > SAME * (1.0 + np.abs(table[:, 2]).max()):
+        if np.abs(later[:, 1] - table[:, 2]).max() > FORMULAS.same * (1.0 + np.abs(table[:, 2]).max()):
             raise PageError(f"{what}: the impulse moves the gap itself; push rates of positions only")
-        if np.abs(later[:, 0] + table[:, 1] * table[:, 0]).max() > SAME * (1.0 + np.abs(table[:, 0]).max()):
+        if np.abs(later[:, 0] + table[:, 1] * table[:, 0]).max() > FORMULAS.same * (
+            1.0 + np.abs(table[:, 0]).max()
+        ):
             raise PageError(f"{what}: the rate of its gap must be linear in what push changes")
         for k in e.signed:
             flip = _flip(draws, e.velocity[k] if k in e.velocity else e.surface[k], table)
@@ -124,7 +126,7 @@ def _check_periods(draws: Draws, rates: Sequence[Any]) -> None:
     here, there = draws.of(values), draws.of(values, clock=draws.clock + 2.0 * np.pi)
     for (what, _), a, b in zip(told, here.T, there.T):
         gap = np.abs(a - b)
-        if np.nanmax(gap, initial=0.0) > SAME * (1.0 + np.nanmax(np.abs(a), initial=0.0)):
+        if np.nanmax(gap, initial=0.0) > FORMULAS.same * (1.0 + np.nanmax(np.abs(a), initial=0.0)):
             k = int(np.nanargmax(gap))
             raise PageError(
                 f"{what} does not have the period 2 pi in the phase: at phase = {draws.clock[k]:.4g} it is {a[k]:.6g}, 2 pi later "
@@ -167,7 +169,9 @@ def _proportional(draws: Draws, one: Symbol, other: Symbol) -> bool:
     table = draws.of([one, other])
     with np.errstate(all="ignore"):
         ratio = table[:, 0] / table[:, 1]
-    return bool(np.all(np.isfinite(ratio)) and np.any(ratio) and np.ptp(ratio) < SAME * np.abs(ratio).max())
+    return bool(
+        np.all(np.isfinite(ratio)) and np.any(ratio) and np.ptp(ratio) < FORMULAS.same * np.abs(ratio).max()
+    )
 
 
 def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
@@ -196,9 +200,9 @@ def _flip(draws: Draws, value: Symbol, table: np.ndarray) -> int | None:
     """0: the impact leaves the velocity (or surface) alone; -1, +1: its sign afterwards; None: it may change to either."""
     before = draws.of([value])[:, 0]
     after = draws.of([value], states=table[:, 3:])[:, 0]
-    if np.abs(after - before).max() < SAME * (1.0 + np.abs(before).max()):
+    if np.abs(after - before).max() < FORMULAS.same * (1.0 + np.abs(before).max()):
         return 0
     ratio = before / table[:, 0]  # velocity = ratio * rate of the gap, everywhere
-    if np.all(np.isfinite(ratio)) and np.ptp(ratio) < SAME * np.abs(ratio).max():
+    if np.all(np.isfinite(ratio)) and np.ptp(ratio) < FORMULAS.same * np.abs(ratio).max():
         return 1 if ratio[0] > 0.0 else -1  # after the impact the gap opens
     return None

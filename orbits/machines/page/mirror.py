@@ -14,9 +14,10 @@ import numpy as np
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values
-from orbits.machines.page.checks import DRAWS, SAME, Draws
+from orbits.machines.page.checks import DRAWS, Draws
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.patterns import Equations
+from orbits.settings import FORMULAS
 
 VARIED = 0.5  # parts of its own value (of 1, where it is 0) by which a parameter is varied
 
@@ -130,7 +131,7 @@ class MirrorImage:
     def _wrong(here: np.ndarray, there: np.ndarray) -> int | None:
         """The state at which a formula and its image differ most; None where they agree."""
         gap = np.abs(here - there)
-        agree = np.nanmax(gap) <= SAME * (1.0 + np.nanmax(np.abs(here)))
+        agree = np.nanmax(gap) <= FORMULAS.same * (1.0 + np.nanmax(np.abs(here)))
         return None if agree else int(np.nanargmax(gap))
 
 

@@ -15,17 +15,17 @@ from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values, derivatives
 from orbits.machines.page.formulas import Named, States
 from orbits.machines.page.patterns import Equations
+from orbits.settings import FORMULAS
 
 HERE = os.path.dirname(os.path.dirname(os.path.dirname(__file__)))
 FAILS = {"divide": "a division by zero", "invalid": "no number"}
-RUNAWAY = 1e8  # states beyond this are no place of a formula's own
 
 
 def singular_at(
     equations: Equations, params: np.ndarray, modes: Sequence[int], state: np.ndarray, clock: float
 ) -> str:
     """A sentence's part: the formula that is no number at a state or has no slopes there, and the state; empty if all are fine."""
-    if not np.abs(state).max() < RUNAWAY:
+    if not np.abs(state).max() < FORMULAS.runaway:
         return ""
     at = ", ".join(f"{name} = {value:.6g}" for name, value in zip(equations.states, state))
     if equations.phase_rate is not None:

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from orbits.machines.parameters import ParameterError
+from orbits.settings import FORMULAS
 
 Given = str | np.ndarray | Sequence[Sequence[float]]
 MOST = 3000  # degrees of freedom: the reduction works with full matrices
-ALIKE = 1e-8  # relative: matrices that differ so little from their transposes are symmetric
 
 
 def matrix(name: str, given: Given, folder: Path | None = None) -> np.ndarray:
@@ -48,7 +48,7 @@ def matrix(name: str, given: Given, folder: Path | None = None) -> np.ndarray:
         )
     if not np.isfinite(found).all():
         raise ParameterError(f"{where}: it has entries that are not finite")
-    if np.abs(found - found.T).max() > ALIKE * np.abs(found).max():
+    if np.abs(found - found.T).max() > FORMULAS.same * np.abs(found).max():
         raise ParameterError(f"{where}: it is not symmetric; a structure's matrices are")
     return 0.5 * (found + found.T)
 

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.linalg import eigh
 
 from orbits.machines.parameters import ParameterError
+from orbits.settings import FORMULAS
 
 WHOLE = 8  # degrees of freedom up to which nothing is reduced
-STILL = 1e-12  # smallest square of a natural frequency over the largest: below, the structure floats
 GRID = 200  # frequencies at which receptances are compared, beside the natural ones
 
 
@@ -88,7 +88,7 @@ def reduced(
         return Reduced(mass, damping, stiffness, tuple(range(size)), size, 0.0, highest)
     squares, modes = eigh(stiffness, mass)
     shift = (
-        highest**2 if squares[0] <= STILL * squares[-1] else 0.0
+        highest**2 if squares[0] <= FORMULAS.zero * squares[-1] else 0.0
     )  # a structure that floats has no static answer
     bent = np.linalg.solve(stiffness + shift * mass, np.eye(size)[:, kept])
     own = np.sqrt(np.maximum(squares, 0.0))

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbits.numbers import Reals
+
 from .flow import SlowFlow
 
 
@@ -38,12 +40,12 @@ class Coefficients:
     right part.
     """
 
-    alpha_c: float
-    beta_c: float
-    offset_c: float
-    alpha_gamma: float
-    beta_gamma: float
-    offset_gamma: float
+    alpha_c: Reals
+    beta_c: Reals
+    offset_c: Reals
+    alpha_gamma: Reals
+    beta_gamma: Reals
+    offset_gamma: Reals
 
 
 def coefficients(flow: SlowFlow, detuning: float = 0.0) -> Coefficients:
@@ -76,7 +78,11 @@ def backbone(flow: SlowFlow, velocity: ArrayLike | None = None) -> Backbone:
     amplitude = np.sqrt(squared)
     detuning = k2 / (2.0 * squared)
     return Backbone(
-        b, amplitude, (flow.damping * squared - k1) / amplitude, detuning, flow.frequency(detuning)
+        b,
+        amplitude,
+        (flow.damping * squared - k1) / amplitude,
+        detuning,
+        np.asarray(flow.frequency(detuning)),
     )
 
 

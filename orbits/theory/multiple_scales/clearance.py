@@ -20,11 +20,12 @@ mass ratio is ``m/(M + m)``; in the quantities of the slow flow: own derivation.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
+
+from orbits.numbers import ROUNDOFF
 
 from .flow import SlowFlow
 
@@ -118,9 +119,11 @@ def best_clearance(flow: SlowFlow) -> BestClearance:
     interior = turns.size > 0
     if interior:
         k = int(turns[np.argmin(force[turns])])
-        best: Any = brentq(
-            lambda b: float(_held(flow, np.asarray(b))[3]), places[k], places[k + 1], xtol=1e-15
-        )
+        best = root_scalar(
+            lambda b: float(_held(flow, np.asarray(b))[3]),
+            bracket=(places[k], places[k + 1]),
+            xtol=4.0 * ROUNDOFF,
+        ).root
     else:
         best = places[int(np.argmin(force))]
     found = tuned_backbone(flow, best)

@@ -19,7 +19,6 @@ eigenvalues mean nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -99,7 +98,7 @@ class SlowResponse:
         amplitude = np.sqrt(squared)
         return np.array([-amplitude * np.sin(phase) * scale, -np.cos(phase) / (2.0 * amplitude)], dtype=float)
 
-    def start(self, p: float | None = None, **named: Any) -> tuple[NDArray[np.float64], float]:
+    def start(self, p: float | None = None, **named: float) -> tuple[NDArray[np.float64], float]:
         """A steady state to start from: the one with the largest amplitude at a parameter value.
 
         Raises

@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
+from orbits.settings import THEORY
+
 from .backbone import coefficients
 from .flow import SlowFlow
 
@@ -21,7 +23,7 @@ from .flow import SlowFlow
 def _rise(flow: SlowFlow, amplitude: ArrayLike, what: str) -> NDArray:
     low = float(flow.activation.amplitude)
     squared = np.asarray(amplitude, dtype=float) ** 2 - low**2
-    if np.any(squared < -1e-14):
+    if np.any(squared < -THEORY.rounding):
         raise ValueError(
             f"{what} = {float(np.min(amplitude))!r} lies below the activation threshold C_min = {low:.6g}; "
             "the absorber does not stay on the impacting manifold there."
@@ -80,7 +82,7 @@ def decay_amplitude(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArr
     c = coefficients(flow)
     free = c.alpha_c * low**2 - c.offset_c
     for _ in range(3):
-        z = np.where(np.isfinite(guess), np.maximum(guess, 1e-12 * max(top, 1e-12)), top)
+        z = np.where(np.isfinite(guess), np.maximum(guess, THEORY.rounding * max(top, THEORY.rounding)), top)
         error = np.asarray(decay_time(flow, np.full_like(z, start), np.sqrt(low**2 + z**2))) - asked
         z_new = z + error * (c.alpha_c * z**2 + c.beta_c * z + free) / (2.0 * z)
         guess = np.where(np.isfinite(guess) & (z_new > 0) & (z_new <= top), z_new, guess)
@@ -102,7 +104,7 @@ def decay_bound(flow: SlowFlow, start: float, slow_time: ArrayLike) -> NDArray:
 def decay_rate(flow: SlowFlow) -> float:
     """``alpha_c``: rate of ``C^2`` per unit of slow time at large amplitude. It does not depend on
     friction."""
-    return coefficients(flow).alpha_c
+    return float(coefficients(flow).alpha_c)
 
 
 def damping_ratio(flow: SlowFlow, amplitude: ArrayLike | None = None) -> NDArray | float:

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbits.numbers import Reals
+
 from . import manifolds
 from .flow import Manifold, SlowFlow
 from .polynomials import real_roots, root_bound
@@ -100,7 +102,7 @@ def sliding_turning_points(flow: SlowFlow, detuning: ArrayLike) -> NDArray[np.fl
 
 def phase_at(
     flow: SlowFlow, position: ArrayLike, detuning: ArrayLike, manifold: Manifold = "impacting"
-) -> Any:
+) -> Reals:
     """Phase ``gamma`` in (-pi, pi] that balances both equations at an equilibrium's position."""
     squared, k1, k2 = flow.harmonics(position, manifold)
     return np.arctan2(k1 - flow.damping * squared, k2 - 2.0 * np.asarray(detuning) * squared)

@@ -26,6 +26,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbits.numbers import Reals
+
 from . import manifolds
 
 Closure = Literal["exact", "paper"]
@@ -48,12 +50,12 @@ class SlowFlow:
         First harmonic of the friction ripple, see the module's text.
     """
 
-    forcing: Any = 2.47
-    restitution: Any = 0.76
-    friction: Any = 0.5
-    gravity: Any = 0.211
-    damping: Any = 0.9
-    mass_ratio: Any = 0.006
+    forcing: Reals = 2.47
+    restitution: Reals = 0.76
+    friction: Reals = 0.5
+    gravity: Reals = 0.211
+    damping: Reals = 0.9
+    mass_ratio: Reals = 0.006
     closure: Closure = "exact"
 
     def __post_init__(self) -> None:
@@ -73,17 +75,17 @@ class SlowFlow:
                 bad = value[~holds(value)].flat[0]
                 raise ValueError(f"{name} = {bad} {rule}.")
 
-    def with_(self, **changes: Any) -> SlowFlow:
+    def with_(self, **changes: Reals | Closure) -> SlowFlow:
         """A copy with some fields changed."""
         return replace(self, **changes)
 
     @property
-    def loss(self) -> Any:
+    def loss(self) -> Reals:
         """``R = (1 - r)/(1 + r)``."""
         return manifolds.impact_loss(self.restitution)
 
     @property
-    def level(self) -> Any:
+    def level(self) -> Reals:
         """``h = (pi/2) mu g``."""
         return manifolds.friction_level(self.friction, self.gravity)
 
@@ -107,11 +109,11 @@ class SlowFlow:
         """Amplitudes between which the absorber slides without sticking or impacts."""
         return manifolds.sliding_bounds(self.level)
 
-    def detuning(self, frequency: ArrayLike) -> Any:
+    def detuning(self, frequency: ArrayLike) -> Reals:
         """``sigma = (Omega - 1)/eps``."""
         return (np.asarray(frequency, dtype=float) - 1.0) / np.asarray(self.mass_ratio)
 
-    def frequency(self, detuning: ArrayLike) -> Any:
+    def frequency(self, detuning: ArrayLike) -> Reals:
         """``Omega = 1 + eps sigma``."""
         return 1.0 + np.asarray(self.mass_ratio) * np.asarray(detuning, dtype=float)
 

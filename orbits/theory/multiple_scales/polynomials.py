@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from orbits.settings import THEORY
+
 _BISECTIONS = 110
-_NEGLIGIBLE = 1e-14
 
 
 def _value(coefficients: NDArray, x: NDArray) -> NDArray:
@@ -32,7 +33,7 @@ def root_bound(coefficients: ArrayLike) -> NDArray:
     """
     c = np.abs(np.asarray(coefficients, dtype=float))
     largest = np.max(c, axis=-1, keepdims=True)
-    counts = c > _NEGLIGIBLE * np.where(largest > 0, largest, 1.0)
+    counts = c > THEORY.rounding * np.where(largest > 0, largest, 1.0)
     first = np.argmax(counts, axis=-1)[..., None]
     leading = np.take_along_axis(c, first, axis=-1)
     leading = np.where(leading > 0, leading, 1.0)

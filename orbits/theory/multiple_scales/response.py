@@ -10,17 +10,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
+from orbits.numbers import ROUNDOFF, Reals
+from orbits.settings import THEORY
+
 from .equilibria import Equilibrium, equilibrium_at, phase_at
 from .flow import Manifold, SlowFlow
 from .polynomials import real_roots, root_bound
-
-OFF_CUT = 1e-6  # radians from the ends of a piece that the manifold cuts off, where its slope is infinite
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class ResponseCurve:
     @property
     def frequency(self) -> NDArray:
         """``Omega = 1 + eps sigma``."""
-        return self.flow.frequency(self.detuning)
+        return np.asarray(self.flow.frequency(self.detuning))
 
     @property
     def stable(self) -> NDArray[np.bool_]:
@@ -86,13 +86,13 @@ def _existence(flow: SlowFlow, manifold: Manifold) -> NDArray:
     return np.polysub(float(flow.forcing) ** 2 * squared, np.polymul(loss, loss))
 
 
-def _place(ends: tuple[float, float], t: Any) -> Any:
+def _place(ends: tuple[float, float], t: Reals) -> Reals:
     """Position along a piece: t from 0 to pi on one arm, pi to 2 pi back on the other."""
     low, high = ends
     return 0.5 * (low + high) - 0.5 * (high - low) * np.cos(t)
 
 
-def _detuning(flow: SlowFlow, manifold: Manifold, position: Any, t: Any) -> Any:
+def _detuning(flow: SlowFlow, manifold: Manifold, position: Reals, t: Reals) -> Reals:
     squared, k1, k2 = flow.harmonics(position, manifold)
     inside = float(flow.forcing) ** 2 * squared - (float(flow.damping) * squared - k1) ** 2
     return (k2 + np.sign(np.sin(t)) * np.sqrt(np.maximum(inside, 0.0))) / (2.0 * squared)
@@ -107,9 +107,9 @@ def _curve(
     closed: bool,
 ):
     t = np.linspace(*span, points)
-    position = _place(ends, t)
-    detuning = _detuning(flow, manifold, position, t)
-    phase = phase_at(flow, position, detuning, manifold)
+    position = np.asarray(_place(ends, t))
+    detuning = np.asarray(_detuning(flow, manifold, position, t))
+    phase = np.asarray(phase_at(flow, position, detuning, manifold))
     amplitude = np.sqrt(flow.harmonics(position, manifold)[0])
     eigenvalues = flow.eigenvalues(position, phase, manifold)
     if manifold == "impacting":
@@ -179,7 +179,9 @@ def frequency_response(
             pieces.append(_curve(flow, manifold, ends, (0.0, 2.0 * np.pi), points, True))
             continue
         for first, last in spans:
-            pieces.append(_curve(flow, manifold, ends, (first + OFF_CUT, last - OFF_CUT), points, False))
+            pieces.append(
+                _curve(flow, manifold, ends, (first + THEORY.off_end, last - THEORY.off_end), points, False)
+            )
     return pieces
 
 
@@ -219,7 +221,9 @@ def special_points(curve: ResponseCurve) -> list[ResponsePoint]:
         values = np.array([function(float(t)) for t in curve.parameter])
         for i in np.nonzero(values[:-1] * values[1:] < 0)[0]:
             t = float(
-                root_scalar(function, bracket=(curve.parameter[i], curve.parameter[i + 1]), xtol=1e-15).root
+                root_scalar(
+                    function, bracket=(curve.parameter[i], curve.parameter[i + 1]), xtol=4.0 * ROUNDOFF
+                ).root
             )
             point = state(t)
             if kind == "hopf":

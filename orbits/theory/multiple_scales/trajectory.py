@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from orbits.settings import THEORY
+
 from . import manifolds
 from .flow import Manifold, SlowFlow
 
@@ -93,7 +95,7 @@ def integrate(
         limits = {"stick": 2.0 * h / np.pi, "wall": 1.0}
     else:
         # the extremum itself is singular (C^2 is no coordinate there); stop a hair before it
-        limits = {"activation": float(flow.activation.velocity) + 1e-6}
+        limits = {"activation": float(flow.activation.velocity) + THEORY.off_end}
         if stop_at_symmetry_limit:
             limits["symmetry-breaking"] = float(flow.symmetry_limit.velocity)
 
@@ -106,7 +108,7 @@ def integrate(
 
     names = list(limits)
     run = solve_ivp(
-        rate, (0.0, span), [start, phase], method="DOP853", rtol=1e-9, atol=1e-11,
+        rate, (0.0, span), [start, phase], method="DOP853", rtol=THEORY.relative, atol=THEORY.absolute,
         events=[gate(limits[name]) for name in names], dense_output=True,
     )  # fmt: skip
     ended = "time"

@@ -7,12 +7,13 @@ so that the half-width scales the whole cavity.
 from __future__ import annotations
 
 from orbits.machines.physical.quantities import Quantity, QuantityError
+from orbits.machines.physical.tables import limits
 from orbits.machines.physical.tables.shaken import GAUGES as GAUGES
 from orbits.machines.physical.tables.shaken import QUANTITIES as SHAKEN
 from orbits.machines.physical.tables.shaken import SCALES as SCALES
 from orbits.machines.physical.tables.shaken import completed as completed_shaken
 
-_SIDES = {"restitution": (0.01, 1.0), "friction": (1e-6, 2.0)}
+_SIDES = {"restitution": limits.RESTITUTION, "friction": limits.FRICTION}
 
 
 def _of_sides(name: str, example: str, usual: tuple[float, float], zero: bool) -> tuple[Quantity, ...]:
@@ -22,7 +23,7 @@ def _of_sides(name: str, example: str, usual: tuple[float, float], zero: bool) -
     return (
         Quantity(name, "", example, {left: 1}, usual, f"a coefficient of {name}", group=left, zero=zero),
         Quantity(left, "", example, {left: 1}, usual, f"a coefficient of {name}", group=left, zero=zero),
-        Quantity(ratio, "", "1", {right: 1, left: -1}, (1e-3, 1e3), f"the ratio of the sides' {name}", group=right, default=1.0),
+        Quantity(ratio, "", "1", {right: 1, left: -1}, limits.RATIO, f"the ratio of the sides' {name}", group=right, default=1.0),
         Quantity(right, "", example, {right: 1}, usual, f"a coefficient of {name}", group=right, zero=zero),
     )  # fmt: skip
 
@@ -35,8 +36,8 @@ QUANTITIES = {
             *_of_sides("restitution", "0.6", _SIDES["restitution"], False),
             *_of_sides("friction", "0.1", _SIDES["friction"], True),
             Quantity("slope", "rad", "5 deg", {"slope": 1}, (-1.6, 1.6), "the cavity's angle", zero=True, signed=True, default="0 deg"),
-            Quantity("distance_left", "", "1", {"distance_left": 1}, (1e-3, 1e3), "the left wall's distance in half-widths", default=1.0),
-            Quantity("distance_right", "", "1", {"distance_right": 1}, (1e-3, 1e3), "the right wall's distance in half-widths", default=1.0),
+            Quantity("distance_left", "", "1", {"distance_left": 1}, limits.RATIO, "the left wall's distance in half-widths", default=1.0),
+            Quantity("distance_right", "", "1", {"distance_right": 1}, limits.RATIO, "the right wall's distance in half-widths", default=1.0),
         )
     },
 }  # fmt: skip

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from orbits.machines.physical.quantities import Quantity, gauges
+from orbits.machines.physical.tables import limits
 
 SCALES = ("half_width", "natural_rate", "absorber_mass")
 """b [m], omega_0 [rad/s], m [kg]."""
@@ -18,16 +19,16 @@ _TURN = 1.0 / (2.0 * math.pi)
 QUANTITIES = {
     quantity.name: quantity
     for quantity in (
-        Quantity("amplitude", "m", "8 mm", {"amplitude": 1, "half_width": 1}, (1e-9, 10.0), "the amplitude of the cavity's motion", zero=True),
-        Quantity("half_width", "m", "15 mm", {"half_width": 1}, (1e-5, 2.0), "the clearance to either side"),
-        Quantity("frequency", "Hz", "8 Hz", {"frequency": 1, "natural_rate": 1}, (1e-3, 1e5), "the frequency of the shaking", _TURN),
-        Quantity("natural_frequency", "Hz", "8 Hz", {"natural_rate": 1}, (1e-2, 1e5), "a natural frequency", _TURN),
-        Quantity("restitution", "", "0.6", {"restitution": 1}, (0.01, 1.0), "a coefficient of restitution"),
-        Quantity("friction", "", "0.1", {"friction": 1}, (1e-6, 2.0), "a coefficient of friction", zero=True),
-        Quantity("gravity", "m/s^2", "9.81 m/s^2", {"gravity": 1, "half_width": 1, "natural_rate": 2}, (1e-6, 500.0), "a gravity", zero=True, default="9.81 m/s^2"),
-        Quantity("mass_ratio", "", "0.01", {"mass_ratio": 1}, (1e-6, 0.5), "the absorber's share of the oscillator's mass", zero=True, default=0.0, group="oscillator_mass"),
-        Quantity("oscillator_mass", "kg", "3.8 kg", {"absorber_mass": 1, "mass_ratio": -1}, (1e-6, 1e9), "the oscillator's mass", group="oscillator_mass"),
-        Quantity("absorber_mass", "kg", "32 g", {"absorber_mass": 1}, (1e-9, 1e9), "the absorber's mass", default="1 kg"),
+        Quantity("amplitude", "m", "8 mm", {"amplitude": 1, "half_width": 1}, limits.AMPLITUDE, "the amplitude of the cavity's motion", zero=True),
+        Quantity("half_width", "m", "15 mm", {"half_width": 1}, limits.CLEARANCE, "the clearance to either side"),
+        Quantity("frequency", "Hz", "8 Hz", {"frequency": 1, "natural_rate": 1}, limits.FREQUENCY, "the frequency of the shaking", _TURN),
+        Quantity("natural_frequency", "Hz", "8 Hz", {"natural_rate": 1}, limits.NATURAL_FREQUENCY, "a natural frequency", _TURN),
+        Quantity("restitution", "", "0.6", {"restitution": 1}, limits.RESTITUTION, "a coefficient of restitution"),
+        Quantity("friction", "", "0.1", {"friction": 1}, limits.FRICTION, "a coefficient of friction", zero=True),
+        Quantity("gravity", "m/s^2", "9.81 m/s^2", {"gravity": 1, "half_width": 1, "natural_rate": 2}, limits.GRAVITY, "a gravity", zero=True, default="9.81 m/s^2"),
+        Quantity("mass_ratio", "", "0.01", {"mass_ratio": 1}, limits.SHARE, "the absorber's share of the oscillator's mass", zero=True, default=0.0, group="oscillator_mass"),
+        Quantity("oscillator_mass", "kg", "3.8 kg", {"absorber_mass": 1, "mass_ratio": -1}, limits.OSCILLATOR_MASS, "the oscillator's mass", group="oscillator_mass"),
+        Quantity("absorber_mass", "kg", "32 g", {"absorber_mass": 1}, limits.POSITIVE, "the absorber's mass", default="1 kg"),
     )
 }  # fmt: skip
 
