@@ -196,7 +196,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         from orbits.flows.page.smooth import cycles_of
 
         cycle = cycles_of(seed.problem.orbit(seed.u, seed.p))
-        problem = cycle.problem(self.parameter)
+        problem: Any = cycle.problem(self.parameter)
         tangent = (
             None if seed.tangent is None else problem.direction(cycle.u, seed.p, float(seed.tangent[-1]))
         )

@@ -181,9 +181,13 @@ class Simulating:
     closed : float
         Distance of a return that only a motion on a cycle has, be the cycle stable or not.
     one : float
-        Distance of points, or nodes, that are one.
+        Distance of points, or nodes, that are one, and of motions that are known in closed form.
     same : float
-        Distance of two descriptions of one motion.
+        Distance of two descriptions of one motion, and of integrated motions that are one: grazes are known to the root of their error.
+    far : float
+        Distance of neighbours that tells nothing of small differences.
+    wait : float
+        Clock of a self-excited machine without an event after which none is waited for.
     falling : float
         Distance at which a motion that comes nearer falls onto a known one.
     neutral : float
@@ -213,6 +217,8 @@ class Simulating:
     closed: float = 1e-9
     one: float = 1e-7
     same: float = 1e-5
+    far: float = 1e-2
+    wait: float = 1e4
     falling: float = 1e-2
     neutral: float = 1e-6
     settled: float = 1e-13
@@ -445,40 +451,6 @@ class Theory:
     absolute: float = 1e-11
 
 
-@dataclass(frozen=True)
-class Neighbours:
-    """Of two motions next to each other whose distance tells how fast small differences grow.
-
-    Attributes
-    ----------
-    apart : float
-        Their distance, relative to 1 + the states.
-    far : float
-        Distance that tells nothing of small differences.
-    wait : float
-        Clock in which a self-excited machine's event is waited for.
-    """
-
-    apart: float = 1e-7
-    far: float = 1e-2
-    wait: float = 1e4
-
-
-@dataclass(frozen=True)
-class Sameness:
-    """When two motions are one: the largest difference of their positions.
-
-    Attributes
-    ----------
-    closed_form, integrated : float
-        Of flights in closed form (borders whose values agree to 1e-12 may be 5e-6 apart) and of integrated ones (grazes are known to the root
-        of their error).
-    """
-
-    closed_form: float = 1e-7
-    integrated: float = 1e-5
-
-
 SOLVING = Solving()
 EVENTS = Events()
 GROWING = Growing()
@@ -492,5 +464,3 @@ STEPPING = Stepping()
 INTEGRATING = Integrating()
 FORMULAS = Formulas()
 THEORY = Theory()
-NEIGHBOURS = Neighbours()
-SAMENESS = Sameness()

@@ -6,16 +6,20 @@ The equations are those of `orbits.machines.coupled`, in its own numbers and cou
 from __future__ import annotations
 
 from functools import cache
+from typing import TYPE_CHECKING
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
 from orbits.machines.catalogue import usual
 from orbits.machines.page.formulas import Named, States
 from orbits.machines.page.machine import Machine
-from orbits.symbols import Symbol, cos, sin
+from orbits.symbols import cos, sin
+
+if TYPE_CHECKING:
+    from orbits.symbols import Plain
 
 
-def _motion(state: States, phase: Symbol, p: Named, contact: Named) -> tuple[Symbol, ...]:
+def _motion(state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:
     q1, _, v1, v2, bare, bare_rate = state
     damping = p.mass_ratio * p.damping
     base = p.mass_ratio * p.forcing * (sin(phase) + p.excitation * damping * p.frequency * cos(phase))

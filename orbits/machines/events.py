@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from orbits.machines.base import Model
+from orbits.machines.varying import Varying
 from orbits.words import Word
 from orbits.words.alphabet import CODES
 
@@ -69,7 +70,7 @@ class Placed(Protocol):
     """A motion with its nodes, shape (L, n), and its parameters."""
 
     @property
-    def model(self) -> Model: ...
+    def model(self) -> Varying: ...
     @property
     def word(self) -> Word: ...
     @property
@@ -80,5 +81,7 @@ class Placed(Protocol):
 
 def events_of(motion: Placed) -> EventTable:
     """What happens at the events of one motion (its model, word, nodes and params); arrays of shape (L,)."""
-    table = event_table(motion.model, motion.word, motion.nodes[None], motion.params[None])
+    model = motion.model
+    assert isinstance(model, Model)
+    table = event_table(model, motion.word, motion.nodes[None], motion.params[None])
     return EventTable(**{name: values[0] for name, values in vars(table).items()})

@@ -23,7 +23,6 @@ from orbits.words import Word
 REACHED, FULL, STILL = 0, 1, 2
 SAMPLES = 2000  # of a run, for its extremes
 AWAY = 1000.0  # clock without an event of a cycle after which a motion does not come back to it
-LONG = 10_000.0  # clock of a self-excited machine without an event after which none is waited for
 LONGEST_WORD = 400  # events of its longest cycle
 REACH = 2.0  # a box of starts: so many times what the motion from rest reaches
 WARM = 60.0  # forcing periods (or as much time) that tell what a machine reaches
@@ -375,14 +374,15 @@ class PageSimulator:
             self.follow(self.time + int(count))
             return True
         return all(
-            stepper.advance(stepper.base + stepper.clock + LONG) is not None for _ in range(int(count))
+            stepper.advance(stepper.base + stepper.clock + SIMULATING.wait) is not None
+            for _ in range(int(count))
         )
 
     def look(self, longest: int) -> PageTrajectory:
         """Run on for two of the longest recurrences; events of a self-excited machine."""
         if self.forced:
             return collect(self.stepper, TWO_PI * (2 * longest + 1), 50 * longest + 2000)
-        return collect(self.stepper, LONG, min(2 * LONGEST_WORD, 50 * longest))
+        return collect(self.stepper, SIMULATING.wait, min(2 * LONGEST_WORD, 50 * longest))
 
     def rests(self, run: PageTrajectory, last: bool) -> bool:
         """Whether a wall holds the body, or a self-excited machine does not move any more."""
@@ -410,7 +410,7 @@ class PageSimulator:
         if self.forced:
             self.follow(math.floor(self.time) + 1.0)
             return "", self.point
-        event = self.stepper.advance(self.stepper.base + self.stepper.clock + LONG)
+        event = self.stepper.advance(self.stepper.base + self.stepper.clock + SIMULATING.wait)
         return "" if event is None else letter_of(self.machine, event), self.point
 
     # ------------------------------------------------------------------ many starts

@@ -15,7 +15,7 @@ from orbits.flows.page.cycle_equations import PageEquations, loose_states
 from orbits.flows.protocol import Census, Motion, Vanishing
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
-from orbits.settings import EVENTS, SAMENESS
+from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 
 LARGE = 5  # states
@@ -26,7 +26,7 @@ class PageFlow:
 
     angles = ("phase",)
     closed_form = False
-    resolution = SAMENESS.integrated
+    resolution = SIMULATING.same
 
     def census(self, model: Machine) -> Census:
         """Flights are integrated one by one; of a machine with many states words are long, and a start is followed for seconds."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.numbers import SMALLEST
-from orbits.settings import NEIGHBOURS
+from orbits.settings import SIMULATING
 
 SAMPLES, BLOCKS = 1200, 20
 PATIENCE, FORGET = 8, 50  # samples waited out; samples in which the neighbours forget how they were put down
@@ -45,7 +45,7 @@ def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
                 return exponent, error
         alike = _together(stepper, other)
         apart, size = _distance(stepper, other)
-        if not alike and waited < PATIENCE and size < NEIGHBOURS.far:
+        if not alike and waited < PATIENCE and size < SIMULATING.far:
             waited += 1
             continue
         if alike and start > 0.0 and size > 0.0:
@@ -68,7 +68,7 @@ def _mean(logs: list[float]) -> tuple[float, float]:
 
 
 def _beside(stepper: Stepper, other: Stepper, direction: np.ndarray) -> None:
-    scale = NEIGHBOURS.apart * (1.0 + float(np.abs(stepper.state).max()))
+    scale = SIMULATING.nudge * (1.0 + float(np.abs(stepper.state).max()))
     state = stepper.state + scale * direction / max(float(np.abs(direction).max()), SMALLEST)
     other.start(state, stepper.clock, stepper.modes)
     other.base = stepper.base
@@ -83,8 +83,8 @@ def _together(stepper: Stepper, other: Stepper) -> bool:
     """Move both on by a forcing period (or an event); whether they are then in the same modes."""
     if not stepper.machine.forced:
         event, image = (
-            stepper.advance(stepper.base + NEIGHBOURS.wait),
-            other.advance(other.base + NEIGHBOURS.wait),
+            stepper.advance(stepper.base + SIMULATING.wait),
+            other.advance(other.base + SIMULATING.wait),
         )
         return event == image and stepper.modes == other.modes
     until = stepper.base + stepper.clock + TWO_PI

@@ -24,6 +24,7 @@ from orbits.flows.protocol import checked_start
 from orbits.flows.solving import newton
 from orbits.integrators.expressions import derivatives, variable, written
 from orbits.machines.page.compiled import moving
+from orbits.machines.page.machine import Machine
 from orbits.machines.page.stored import machine_again
 from orbits.settings import EVENTS, SOLVING
 from orbits.words.margins import border_kind
@@ -32,11 +33,11 @@ from orbits.words.word import Word
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from contvines.flows.flow import Problem
     from contvines.flows.equilibria import Equilibria
+    from contvines.flows.flow import Problem
     from contvines.flows.problem import BorderPoint
     from orbits.flows.protocol import Equations, Motion
-    from orbits.machines.page.machine import Machine
+    from orbits.machines.varying import Varying
     from orbits.problem import OrbitProblem
 
 SAMPLES = (
@@ -285,7 +286,7 @@ def beside(machine: Machine, state: Mapping[str, float] | None = None, **paramet
     return smooth(machine, mode, params, x)
 
 
-def cycles_of(orbit: Motion[Machine]):
+def cycles_of(orbit: Motion[Varying]):
     """The cycle, by collocation, of a self-excited orbit without events.
 
     Raises
@@ -293,9 +294,11 @@ def cycles_of(orbit: Motion[Machine]):
     ValueError
         If Newton's method does not lead to it.
     """
+    machine = orbit.model
+    assert isinstance(machine, Machine)
     table = flow_of(orbit.model).sample(orbit, SAMPLES)
-    states = np.column_stack([table[name] for name in orbit.model.states])
-    flow = smooth(orbit.model, orbit.word.modes[0], orbit.params, states[0])
+    states = np.column_stack([table[name] for name in machine.states])
+    flow = smooth(machine, orbit.word.modes[0], orbit.params, states[0])
     values: dict[str, Any] = dict(orbit.parameters)
     return flow.cycle(table["time"], states, **values)
 
