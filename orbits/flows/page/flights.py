@@ -12,7 +12,8 @@ c_{i+1} through its ends only: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
@@ -23,7 +24,15 @@ from orbits.numbers import ROUNDOFF
 from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
-    from orbits.flows.page.cycle_equations import PageEquations
+    from collections.abc import Sequence
+
+    from orbits.contacts.letters import Letter
+    from orbits.integrators.expressions import Values
+    from orbits.integrators.protocol import Flight, Flights, Watch
+    from orbits.machines.page.machine import Machine
+    from orbits.machines.page.patterns import Guard
+    from orbits.numbers import Reals
+    from orbits.words import Word
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 SPARSE = 120  # unknowns from which sparse elimination is faster
@@ -51,6 +60,56 @@ class Work(NamedTuple):
     turned: np.ndarray  # 1 where F_u stands for its transpose
 
 
+class Pieces(Protocol):
+    """What the kernels read of the equations, their `data` (`orbits.flows.page.cycle_equations.PageEquations`)."""
+
+    machine: Machine
+    word: Word
+    parameter: str
+    params: np.ndarray
+    path: np.ndarray
+    index: int
+    size: int
+    length: int
+    dimension: int
+    twist: float
+    shift: float
+    forced: bool
+    symmetric: bool
+    movable: bool
+    pinned: tuple[int, ...]
+    unit: np.ndarray
+    base_numbers: np.ndarray
+    contacts: int
+    identity: np.ndarray
+    minus: np.ndarray
+    n_multipliers: int
+    trivial: int
+    turned: np.ndarray
+
+    @property
+    def letters(self) -> Sequence[Letter]: ...
+    @property
+    def slips(self) -> Sequence[int]: ...
+    @property
+    def owned(self) -> Sequence[frozenset[int]]: ...
+    @property
+    def still(self) -> Sequence[tuple[int, Values]]: ...
+    @property
+    def flight_groups(self) -> Sequence[tuple[Flight, Flights | None, np.ndarray]]: ...
+    @property
+    def rate_groups(self) -> Sequence[tuple[Values, np.ndarray]]: ...
+    @property
+    def event_groups(self) -> Sequence[tuple[Values | None, np.ndarray, bool]]: ...
+    @cached_property
+    def guard_groups(self) -> list[tuple[Values, list[Guard], Watch, list[int]]]: ...
+    @cached_property
+    def sparsity(self) -> tuple[np.ndarray, np.ndarray]: ...
+    def allowed(self, p: float) -> bool: ...
+    def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]: ...
+    def clock_rate(self, numbers: np.ndarray) -> Reals: ...
+
+
 def workspace(length: int, states: int, numbers: int) -> Work:
     """Arrays for `length` nodes of `states` + 1 unknowns and one active parameter."""
     L, n, d = length, states, states + 1
@@ -71,7 +130,7 @@ def workspace(length: int, states: int, numbers: int) -> Work:
     )
 
 
-def linearise(data: PageEquations, u: np.ndarray, p: float, work: Work) -> float:
+def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
     """F, its blocks and its parameter derivative, into `work`; returns the largest absolute residual (inf: not evaluable)."""
     n, length = data.size, data.length
     nodes = np.asarray(u).reshape(length, n + 1)
@@ -145,7 +204,7 @@ def linearise(data: PageEquations, u: np.ndarray, p: float, work: Work) -> float
     return size if math.isfinite(size) else math.inf
 
 
-def _fly(data: PageEquations, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
+def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
     """Integrate every flight, into `work.flown`; False if one blows up."""
     numbers, flown = work.numbers, work.flown
     for flight, many, places in data.flight_groups:
@@ -159,13 +218,13 @@ def _fly(data: PageEquations, nodes: np.ndarray, begin: np.ndarray, end: np.ndar
                 return False
             flown[together] = found
         for i in alone:
-            if not flight(nodes[i, 1:], begin[i], end[i], numbers[i], flown[i]):
+            if not flight(nodes[i, 1:], float(begin[i]), float(end[i]), numbers[i], flown[i]):
                 return False
     return True
 
 
 def bordered(
-    data: PageEquations, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+    data: Pieces, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`; returns the determinant's sign."""
     size = data.dimension
@@ -195,7 +254,7 @@ def bordered(
     return sign
 
 
-def fill(data: PageEquations, work: Work, matrix: np.ndarray) -> None:
+def fill(data: Pieces, work: Work, matrix: np.ndarray) -> None:
     """The blocks of F_u in a dense matrix."""
     d, length = data.size + 1, data.length
     last_own, last_following = closing(data, work)
@@ -214,7 +273,7 @@ def fill(data: PageEquations, work: Work, matrix: np.ndarray) -> None:
         matrix[: length * d, : length * d] = matrix[: length * d, : length * d].T.copy()
 
 
-def closing(data: PageEquations, work: Work) -> tuple[np.ndarray, np.ndarray]:
+def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
     """The blocks of the last row, closed by the mirror."""
     own, following = work.own[-1], work.following[-1] * data.turned
     for row, _ in data.still:
@@ -224,7 +283,7 @@ def closing(data: PageEquations, work: Work) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _sparse(
-    data: PageEquations,
+    data: Pieces,
     work: Work,
     border: np.ndarray,
     sides: np.ndarray,
@@ -285,7 +344,7 @@ def sparsity(length: int, d: int) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def factors(data: PageEquations, work: Work) -> np.ndarray:
+def factors(data: Pieces, work: Work) -> np.ndarray:
     """Derivatives of node i + 1 by node i, shape (L, m, m): with the clock for a forced machine, states alone otherwise."""
     own, following = work.own, work.following
     with np.errstate(all="ignore"):
@@ -303,7 +362,7 @@ def factors(data: PageEquations, work: Work) -> np.ndarray:
     return result
 
 
-def multipliers(data: PageEquations, work: Work) -> np.ndarray:
+def multipliers(data: Pieces, work: Work) -> np.ndarray:
     """Multipliers of the closed map between event surfaces, largest first; the one that is always zero is left out."""
     chain = factors(data, work)
     if not np.all(np.isfinite(chain)):

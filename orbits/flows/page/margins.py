@@ -17,10 +17,10 @@ from orbits.settings import EVENTS
 from orbits.words import Word
 
 if TYPE_CHECKING:
-    from orbits.flows.page.cycle_equations import PageEquations
+    from orbits.flows.page.flights import Pieces
 
 
-def fill_margins(data: PageEquations, u: np.ndarray, work: Work, row: np.ndarray) -> None:
+def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> None:
     """All margins of a linearised solution, shape (L (contacts + 2),); infinity where one does not apply."""
     n, length, contacts = data.size, data.length, data.contacts
     nodes = np.asarray(u).reshape(length, n + 1)

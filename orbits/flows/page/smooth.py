@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from contvines.flows.problem import BorderPoint
     from orbits.flows.protocol import Equations, Motion
     from orbits.machines.varying import Varying
-    from orbits.problem import OrbitProblem
 
 SAMPLES = (
     800  # of a motion that is handed over to collocation, and of a cycle that is searched for its extreme
@@ -202,7 +201,7 @@ class WithoutEvents(FlowProblem):
             .replace(" stops the motion: it", " is touched: its guard")
         )
 
-    def _orbits(self, problem: Problem, p: float) -> OrbitProblem:
+    def _orbits(self, problem: Problem, p: float):
         """The same motions as orbits with the word ""."""
         from orbits.problem import OrbitProblem
 
