@@ -18,8 +18,7 @@ from contvines.flows.equilibria import Equilibria
 from contvines.flows.files import problem_of
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
-from orbits.flows.catalogue import flow_of
-from orbits.flows.page import measures
+from orbits.flows.page import measures, sampling
 from orbits.flows.protocol import checked_start
 from orbits.flows.solving import newton
 from orbits.integrators.expressions import derivatives, variable, written
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
     from contvines.flows.flow import Problem
     from contvines.flows.problem import BorderPoint
     from orbits.flows.protocol import Equations, Motion
-    from orbits.machines.varying import Varying
 
 SAMPLES = (
     800  # of a motion that is handed over to collocation, and of a cycle that is searched for its extreme
@@ -285,7 +283,7 @@ def beside(machine: Machine, state: Mapping[str, float] | None = None, **paramet
     return smooth(machine, mode, params, x)
 
 
-def cycles_of(orbit: Motion[Varying]):
+def cycles_of(orbit: Motion):
     """The cycle, by collocation, of a self-excited orbit without events.
 
     Raises
@@ -295,7 +293,7 @@ def cycles_of(orbit: Motion[Varying]):
     """
     machine = orbit.model
     assert isinstance(machine, Machine)
-    table = flow_of(orbit.model).sample(orbit, SAMPLES)
+    table = sampling.sample(orbit, SAMPLES)
     states = np.column_stack([table[name] for name in machine.states])
     flow = smooth(machine, orbit.word.modes[0], orbit.params, states[0])
     values: dict[str, Any] = dict(orbit.parameters)
