@@ -296,7 +296,8 @@ class Recommendation:
             (p for p in self.places if p.samples == place.samples and not p.left and math.isfinite(p.worst)),
             key=lambda p: p.worst,
         )
-        if found and lowest.worst < place.worst:
+        nearer = any(abs(jump.at - lowest.value) < abs(jump.at - place.value) for jump in self.jumps)
+        if nearer and lowest.worst < place.worst:
             found.append(
                 f"The lowest response, {self.shown('peak', lowest.worst)} at {self.shown(self.name, lowest.value)}, stands nearer to the jump."
             )
