@@ -22,7 +22,7 @@ def sizes_by_sort(engine: Engine, rows: np.ndarray) -> np.ndarray:
     with np.errstate(all="ignore"):
         real = im == 0.0
         if kind == "map":
-            size = np.log(np.where(real, np.abs(re), np.hypot(re, im)))
+            size = np.log(np.where(real | np.isnan(re), np.abs(re), np.hypot(re, im)))
             sorts = real & (re > 0.0), real & (re <= 0.0), im > 0.0
         else:
             size, none = re, np.zeros_like(real)

@@ -37,7 +37,11 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
         machine, plain = _structure(data, path)
         return _page(plain, path, machine)
     if said in PAGES:
-        return _page(data, path, page_machine(said))
+        from orbits.machines.page.machine import Machine
+
+        machine = page_machine(said)
+        assert isinstance(machine, Machine)
+        return _page(data, path, machine)
     page, _, name = said.partition(":")
     if not name:
         raise StudyError(

@@ -101,7 +101,7 @@ def _fall(top: Top) -> float:
 
 def _refined(top: Top) -> Top:
     """With what lies between the points."""
-    from scipy.optimize import minimize_scalar
+    from scipy.optimize import OptimizeResult, minimize_scalar
 
     stretch, at = top.stretch, top.place - top.stretch.first
     a, b = max(at - 1, 0), min(at + 1, len(stretch.values) - 1)
@@ -116,6 +116,7 @@ def _refined(top: Top) -> Top:
 
     sharp = {"xatol": SHARP * (high - low)}
     found = minimize_scalar(lowered, bounds=(low, high), method="bounded", options=sharp)
+    assert isinstance(found, OptimizeResult)
     return max(
         top, top._replace(response=-float(found.fun), value=float(found.x)), key=lambda one: one.response
     )

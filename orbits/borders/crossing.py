@@ -77,7 +77,8 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
     before = problem.orbit(u, p)
     if rest or piled_up(before, approaches_of(problem.word, margins_of(problem, u, p))):
         return rest
-    index, tangent_here = int(point.margin_index), np.asarray(point.tangent, dtype=float)
+    assert point.margin_index is not None  # it lies at a border
+    index, tangent_here = point.margin_index, np.asarray(point.tangent, dtype=float)
     nearby = _real_part(problem, u, p, tangent_here, index)
     old_side = 0.0 if nearby[0] is None else float(np.sign(nearby[0][1] - p))
     seeds = []
