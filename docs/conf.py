@@ -18,6 +18,7 @@ release = version = contvines.__version__
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc", "sphinx_copybutton"]
 exclude_patterns = ["_build"]
 
+highlight_language = "none"  # what a command prints is no Python; blocks of code name their language
 html_theme = "furo"
 html_title = f"contvines {release}"
 html_static_path = ["_static"]
