@@ -70,7 +70,7 @@ def trace_half(
     stop = real and engine.problem.n_margins > 0
     walk = chunks(engine, start, journal, key, stop, first_step)
     retrace = None
-    adaptive = engine.problem if isinstance(engine.problem, Adaptive) else None
+    adaptive = engine.problem if engine.adaptive and isinstance(engine.problem, Adaptive) else None
     for number in count_from(0):
         chunk = next(walk) if retrace is None else walk.send(retrace)
         name = f"{key}/{number}/events"

@@ -70,7 +70,7 @@ def chunks(
     try:
         yield from _chunks(engine, start, journal, key, stop_at_border, first_step)
     finally:
-        if isinstance(engine.problem, Adaptive):
+        if engine.adaptive and isinstance(engine.problem, Adaptive):
             engine.problem.anchor(None)
 
 
@@ -86,7 +86,7 @@ def _chunks(
     n, capacity = engine.n, settings.first_chunk
     retrace: Retrace | None = None
     problem = engine.problem
-    adaptive = problem if isinstance(problem, Adaptive) else None
+    adaptive = problem if engine.adaptive and isinstance(problem, Adaptive) else None
     engine.control[layout.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0

@@ -45,9 +45,12 @@ def memory_of(thing: object) -> int:
     TypeError
         If it has no memory that native code can read.
     """
-    if not isinstance(thing, Struct):
+    memory = getattr(
+        thing, "memory", None
+    )  # asked directly: protocols are slow where this is called, at every point
+    if not isinstance(memory, np.ndarray):
         raise TypeError(f"a {type(thing).__name__} has no memory for the native core")
-    return address(thing.memory)
+    return address(memory)
 
 
 class TableKernels:

@@ -59,7 +59,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 
 import numpy as np
 
@@ -67,7 +67,6 @@ if TYPE_CHECKING:
     from .scales import Scales
 
 
-@runtime_checkable
 class Places(Protocol):
     """What has arrays by their places."""
 
@@ -76,7 +75,7 @@ class Places(Protocol):
 
 def array_of(work: object, place: int = 0) -> np.ndarray:
     """An array of a workspace: F is the first, F_p that at the kernels' ``column``."""
-    found = work[place] if isinstance(work, Places) else None
+    found = cast(Places, work)[place]  # unchecked, as it is called at every point
     assert isinstance(found, np.ndarray)
     return found
 
