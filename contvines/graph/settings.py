@@ -1,4 +1,4 @@
-"""Tolerances of identity that nobody sets; the others are those of :class:`contvines.Settings`."""
+"""Tolerances of identity and of what counts as known, which nobody sets; the others are those of :class:`contvines.Settings`."""
 
 from __future__ import annotations
 
@@ -24,4 +24,18 @@ class Identity:
     exact: float = 1e-3
 
 
+@dataclass(frozen=True)
+class Coverage:
+    """In which part of the interval responses are known.
+
+    Attributes
+    ----------
+    least : float
+        Of the interval: gaps that are shorter together are not simulated, and a response is known in spite of them.
+    """
+
+    least: float = 1e-3
+
+
 IDENTITY = Identity()
+COVERAGE = Coverage()

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..continuation.settings import Settings
 from .measures import default_measure
+from .settings import COVERAGE
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 SHARP = Settings.one_place  # of a step between two points: so closely a peak between them is located
 MEETING = Settings.located  # of the interval: stretches that end nearer to one another meet
-LEAST = 0.001  # of the interval: gaps that are shorter together are not simulated, and a response is known in spite of them
 SIMULATED = 40  # values over the whole interval, where a diagram has next to nothing of it
 
 
@@ -221,7 +221,7 @@ def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], va
     size = within[1] - within[0]
     ascending = sorted(open_, key=lambda gap: gap[1] - gap[0])
     total = np.cumsum([high - low for low, high in ascending])
-    wide = sorted(gap for gap, reached in zip(ascending, total) if reached > LEAST * size)
+    wide = sorted(gap for gap, reached in zip(ascending, total) if reached > COVERAGE.least * size)
     if not values or not wide:
         return []
     length = sum(high - low for low, high in wide)

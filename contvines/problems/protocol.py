@@ -63,6 +63,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 
 import numpy as np
 
+from ..core.kernel_functions import KernelFunctions
+
 if TYPE_CHECKING:
     from .scales import Scales
 
@@ -78,29 +80,6 @@ def array_of(work: object, place: int = 0) -> np.ndarray:
     found = cast(Places, work)[place]  # unchecked, as it is called at every point
     assert isinstance(found, np.ndarray)
     return found
-
-
-class KernelFunctions(Protocol):
-    """The functions of a problem (see the contract at the top): `Kernels`, or a compiled problem's `contvines.core.table.TableKernels`."""
-
-    @property
-    def linearise(self) -> Callable[..., float]: ...
-    @property
-    def bordered(self) -> Callable[..., float]: ...
-    @property
-    def inspect(self) -> Callable[..., None]: ...
-    @property
-    def compiled(self) -> bool: ...
-    @property
-    def assign(self) -> Callable[..., None] | None: ...
-    @property
-    def flip(self) -> Callable[..., None] | None: ...
-    @property
-    def transpose(self) -> Callable[..., None] | None: ...
-    @property
-    def column(self) -> int: ...
-    @property
-    def matrix(self) -> Callable[..., np.ndarray] | None: ...
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from ..graph.graph import Graph
 from ..graph.limits import Limits
 from ..graph.measures import default_measure
 from ..graph.run import Run
+from ..graph.settings import COVERAGE
 from ..graph.stretches import gaps, spread, stretches, unseen
 from ..journal import NullJournal
-from ..shared.number_text import PART
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
@@ -206,7 +206,7 @@ def _about_the_largest(
     if not known.get(top, -np.inf) > PROMISING * _of_branches(graph):
         return [], None
     places = sorted({low, high, *known, *looked, *(end for gap in gaps(graph) for end in gap)})
-    least = PART * (high - low)
+    least = COVERAGE.least * (high - low)
     below = max((p for p in places if p < top - least), default=top)
     above = min((p for p in places if p > top + least), default=top)
     beside = [p for p in (below, above) if p != top and known.get(p, -np.inf) < NEARLY * known[top]]

@@ -16,8 +16,9 @@ from contvines.shared.modulation import BAND, is_strong, modulation_of
 
 from ..coexistence.places import UNBRANCHED
 from ..graph.measures import default_measure
+from ..graph.settings import COVERAGE
 from ..graph.stretches import gaps, highest, stretches, unseen
-from ..shared.number_text import PART, figures_in
+from ..shared.number_text import figures_in
 from .family import Simulated
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from .completion import Unbranched
 
 GRID = 401  # values at which coexisting responses are compared
-KNOWN = 1.0 - PART  # share of the interval from which on the responses are known
+KNOWN = 1.0 - COVERAGE.least  # share of the interval from which on the responses are known
 
 
 @dataclass(frozen=True)

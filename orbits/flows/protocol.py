@@ -45,12 +45,13 @@ A *simulator* moves one motion of a machine on at given parameters, from event t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
+from contvines.core.kernel_functions import KernelFunctions
 from contvines.shared.near_names import did_you_mean
 from orbits.contacts.changes import Change, Site
 from orbits.flows.trajectory import ModelOf, Trajectory
@@ -367,7 +368,7 @@ class Approach(NamedTuple):
     push: np.ndarray
 
 
-class Kernels(Protocol[DataFor, WorkFor]):
+class Kernels(KernelFunctions, Protocol[DataFor, WorkFor]):
     """What is worked out of equations: Newton's method, and a look at one solution; in full `contvines.problems.protocol`."""
 
     def newton(
@@ -383,26 +384,6 @@ class Kernels(Protocol[DataFor, WorkFor]):
         limit: int,
     ) -> tuple[float, int, float]: ...
     def examine(self, data: DataFor, u: np.ndarray, p: float, work: WorkFor, row: np.ndarray) -> float: ...
-
-    # what a continuation asks of them
-    @property
-    def linearise(self) -> Callable[..., float]: ...
-    @property
-    def bordered(self) -> Callable[..., float]: ...
-    @property
-    def inspect(self) -> Callable[..., None]: ...
-    @property
-    def compiled(self) -> bool: ...
-    @property
-    def assign(self) -> Callable[..., None] | None: ...
-    @property
-    def flip(self) -> Callable[..., None] | None: ...
-    @property
-    def transpose(self) -> Callable[..., None] | None: ...
-    @property
-    def column(self) -> int: ...
-    @property
-    def matrix(self) -> Callable[..., np.ndarray] | None: ...
 
 
 class Equations(Protocol[Data, Work]):
