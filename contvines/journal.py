@@ -2,9 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Protocol
 
 import numpy as np
+
+
+class Kept(Protocol):
+    """A graph or a chart, as a journal keeps it."""
+
+    finished: bool
+
+    def entries(self) -> Iterable[tuple[str, str, dict[str, Any]]]:
+        """Everything as (kind, key, content); content holds arrays and JSON values by name."""
+        ...
 
 
 class Journal(Protocol):
@@ -23,7 +34,7 @@ class Journal(Protocol):
         """Keep the values, as copies but of arrays that nobody can write to; on return they survive a kill."""
         ...
 
-    def checkpoint(self, graph: object) -> None:
+    def checkpoint(self, graph: Kept) -> None:
         """Called with the graph so far, after each finished branch and at the end (``graph.finished``)."""
         ...
 
@@ -37,7 +48,7 @@ class NullJournal:
     def record(self, key: str, values: dict[str, Any]) -> None:
         return None
 
-    def checkpoint(self, graph: object) -> None:
+    def checkpoint(self, graph: Kept) -> None:
         return None
 
 
@@ -59,7 +70,7 @@ class Part:
     def record(self, key: str, values: dict[str, Any]) -> None:
         self.journal.record(self.prefix + key, values)
 
-    def checkpoint(self, graph: object) -> None:
+    def checkpoint(self, graph: Kept) -> None:
         return None
 
 
@@ -79,5 +90,5 @@ class MemoryJournal:
             for name, value in values.items()
         }
 
-    def checkpoint(self, graph: object) -> None:
+    def checkpoint(self, graph: Kept) -> None:
         self.graph = graph

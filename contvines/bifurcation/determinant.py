@@ -17,7 +17,6 @@ import numpy as np
 from ..continuation.aims import NO_COLUMNS, SIGN, Aim
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Doubtful
-from ..problems.dense import DenseWork
 from ..shared.floating_point import EPSILON, TINY
 from .locate import Root, locate, locate_singular
 from .segment import Segment
@@ -96,6 +95,8 @@ def certain(engine: Engine, point: Solved) -> bool:
     problem = engine.problem
     if not isinstance(problem, Doubtful):
         return True
+    from ..problems.dense import DenseWork
+
     engine.residual(point.u, point.p)
     work, doubts = engine.work, problem.doubts(engine.work, ROUNDING)
     if not isinstance(work, DenseWork) or not isinstance(doubts, np.ndarray):

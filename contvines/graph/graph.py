@@ -326,6 +326,12 @@ class Graph(Resumable):
 
         return plot_diagram(self, x=x, y=y, **options)
 
+    def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
+        """The graph as (kind, key, content), as files keep it."""
+        from .persistence import graph_entries
+
+        return graph_entries(self)
+
     def save(self, path: str | Path) -> None:
         """Write the graph to a .vines file; see :mod:`contvines.store`.
 

@@ -21,6 +21,7 @@ from .publishing import draft_of, publish
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
+    from ..journal import Kept
     from ..loci.chart import Chart
 
 _SCHEMA = """
@@ -190,18 +191,13 @@ class Store:
         with self.transaction():
             self.put("journal", key, values)
 
-    def checkpoint(self, graph: object) -> None:
+    def checkpoint(self, graph: Kept) -> None:
         """Keep the graph as it stands, replacing what was kept of it before, in one transaction.
 
         One that is unfinished does not replace one that is finished.
         """
-        from contvines.graph.graph import Graph
-        from contvines.graph.persistence import graph_entries
-        from contvines.loci.chart import Chart
-
-        assert isinstance(graph, Graph | Chart)
         # some numbers are worked out when they are asked for: before the write, which nothing may interrupt
-        entries = list(graph_entries(graph) if isinstance(graph, Graph) else graph.entries())
+        entries = list(graph.entries())
         finished = bool(graph.finished)
         with self.transaction():
             if self.finished and not finished:
