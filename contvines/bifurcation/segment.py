@@ -23,10 +23,13 @@ class Segment:
     engine : Engine
     a, b : Solved
         Their tangents make an angle of less than a right angle with the chord.
+    turns : bool
+        A segment of which this is a part has one fold. The parameter is then known to turn back by more than rounding where its directions at the
+        ends differ, however near to each other these are.
     """
 
-    def __init__(self, engine: Engine, a: Solved, b: Solved) -> None:
-        self.engine, self.a, self.b = engine, a, b
+    def __init__(self, engine: Engine, a: Solved, b: Solved, turns: bool = False) -> None:
+        self.engine, self.a, self.b, self.turns = engine, a, b, turns
         self.chord = np.empty((4, engine.n + 1))
         self.za, self.zb = self.chord[0], self.chord[2]
         self.za[:-1], self.za[-1], self.zb[:-1], self.zb[-1] = a.u, a.p, b.u, b.p

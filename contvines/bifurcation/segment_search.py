@@ -11,7 +11,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..shared.floating_point import EPSILON, TINY
-from .consistency import at_one, unaccounted, unresolved
+from .consistency import unaccounted, unresolved
 from .determinant import singular
 from .evidence import Evidence, evidence, parabola_dips
 from .first_border import find_border, first_zero, rounding
@@ -93,12 +93,8 @@ class SegmentSearch:
         shortest = settings.sliver if pairs and (plus or minus) else settings.resolution
         if depth < self.deepest and segment.length > shortest:
             if self.parts < settings.parts:
-                halves = self.both(segment, 0.5, middle, real, depth + 1)
-                folds = [e for e in found if e.kind == "fold" and at_one(self.engine, e)]
-                if not folds or any(e.kind == "fold" or e.role is Role.UNRESOLVED for e in halves):
-                    return halves
-                kept = [*halves, *folds]  # on a half the parameter turns by no more than rounding
-                return [*kept, unresolved(segment, middle)] if unaccounted(segment, kept) else kept
+                turns = any(e.kind == "fold" for e in found)
+                return self.both(segment, 0.5, middle, real, depth + 1, turns)
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]
 
@@ -325,15 +321,19 @@ class SegmentSearch:
         return float(segment.border @ gap) / segment.length, inside[1]
 
     # ------------------------------------------------------------------ parts of segments
-    def before(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
+    def before(
+        self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0, turns: bool = False
+    ) -> list[Located]:
         """The special points of the first part of a segment."""
-        part = self.search(Segment(self.engine, segment.a, middle), real, depth)
+        part = self.search(Segment(self.engine, segment.a, middle, turns), real, depth)
         return [replace(e, position=s * e.position) for e in part]
 
-    def both(self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0) -> list[Located]:
-        """The special points of a segment from its two parts."""
-        second = self.search(Segment(self.engine, middle, segment.b), real, depth)
-        return self.before(segment, s, middle, real, depth) + [
+    def both(
+        self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0, turns: bool = False
+    ) -> list[Located]:
+        """The special points of a segment from its two parts; `turns` where a fold has been found on it."""
+        second = self.search(Segment(self.engine, middle, segment.b, turns), real, depth)
+        return self.before(segment, s, middle, real, depth, turns) + [
             replace(e, position=s + (1.0 - s) * e.position) for e in second
         ]
 

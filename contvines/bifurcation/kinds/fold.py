@@ -41,6 +41,8 @@ def turns_back(point: Point) -> bool:
     segment, engine = point.segment, point.engine
     if engine.adaptive and _upright(segment):
         return alone(engine, point.solved)
+    if segment.turns:
+        return True
     moved = max(abs(segment.a.p - point.value), abs(segment.b.p - point.value))
     blur = rounding_of_parameter(engine, point.solved) if engine.adaptive else 0.0
     return moved > max(engine.settled(point.value), blur)

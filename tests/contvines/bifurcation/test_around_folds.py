@@ -90,7 +90,7 @@ class Exchanged(Parabola):
 
 
 @pytest.mark.parametrize("max_step", [0.1, 0.03, 0.003])
-@pytest.mark.parametrize("gap", [1e-4, 1e-3])
+@pytest.mark.parametrize("gap", [1e-5, 1e-4, 1e-3])
 def test_a_pair_that_leaves_between_a_doubling_and_a_fold(max_step, gap):
     """One multiplier is outside before all three and one behind, past -1 and past +1: a doubling and a fold account for that."""
     problem = Exchanged(gap, 2.0 * gap, 0.8 / gap)
@@ -100,3 +100,19 @@ def test_a_pair_that_leaves_between_a_doubling_and_a_fold(max_step, gap):
     assert flip.u[0] == pytest.approx(problem.at(-5.0 * gap / 1.8), rel=1e-6)
     assert pair.u[0] == pytest.approx(problem.at(-gap), rel=1e-6)
     assert not graph.unresolved
+
+
+@pytest.mark.parametrize("max_step", [0.1, 0.03, 0.003])
+@pytest.mark.parametrize("gap", [1e-9, 1e-8, 1e-7, 1e-6, 3e-6])
+def test_nearer_than_segments_are_halved_the_fold_is_found_and_what_lacks_is_unresolved(max_step, gap):
+    """All three lie within three gaps of the fold; on the parts into which the step is halved the parameter turns by less than rounding."""
+    problem = Exchanged(gap, 2.0 * gap, 0.8 / gap)
+    graph = cv.diagram(problem, within=(-0.2, 0.4), settings={"max_step": max_step}, depth=0)
+    (fold,), flips, pairs = (graph.of_kind(k) for k in ("fold", "period-doubling", "neimark-sacker"))
+    assert abs(fold.u[0]) < 1e-12 and abs(fold.value) < 1e-14
+    assert [point.u[0] for point in flips] == pytest.approx(
+        [problem.at(-5.0 * gap / 1.8)] * len(flips), rel=1e-6
+    )
+    assert [point.u[0] for point in pairs] == pytest.approx([problem.at(-gap)] * len(pairs), rel=1e-6)
+    assert len(flips) <= 1 and len(pairs) <= 1
+    assert (flips and pairs) or any(stretch.low < 1e-10 for stretch in graph.unresolved)
