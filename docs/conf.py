@@ -1,8 +1,10 @@
 """The documentation as a site: `sphinx-build -W docs site` with the extra `docs` installed; it runs the notebooks."""
 
 import os
+import re
 import shutil
 import sys
+from importlib.metadata import metadata
 from pathlib import Path
 
 import contvines
@@ -12,7 +14,7 @@ sys.path.insert(0, str(HERE))
 import gallery_pages  # noqa: E402
 
 project = "contvines"
-author = "The contvines developers"
+author = metadata("contvines")["Author"] or metadata("contvines")["Author-email"]
 project_copyright = author
 release = version = contvines.__version__
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc", "sphinx_copybutton"]
@@ -44,6 +46,8 @@ nb_execution_timeout = 240
 nb_execution_raise_on_error = True
 nb_merge_streams = True
 
+autodoc_preserve_defaults = True  # as the source writes them
+nitpicky = True  # a cross reference that leads nowhere fails the build
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings have shapes and units
 numpydoc_show_class_members = False
@@ -56,7 +60,7 @@ gallery_pages.write(HERE / "gallery")
 
 
 def setup(app):
-    """Pictures that the grid of the gallery shows by their place on the site."""
+    """Pictures that the grid of the gallery shows by their place on the site, and signatures that can be read."""
 
     def copy(app, problem):
         if problem is None and app.builder.format == "html":
@@ -67,4 +71,19 @@ def setup(app):
                 dirs_exist_ok=True,
             )
 
+    def plain(app, what, name, obj, options, signature, returns):
+        """A class with many fields, or with defaults that are objects, is read below its name, not in it."""
+        if what != "class" or not signature:
+            return None
+        if name.endswith("Settings"):  # its defaults are worth reading
+            return re.sub(r"StepRule\(judge=.*?\)", "StepRule(by_angle)", signature), returns
+        return ("", None) if len(signature) > 160 or "<" in signature else None
+
+    def own(app, what, name, obj, options, lines):
+        """Of a tuple, what the page says of it, not what Python says of tuples."""
+        if what == "data" and isinstance(obj, tuple):
+            lines.clear()
+
     app.connect("build-finished", copy)
+    app.connect("autodoc-process-signature", plain)
+    app.connect("autodoc-process-docstring", own)

@@ -113,7 +113,13 @@ class Orbit(Cycle):
         return bool(np.all(np.abs(self.multipliers) < 1.0))
 
     def measures(self, *wanted: str) -> dict[str, float]:
-        """Measures by name, all of them if none is named."""
+        """Measures by name, all of them if none is named; names: `problem().measure_names`.
+
+        Raises
+        ------
+        KeyError
+            If there is no measure of a name.
+        """
         asked = wanted or self.flow.measure_names(self.model)
         values = self.flow.measures(
             self.model, self.word, self.periods, self.nodes[None], self.params[None], list(asked)
@@ -126,9 +132,19 @@ class Orbit(Cycle):
 
     # ------------------------------------------------------------------ seeing it move
     def sample(self, points: int = 400) -> dict[str, np.ndarray]:
-        """The motion over one period: positions and velocities in the cavity, or a declared machine's states.
+        """The motion over one period, both sides of every jump included.
 
-        See `orbits.flows.native.sampling.sample`, `orbits.flows.page.sampling.sample`.
+        Parameters
+        ----------
+        points : int
+            About how many; at least two per flight.
+
+        Returns
+        -------
+        dict of ndarray
+            Each of shape (m,). Of a built-in machine ``tau`` (dimensionless time from the first event), ``phase``, ``w``, ``w_rate``, ``v``,
+            ``v_rate``, and the positions ``cavity`` (q1) and ``absorber`` (q2); of a declared one ``time``, ``phase`` and its states by
+            name. ``segment`` is the index of the event before.
         """
         return self.flow.sample(self, points)
 
@@ -147,7 +163,10 @@ class Orbit(Cycle):
         return found
 
     def replay(self) -> float:
-        """Largest deviation of the event-driven simulation from the orbit over one period; see `orbits.cycles.deviation`."""
+        """Largest deviation of the event-driven simulation from the orbit over one period, in units of the machine's own size.
+
+        Infinite where the simulation meets other events.
+        """
         return deviation(self, lambda: (self._examined[2], self.multipliers))
 
     # ------------------------------------------------------------------ towards continuation
@@ -181,7 +200,26 @@ class Orbit(Cycle):
 
     # ------------------------------------------------------------------ seeing and proving
     def prove(self, bits: int | None = None, **parameters: Any):
-        """Prove that the orbit exists, is real or virtual, stable or unstable; see `orbits.proofs.subjects.of_orbit`."""
+        """Prove in ball arithmetic that the orbit exists, is real or virtual, stable or unstable (extra `proofs`).
+
+        Parameters
+        ----------
+        bits : int, optional
+            Precision to begin with.
+        **parameters
+            Exact values, as decimals (``amplitude="1.0735"``) or balls (``amplitude=("0.6", "1e-6")``); else the shortest decimals of
+            the orbit's floats.
+
+        Returns
+        -------
+        orbits.proofs.proof.Proof
+            `real` and `stable` are True, False or None (not proved); `box` encloses the one solution, `obstacles` say what is not proved.
+
+        Raises
+        ------
+        ValueError
+            If python-flint is missing, a parameter does not exist, or the machine's flights have no closed form.
+        """
         from orbits.proofs.subjects import of_orbit
 
         return of_orbit(self, bits, **parameters)
@@ -192,13 +230,16 @@ class Orbit(Cycle):
         return page(self)
 
     def plot(self, **options: Any):
-        """Phase portrait and time history; see `orbits.plots.portrait.portrait`."""
+        """Draw phase portrait and time history; options are those of :func:`orbits.plots.portrait.portrait`."""
         from orbits.plots.portrait import portrait
 
         return portrait(self, **options)
 
     def animate(self, path: str | Path | None = None, **options: Any):
-        """The orbit in motion, written to a gif, mp4 or html file if a path is given; see `orbits.plots.animation.animate`."""
+        """Show the orbit in motion; with a path it is written to a gif, mp4 (by ffmpeg) or html file.
+
+        Options are those of :func:`orbits.plots.animation.animate`.
+        """
         from orbits.plots.animation import animate
 
         return animate(self, path, **options)

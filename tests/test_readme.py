@@ -109,6 +109,24 @@ def test_study_block_is_a_good_study():
     assert check_study(tomllib.loads(block[1])).word == "LR"
 
 
+def test_authors_and_version_are_those_of_the_citation():
+    """CITATION.cff is filled in first; what else names the authors or the version follows it."""
+    import contvines
+
+    citation = (TOP / "CITATION.cff").read_text(encoding="utf-8")
+    listed = citation[citation.index("\nauthors:") : citation.index("\nkeywords:")]
+    names = re.findall(r'^ +(?:- )?(?:family-names|name): "?([^"\n]+)"?$', listed, re.MULTILINE)
+    assert names
+    for place in ("README.md", "pyproject.toml", "paper/paper.md", "LICENSE"):
+        text = (TOP / place).read_text(encoding="utf-8")
+        assert not [name for name in names if name not in text], place
+    version = re.search(r"^version: (\S+)$", citation, re.MULTILINE)
+    assert version and version[1] == contvines.__version__ == tomllib.loads(
+        (TOP / "pyproject.toml").read_text(encoding="utf-8")
+    )["project"]["version"]
+    assert f"version = {{{version[1]}}}" in README
+
+
 @pytest.mark.parametrize("target", sorted(set(re.findall(r"\]\(((?!http)[^)#]+)\)", README))))
 def test_links_lead_somewhere(target):
     assert (TOP / target).exists()

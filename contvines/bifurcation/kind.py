@@ -67,7 +67,7 @@ class Kind:
         What labels begin with: capital letters, as ``LP`` of LP1, LP2 ...
     test : callable, optional
         point -> float, zero at the special point and changing its sign there with a slope that is not zero. The point is a
-        :class:`~contvines.bifurcation.point_on_branch.PointOnBranch`: ``point.u``, ``point.value``, ``point.parameters``,
+        ``PointOnBranch``: ``point.u``, ``point.value``, ``point.parameters``,
         ``point.multipliers``, ``point.margins``, ``point.jacobian``, ``point.tangent``, ``point.measure(name)``.
     text : str
         For people; by default the name without hyphens.
@@ -82,6 +82,8 @@ class Kind:
         point -> float: the condition that ``contvines.locus`` adds to the equations, often the test itself.
     ends : bool
         Branches end there.
+    border, tests, find, leaves, nothing, without
+        Of built-in kinds: what one test function does not tell, and sentences for where nothing leaves.
 
     Raises
     ------

@@ -136,7 +136,13 @@ class Branch:
         return tuple(str(name) for name in names if name != self.parameter)
 
     def measure(self, name: str) -> np.ndarray:
-        """A measure along the branch, shape (n,). The parameter's own name is a measure, too."""
+        """A measure along the branch, shape (n,); names: `measure_names`, and the parameter's own name.
+
+        Raises
+        ------
+        KeyError
+            If the problem has no such measure.
+        """
         # pictures and surveys ask for the same one again and again
         known = vars(self).setdefault("_measured", {})
         points, values, found = known.get(name, (None, None, None))

@@ -55,7 +55,7 @@ class SpecialPoint:
     label : str
         Short and stable: LP1, SB1, PD1 ...
     kind : str
-        See :mod:`contvines.bifurcation.kinds`.
+        Name of the kind; see :data:`contvines.KINDS`.
     branch : str
         Label of the branch on which it was located.
     value : float
@@ -80,7 +80,7 @@ class SpecialPoint:
         No margin is negative: a border point itself is real, whichever side it is seen from.
     criticality : {"supercritical", "subcritical"} or None
     coefficient : float or None
-        Normal-form coefficient (see :mod:`contvines.bifurcation.normal_forms.along_branch`); worked out when it is first asked for.
+        Normal-form coefficient (Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.5, 5.4, 7.4); worked out when it is first asked for.
     replay : float or None
         Replay error by simulation; simulated when it is first asked for.
     multipliers_beyond : ndarray of complex or None
@@ -192,7 +192,10 @@ class SpecialPoint:
         return plot_portrait(self.orbit, **options)
 
     def circles(self, to: float | None = None, **options: int):
-        """The invariant circles that are born at a Neimark-Sacker point; see :func:`contvines.circles.follow.circles`."""
+        """The invariant circles that are born at a Neimark-Sacker point, up to the parameter value `to`.
+
+        Arguments, result and errors are those of :func:`contvines.circles.follow.circles`.
+        """
         from ..circles.follow import circles
 
         return circles(self, to, **options)

@@ -93,7 +93,7 @@ class Circles:
     rotation : float
         Rotation number there.
     coefficient : float
-        First Lyapunov coefficient (:mod:`contvines.bifurcation.normal_forms.coefficients`).
+        First Lyapunov coefficient, Re d of z -> m z (1 + d z z* + ...) (Kuznetsov, section 4.7).
     growth : float
         d(log abs(multiplier))/dp there; the normal form has radius^2 proportional to -growth (p - value)/coefficient.
     names : tuple of str

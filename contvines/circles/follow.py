@@ -57,6 +57,10 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
     count : int
         How many at most.
 
+    Returns
+    -------
+    Circles
+
     Raises
     ------
     ValueError

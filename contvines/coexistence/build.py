@@ -71,7 +71,7 @@ def atlas(
     Parameters
     ----------
     machine : machine, orbit or problem
-        With a ``population``; see :mod:`contvines.coexistence.population`.
+        A machine, an orbit, or a problem of your own with a ``population``.
     over : str, optional
         Name of the parameter.
     within : (float, float)

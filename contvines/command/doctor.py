@@ -16,7 +16,7 @@ EXTRAS = {
     "machines": ("heyoka",),
     "proofs": ("flint", "mpmath"),
     "units": ("pint",),
-    "tables": ("pandas", "xarray", "h5netcdf"),
+    "tables": ("pandas", "xarray", "h5netcdf", "networkx"),
     "surveys": ("dask", "distributed"),
     "report": ("plotly",),
 }

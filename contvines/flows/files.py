@@ -60,7 +60,7 @@ def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Equilibria 
 def read_ode(
     path: str | Path, x0: Sequence[float] | np.ndarray | float | None = None, **options: Unpack[NamedOptions]
 ) -> FlowProblem:
-    """A flow from an .ode file of XPP: equations, parameters, functions and fixed quantities; see :mod:`contvines.flows.expressions`.
+    """A flow from an .ode file of XPP: equations, parameters, functions and fixed quantities. Only arithmetic of the file is evaluated.
 
     Nothing of the file is run but arithmetic.
 

@@ -185,7 +185,7 @@ class CycleOrbit:
     def simulated_multipliers(self) -> np.ndarray:
         """Multipliers from the variational equations, integrated along simulations (scipy's DOP853), the trivial one included; largest first.
 
-        Each simulation begins on the cycle and lasts until one perturbation has grown `spread` times as much as another (:class:`FlowSettings`), at most an eighth of the period;
+        Each simulation begins on the cycle and lasts until one perturbation has grown `spread` times as much as another (:class:`contvines.flows.FlowSettings`), at most an eighth of the period;
         the multipliers are those of the product of all, from its factors. So 1e+30 and 1e-30 are right beside each other. Of sparse flows growth alone ends
         a simulation: their multipliers below 1e-8 are not known.
 

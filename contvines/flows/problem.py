@@ -91,7 +91,7 @@ class FlowProblem:
         Largest error of a cycle between its mesh points, relative to its size; intervals are halved where it is larger. Periods,
         parameters and multipliers have the square of that, nearly.
     settings : FlowSettings or mapping of str to float, optional
-        Other tolerances than the defaults; see :class:`contvines.flows.settings.FlowSettings`.
+        Other tolerances than the defaults; see :class:`contvines.flows.FlowSettings`.
     scale : float or array_like of shape (d,), optional
         What counts as large in each coordinate.
     states : sequence of str, optional
@@ -241,7 +241,13 @@ class FlowProblem:
 
     # ------------------------------------------------------------------ as a seed
     def problem(self, parameter: str | None = None) -> Equilibria | CycleMesh:
-        """Equilibria (cycles, of forced flows) when a parameter varies."""
+        """The equilibria as a continuation problem; of a forced flow the cycle on which its start settles.
+
+        Parameters
+        ----------
+        parameter : str, optional
+            The one that varies; by default the first of `params`.
+        """
         parameter = self.values.varying if parameter is None else parameter
         if self._equilibria is not None:
             return self.equilibria(parameter)
@@ -254,7 +260,14 @@ class FlowProblem:
     def equilibria(
         self, parameter: str | None = None, values: Mapping[str, float] | None = None
     ) -> Equilibria:
-        """The problem of the equilibria.
+        """The equilibria as a continuation problem.
+
+        Parameters
+        ----------
+        parameter : str, optional
+            The one that varies; by default the first of `params`.
+        values : mapping, optional
+            Of other parameters.
 
         Raises
         ------
@@ -277,7 +290,19 @@ class FlowProblem:
         around: np.ndarray | None = None,
         **values: float,
     ) -> FlowPopulation:
-        """Starts in a box of states and what they settle on; see :mod:`contvines.flows.population`."""
+        """Starts in a box of states, for `atlas` and `basins`.
+
+        Parameters
+        ----------
+        over : str, optional
+            The parameter that varies; by default the first of `params`.
+        box : sequence of (float, float), optional
+            Smallest and largest value of each state; by default round the flow's own start.
+        around : ndarray, shape (n, d), optional
+            States round which the box is laid, such as those of a cycle.
+        **values
+            Of parameters.
+        """
         parameter = self.values.varying if over is None else over
         return FlowPopulation(self, parameter, values, box, around)
 
@@ -306,6 +331,11 @@ class FlowProblem:
             How often the transient is lengthened before that.
         **values
             Of parameters.
+
+        Returns
+        -------
+        CycleOrbit
+            `contvines.diagram` begins with it.
 
         Raises
         ------

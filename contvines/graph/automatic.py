@@ -54,9 +54,9 @@ def diagram(
     user_functions : mapping, optional
         name -> callable (u, p) -> float, or (measure, value); their zeros become special points of kind "user".
     journal : Journal, optional
-        What it remembers is not computed again; see :mod:`contvines.journal`.
+        What it remembers is not computed again; see :class:`contvines.MemoryJournal`.
     progress : callable or bool, optional
-        Called with a :class:`Progress` after each chunk and each branch. By default a line on a terminal or in a notebook;
+        Called with a ``Progress`` (``message`` and counts) after each chunk and each branch. By default a line on a terminal or in a notebook;
         False for none.
     settings : Settings or mapping, optional
     stop : mapping, optional

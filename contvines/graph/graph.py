@@ -92,8 +92,11 @@ class Graph(Resumable):
     model : dict
         Name and fixed parameters of the model (JSON-able).
     branches : dict of Branch
+        By label.
     special : dict of SpecialPoint
+        By label.
     switches : list of Switch
+        Which branches meet at which special point.
     within : (float, float)
         The interval of the parameter.
     settings : dict
@@ -110,6 +113,10 @@ class Graph(Resumable):
         Whether simulation has looked for motions that the finished graph does not have; they are `missing`.
     proofs : dict of dict
         By label what is proved (existence, real, stable, radius) and its certificate; see `prove`.
+    attractors : list of Attractor
+        Of an atlas: motions on which simulated starts settled, with their shares and branches.
+    missing : list of Attractor
+        Motions that simulation has found and that lie on no branch, where the graph was `looked` at.
     unresolved : list of Unresolved
         Stretches of branches on which special points cannot be distinguished, with what is certain on both sides.
     """
@@ -203,7 +210,7 @@ class Graph(Resumable):
         return {look["name"]: Kind(**look) for look in self.settings.get("kinds", [])}
 
     def kind(self, name: str) -> Kind:
-        """The kind of this name: built-in or the user's own."""
+        """The kind of this name, built in or the user's own: its label, text and mark."""
         return kind_named(name, self.own_kinds)
 
     def prove(self, *labels: str, **options: Any) -> dict[str, Any]:
@@ -309,7 +316,19 @@ class Graph(Resumable):
         return graph_dataset(self)
 
     def export(self, path: str | Path, to: str | None = None) -> Path:
-        """Write the graph for other programs; `to` ("csv", "json", "graphml", "mat", "latex") is read off the name by default.
+        """Write the graph for other programs.
+
+        Parameters
+        ----------
+        path : str or Path
+            Of ``"auto"`` the name that b.NAME, s.NAME and d.NAME share.
+        to : {"csv", "json", "graphml", "mat", "latex", "auto", "xpp"}, optional
+            By default what the ending of `path` says.
+
+        Returns
+        -------
+        Path
+            The file that was written.
 
         Raises
         ------
@@ -333,7 +352,7 @@ class Graph(Resumable):
         return graph_entries(self)
 
     def save(self, path: str | Path) -> None:
-        """Write the graph to a .vines file; see :mod:`contvines.store`.
+        """Write the graph to a .vines file, which :func:`contvines.load` reads.
 
         Raises
         ------

@@ -19,7 +19,7 @@ class Limits:
     Attributes
     ----------
     functions : dict
-        name -> what :func:`contvines.bifurcation.user_functions.user_function` takes.
+        name -> callable (u, p) -> float, or (measure, value).
     bounds : dict
         name of a measure -> (low, high).
     """

@@ -148,7 +148,18 @@ class Chart(Resumable):
         return chart_dataset(self)
 
     def export(self, path: str | Path, to: str | None = None) -> Path:
-        """Write the chart for other programs; `to` ("csv", "json") is read off the name by default.
+        """Write the chart for other programs.
+
+        Parameters
+        ----------
+        path : str or Path
+        to : {"csv", "json"}, optional
+            By default what the ending of `path` says.
+
+        Returns
+        -------
+        Path
+            The file that was written.
 
         Raises
         ------

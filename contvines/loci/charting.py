@@ -58,7 +58,7 @@ def chart(
     journal : Journal, optional
         What it remembers is not computed again.
     progress : callable or bool, optional
-        Called with a :class:`ChartProgress`. By default a line on a terminal or in a notebook; False for none.
+        Called with a ``ChartProgress`` (``message`` and counts). By default a line on a terminal or in a notebook; False for none.
     interrupt : "raise" or "return"
         What Ctrl-C does: raise :class:`contvines.Interrupted`, whose ``graph`` is the chart of all that is done, or return
         that chart. ``contvines.resume(chart)`` goes on.

@@ -132,7 +132,23 @@ class Locus:
         return self.branch.orbit(i)
 
     def at(self, value: float) -> np.ndarray:
-        """Values of the first parameter where the second one has a value, solved to roundoff; shape (k,)."""
+        """Values of the first parameter where the second one has a value, solved to roundoff.
+
+        Parameters
+        ----------
+        value : float
+            Of the second parameter.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+            In increasing order; empty where the locus does not pass this value.
+
+        Raises
+        ------
+        ValueError
+            If the locus was loaded without its problem.
+        """
         q, found = self.branch.values, []
         if self.problem is None:
             raise ValueError(f"{self.label} was loaded without its problem; nothing can be solved on it")

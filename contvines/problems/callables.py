@@ -147,6 +147,18 @@ class CallableProblem(ProblemDefaults, ABC):
         """The same problem with another parameter varying, and with other values of some parameters.
 
         Cheap: nothing is evaluated. Scales are learned again where another parameter varies.
+
+        Parameters
+        ----------
+        parameter : str
+            The one that varies from now on.
+        values : mapping, optional
+            New values of some parameters.
+
+        Raises
+        ------
+        ValueError
+            If a name is not among the parameters.
         """
         other = copy(self)
         other.values = self.values.against(parameter, values)

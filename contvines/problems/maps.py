@@ -321,7 +321,20 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
     def population(
         self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None
     ) -> Population:
-        """Starts in a box (by default round this cycle) and what they settle on; see `contvines.coexistence.maps`."""
+        """Starts in a box of states, for `atlas` and `basins`.
+
+        Parameters
+        ----------
+        over : str, optional
+            The parameter that varies; by default the problem's own.
+        box : sequence of (float, float), optional
+            Smallest and largest value of each unknown; by default round this cycle.
+
+        Raises
+        ------
+        ValueError
+            If there is no such parameter.
+        """
         problem = self if over in (None, self.parameter) else self.against(str(over))
         from ..coexistence.maps import MapPopulation
 

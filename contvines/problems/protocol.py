@@ -15,6 +15,7 @@ The contract, in words:
    ``inspect(data, u, p, work, row) -> None``
        from the linearisation in ``work``: ``row[:2 m]`` are the m multipliers (or eigenvalues) as re, im pairs,
        ``row[2 m:]`` are the margins. A margin is positive on a real solution, +inf where it does not apply.
+
    Loci against a second parameter need five more, optional, entries:
 
    ``assign(data, other, value) -> None``
@@ -47,12 +48,12 @@ The contract, in words:
 9. ``movable`` solutions are not isolated: they may be shifted as a whole. ``smooth_margin`` names the margin to follow along
    a locus where that of a border jumps.
 10. ``uncertainty`` is the relative accuracy of the equations; ``check`` a sentence on derivatives that disagree with them;
-   ``explain_end`` one on why Newton's method fails at the end of a branch. ``at_each_point`` has a measure at each point of a
-   cycle, shape (m, n), or None.
+    ``explain_end`` one on why Newton's method fails at the end of a branch. ``at_each_point`` has a measure at each point of a
+    cycle, shape (m, n), or None.
 
 Five small protocols, `Equations`, `Spectrum`, `Symmetries`, `Borders` and `Description`, make it up; a function asks for the one it needs.
 Satisfied by structure: nothing has to be imported or inherited; :class:`ProblemDefaults` answers what a problem has nothing to
-say on. What only some problems can is in :mod:`contvines.problems.abilities`.
+say on. What only some problems can is in ``contvines/problems/abilities.py``.
 """
 
 from __future__ import annotations

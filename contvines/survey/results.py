@@ -173,7 +173,19 @@ class Survey(Resumable):
                 writer.writerow([*cells, self.notes.ravel()[i]])
 
     def plot(self, outcome: str | None = None, **options: Unpack[PanelOptions]) -> Figure:
-        """A curve over one axis, with bands where there are samples, or a map over two; see `contvines.plots.survey`."""
+        """A curve over one axis, with bands where there are samples, or a map over two.
+
+        Parameters
+        ----------
+        outcome : str, optional
+            A column of the survey; by default the first one.
+        **options
+            `axes`, `figsize` and `style`, as of every picture.
+
+        Returns
+        -------
+        Figure
+        """
         from ..plots.survey import plot_survey
 
         return plot_survey(self, outcome, **options)
@@ -184,6 +196,24 @@ class Survey(Resumable):
         """The point of the axes with the lowest (or largest) outcome, over the samples the worst, or this quantile of them.
 
         A point at which a system failed, has no number, or is not known (see `known`) is never the best.
+
+        Parameters
+        ----------
+        outcome : str
+            A column of the survey.
+        largest : bool
+            Look for the largest value.
+        quantile : float, optional
+            Of the samples, 0 to 1; by default the worst one counts.
+        covered : float
+            Share of the interval in which a response must be known.
+
+        Returns
+        -------
+        point : dict
+            Values of what varies on axes.
+        value : float
+            The outcome there.
 
         Raises
         ------

@@ -165,6 +165,12 @@ class Model(Mechanics):
         return {"name": self.name} | {key: own[key] for key in own if key != "contact_time" or own[key]}
 
     def changed(self, **values: object) -> Self:
-        """The same machine with other values."""
+        """The same machine with other values of its fields.
+
+        Raises
+        ------
+        ParameterError
+            If a value is one that the parameter cannot have.
+        """
         own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
         return type(self)(**(own | values))

@@ -181,7 +181,30 @@ class Varying:
         events: int | None = None,
         **parameters: float,
     ):
-        """Simulate from event to event; see `orbits.simulation.simulate`."""
+        """Simulate from event to event, without the equations that continuation solves.
+
+        Parameters
+        ----------
+        start : mapping or ndarray, optional
+            States by name, in the machine's units: `phase` (radians), `w`, `w_rate` and, where the cavity moves, `v`, `v_rate` (or
+            `q1`, `q2`, `q1_rate`, `q2_rate`); of a declared machine its own states, and `phase` if it is forced. What is not given is 0.
+        periods, time : float, optional
+            Length of the run, in forcing periods or in the machine's time.
+        events : int, optional
+            Stop after so many events; by default at most a million.
+        **parameters
+            Parameters that are no fields of the machine (`amplitude`), or that replace them.
+
+        Returns
+        -------
+        Trajectory
+            Phases of the events in `clocks`, their letters in `letters`; `reason` says why the run ended.
+
+        Raises
+        ------
+        SimulationError
+            If the start is impossible, no length is given, or the laws of motion do not continue the motion.
+        """
         from orbits.simulation.runs import simulate
 
         return simulate(self, start, periods=periods, time=time, events=events, **parameters)
@@ -197,7 +220,35 @@ class Varying:
         observed: bool = True,
         **parameters: float,
     ):
-        """The attractor that a start leads to; see `orbits.attractors.find_attractor`."""
+        """The attractor that a start leads to: simulated until it recurs, then solved for.
+
+        Parameters
+        ----------
+        start : mapping or ndarray, optional
+            As for `simulate`; by default rest.
+        transient : float, optional
+            Forcing periods left out first, 300 (of a self-excited machine events, 100).
+        max_period : int
+            Longest recurrence that is looked for, in forcing periods (of a self-excited machine 25 times as many events).
+        tolerance : float, optional
+            Largest distance of two points, relative to 1 + their size, that counts as a return; 1e-6, of a declared machine 1e-5.
+        patience : int, optional
+            How often the transient is prolonged when nothing recurs.
+        observed : bool
+            Whether a motion that does not recur is followed until its statistics settle.
+        **parameters
+            Parameters that are no fields of the machine (`amplitude`), or that replace them.
+
+        Returns
+        -------
+        Attractor
+            `kind` says what it is, `orbit` is the solved orbit (None where no word describes the motion); `contvines.diagram` begins with it.
+
+        Raises
+        ------
+        SimulationError
+            If the start or the lengths are impossible.
+        """
         from orbits.attractors.search import find_attractor
 
         return find_attractor(
@@ -212,13 +263,51 @@ class Varying:
         )
 
     def attractors(self, count: int, seed: int = 0, size: float = 1.0, **options: float | None):
-        """The different attractors that `count` random starts lead to; see `orbits.attractors.different_attractors`."""
+        """The different attractors that random starts lead to, in the order in which they are met; mirror images count once.
+
+        Parameters
+        ----------
+        count : int
+            Number of starts.
+        seed : int
+            Seed of their generator.
+        size : float
+            Of a declared machine: states are drawn within +-`size`.
+        **options
+            As for `attractor`, parameters of the machine included.
+
+        Returns
+        -------
+        list of Attractor
+
+        Raises
+        ------
+        SimulationError
+            If no start can be simulated.
+        """
         from orbits.attractors.search import different_attractors
 
         return different_attractors(self, count, seed, size, **options)
 
     def population(self, over: str | None = None, **parameters: float):
-        """Many starts and what they settle on; see `orbits.population.Population`."""
+        """Many starts of the machine, for `contvines.atlas`, `basins` and `robustness`.
+
+        Parameters
+        ----------
+        over : str, optional
+            The parameter that varies; by default `default_parameter`.
+        **parameters
+            Parameters that are no fields of the machine, or that replace them.
+
+        Returns
+        -------
+        orbits.population.Population
+
+        Raises
+        ------
+        SimulationError
+            If the machine has no such parameter.
+        """
         from orbits.population.population import Population
 
         return Population(self, over or self.default_parameter, parameters)
@@ -230,7 +319,31 @@ class Varying:
         guess: Sequence[Sequence[float]] | np.ndarray | None = None,
         **parameters: Any,
     ):
-        """Solve for the orbit with this word; see `orbits.starts.find.find`."""
+        """Solve for the orbit with this word.
+
+        Parameters
+        ----------
+        word : str or Word
+            Events of one period, such as ``"LR"``; ``""`` is the motion without events.
+        periods : int
+            Forcing periods after which the orbit closes, 1 or more; of a self-excited machine 1.
+        guess : array_like, shape (L, n), optional
+            Nodes for Newton's method, one row per event (slips included): phase, then what `node_names` lists. Without it closed forms are
+            tried, then simulation from many starts, then random nodes.
+        **parameters
+            Parameters that are no fields of the machine (`amplitude`), or that replace them.
+
+        Returns
+        -------
+        Orbit
+
+        Raises
+        ------
+        orbits.starts.find.StartError
+            If no orbit with this word is found; the message says what was tried and which motion the simulator finds.
+        ParameterError, WordError
+            If a parameter or the word is impossible.
+        """
         from orbits.starts.find import find
 
         return find(self, word, periods, guess, parameters)

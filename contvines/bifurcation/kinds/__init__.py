@@ -8,7 +8,7 @@ from ..kind import Kind
 from . import borders, branch_point, fold, multipliers
 
 USER = Kind("user", "US", text="user function", nothing="nothing leaves the zero of a user function")
-"""A number that the user has named passes a value: see :func:`contvines.bifurcation.user_functions.kind_of_function`."""
+"""A number that the user has named passes a value; see :mod:`contvines.bifurcation.user_functions`."""
 END = Kind(
     "end",
     "EP",

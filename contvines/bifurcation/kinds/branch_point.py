@@ -1,7 +1,7 @@
 """Branch point: another branch crosses, where the bordered matrix [[F_u, F_p], [tangent]] is singular.
 
 A simple one is a change of the sign of its determinant, located on the regular function 1 / (c . M^-1 b) of
-:class:`~contvines.bifurcation.determinant_test.DeterminantTest`. Where multipliers are known each one that passes +1 is a test
+:class:`~contvines.bifurcation.determinant.DeterminantTest`. Where multipliers are known each one that passes +1 is a test
 function of its own, so that an even number of branches at once is seen, too.
 """
 

@@ -1,6 +1,6 @@
 """Demos of other packages, as they are printed, unscaled: all special points, no others, each against a solve of its own.
 
-The table says which points there are; :mod:`.demos.witness` solves for each of them in many digits, by its defining equations
+The table says which points there are; :mod:`tools.demos.witness` solves for each of them in many digits, by its defining equations
 and nothing of the package's. That there are no more was asked by Newton's method for these equations from many random starts
 (``python -m tools.demos.search``).
 """
