@@ -77,7 +77,7 @@ def setup(app):
             return None
         if name.endswith("Settings"):  # its defaults are worth reading
             return re.sub(r"StepRule\(judge=.*?\)", "StepRule(by_angle)", signature), returns
-        return ("", None) if len(signature) > 160 or "<" in signature else None
+        return ("", None) if len(signature) > 300 or "<" in signature else None
 
     def own(app, what, name, obj, options, lines):
         """Of a tuple, what the page says of it, not what Python says of tuples."""

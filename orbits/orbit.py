@@ -24,7 +24,19 @@ REAL = -EVENTS.zero  # margins from here to zero, in units of the machine's own 
 class Orbit(Cycle):
     """A periodic orbit with its residual, its multipliers (stability) and its margins (whether a machine can follow it).
 
-    The attributes are those of `orbits.cycles.cycle.Cycle`.
+    Attributes
+    ----------
+    model : Absorber, Coupled, Cavity or Machine
+        The machine.
+    word : Word
+        Its events over the whole period; the empty word is a motion without events.
+    periods : int
+        Forcing periods after which it closes; 1 for a self-excited machine.
+    nodes : float array (L, n)
+        A row per event. Of a built-in machine phase and velocity after an impact (position elsewhere), of the coupled one also v and v'; of a
+        declared machine the phase (of a self-excited one: the duration of the flight that follows) and the states after the event.
+    params : float array (P,)
+        Parameter vector, in the order of `model.parameter_names`.
     """
 
     # ------------------------------------------------------------------ one look at its equations

@@ -135,7 +135,19 @@ class Symmetry:
 
 
 class Embedding(NamedTuple):
-    """A solution seen in a larger problem, in which it is a branch point."""
+    """A solution seen in a larger problem, in which it is a branch point.
+
+    Attributes
+    ----------
+    problem : Problem
+        The larger one, such as that of cycles of twice the length.
+    u : ndarray, shape (N,)
+        The solution, in its unknowns.
+    tangent : ndarray, shape (N + 1,)
+        Of the known branch there.
+    kind : str
+        Of the special point.
+    """
 
     problem: Problem
     u: np.ndarray

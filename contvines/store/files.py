@@ -24,6 +24,14 @@ Result = TypeVar("Result", bound=Resumable)
 def save(graph: Graph | Chart, path: str | Path, fingerprint: str | None = None) -> None:
     """Write a graph to a file of its own; an existing .vines file is replaced in one step.
 
+    Parameters
+    ----------
+    graph : Graph or Chart
+    path : path of the file
+        Its name ends in .vines.
+    fingerprint : str, optional
+        Name of the run, which `resume` compares.
+
     Raises
     ------
     StoreError
@@ -99,6 +107,10 @@ def load(path: str | Path, *, problems: bool = True, trust: bool = False) -> Gra
         Import functions of your own that the file names, those of an :class:`~contvines.AlgebraicProblem` say. Without it
         they are found only if this program has made a problem from them before. Importing runs code: only for files whose
         maker you trust.
+
+    Returns
+    -------
+    Graph or Chart
 
     Raises
     ------

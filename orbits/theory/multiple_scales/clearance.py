@@ -110,7 +110,7 @@ def best_clearance(flow: SlowFlow) -> BestClearance:
     Raises
     ------
     ValueError
-        As `tuned_backbone`.
+        If there is friction, or no damping: there is no linear peak then.
     """
     _check(flow)
     places = np.linspace(float(flow.activation.velocity), float(flow.symmetry_limit.velocity), PLACES)
