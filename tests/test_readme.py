@@ -121,9 +121,8 @@ def test_authors_and_version_are_those_of_the_citation():
         text = (TOP / place).read_text(encoding="utf-8")
         assert not [name for name in names if name not in text], place
     version = re.search(r"^version: (\S+)$", citation, re.MULTILINE)
-    assert version and version[1] == contvines.__version__ == tomllib.loads(
-        (TOP / "pyproject.toml").read_text(encoding="utf-8")
-    )["project"]["version"]
+    built = tomllib.loads((TOP / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert version and version[1] == contvines.__version__ == built
     assert f"version = {{{version[1]}}}" in README
 
 
