@@ -119,6 +119,14 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
         return self.equations.values(p)
 
+    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
+        """Typical sizes of the unknowns, 1 unless the machine knows others, and of the parameter, shape (N + 1,)."""
+        scale = np.ones(self.dimension + 1)
+        sizes = self.model.sizes(self.params)
+        if sizes is not None:
+            scale[:-1] = np.tile(sizes, self.dimension // len(sizes))
+        return scale
+
     def value(self, params: np.ndarray) -> float:
         """The value of the parameter that varies in a parameter vector."""
         return self.equations.value(params)

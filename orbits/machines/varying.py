@@ -150,6 +150,10 @@ class Varying:
         """
         return 1.0, 1.0
 
+    def sizes(self, params: np.ndarray) -> np.ndarray | None:
+        """Typical sizes of the entries of a node, shape (n,), where they are not of order 1 in the units in which orbits are solved for."""
+        return None
+
     def factors(self, units: tuple[float, float]) -> np.ndarray:
         """What one dimensionless number of each of the machine's own parameters is, (P,), in units of a length and a rate."""
         length, rate = units

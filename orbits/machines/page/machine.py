@@ -204,6 +204,13 @@ class Machine(Varying):
         speed = params[..., self.parameter_names.index(self.phase_rate)]
         return speed * self.equations.factors.get(self.phase_rate, 1.0)
 
+    def sizes(self, params: np.ndarray) -> np.ndarray | None:
+        """Typical sizes of a node's entries, shape (n,): speeds of a forced machine in small units, such as mm/s, are numbers far above its lengths."""
+        if not self.forced:
+            return None
+        found = self._units.speeds(self.states, float(self.phase_speed(params)))
+        return None if np.all(found == 1.0) else np.append(1.0, found)
+
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter cannot have: the forcing's frequency, limits of friction and coefficients of restitution
         have limits.

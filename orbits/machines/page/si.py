@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
+import numpy as np
+
 from contvines.shared.modulation import BAND
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.page.formulas import PageError
@@ -52,6 +54,17 @@ class Units:
     def number(self, name: str, value: Given | str) -> Given | float:
         """A value, such as "1.2 mm", counted in the unit of its name; what is no text is a number in that unit already."""
         return counted(name, value, self.said.get(name, "")) if isinstance(value, str) else value
+
+    def speeds(self, states: Sequence[str], rate: float) -> np.ndarray:
+        """For each state that is a speed its number where the smallest unit of length is passed at a rate, at least 1; 1 for the others."""
+        known = [size(self.said[name], "m") for name in states if name in self.said]
+        length = min((one for one in known if one), default=None)
+        found = np.ones(len(states))
+        for i, name in enumerate(states):
+            speed = size(self.said[name], "m/s") if name in self.said else None
+            if length and speed:
+                found[i] = max(1.0, length * rate / speed)
+        return found
 
     def shown(self, states: Sequence[str]) -> dict[str, str]:
         """Units of parameters, states and measures by name."""

@@ -1,0 +1,53 @@
+"""A machine whose speeds are hundreds of mm/s has the branches of the same machine in m/s."""
+
+import math
+
+import pytest
+
+import contvines as cv
+from orbits import Machine, Wall
+from orbits.symbols import cos
+
+pytest.importorskip("pint")
+
+MASS, STIFFNESS, DAMPING, FORCE, GAP = 4.0, 16e3, 12.0, 40.0, 8e-3
+
+
+def machine(speed):
+    """A mass of 4 kg on a spring beside a wall at 8 mm, driven by 40 N."""
+    return Machine(
+        name="press",
+        states=("x", "v"),
+        parameters={"gap": "8 mm", "frequency": "9 Hz", "restitution": 0.6},
+        units={"x": "mm", "v": speed, "gap": "mm", "frequency": "Hz"},
+        phase_rate="frequency",
+        motion=lambda state, phase, p, contact: (
+            state.v,
+            (FORCE * cos(phase) - DAMPING * state.v - STIFFNESS * state.x) / MASS,
+        ),
+        contacts=[
+            Wall(
+                "R", gap=lambda state, phase, p: p.gap - state.x, push={"v": -1.0}, restitution="restitution"
+            )
+        ],
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", ["mm/s", "m/s"])
+def test_the_branch_ends_where_the_linear_response_reaches_the_wall(speed):
+    start = machine(speed).orbit("R", frequency=10.0)
+    graph = cv.diagram(start, over="frequency", within=(8.0, 11.5), depth=0)
+    assert {name: point.kind for name, point in graph.special.items()} == {
+        "WG1": "wall-graze",
+        "PD1": "period-doubling",
+        "EP1": "end",
+        "EP2": "end",
+    }
+    # (F/k)^2 = gap^2 ((1 - s)^2 + 4 D^2 s), s the square of the frequency over the natural one
+    natural = math.sqrt(STIFFNESS / MASS)
+    ratio = DAMPING / (2.0 * MASS * natural)
+    half, rest = 1.0 - 2.0 * ratio**2, 1.0 - (FORCE / STIFFNESS / GAP) ** 2
+    square = half - math.sqrt(half**2 - rest)
+    assert graph["WG1"].value == pytest.approx(natural * math.sqrt(square) / (2.0 * math.pi), rel=1e-9)
+    assert not graph.unresolved and len(graph["B1"]) < 200
