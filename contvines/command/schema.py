@@ -192,6 +192,7 @@ class FlowSections(Section):
     start: FlowStart = FlowStart()
     continue_: Annotated[ContinueSection, Field(alias="continue")]
     atlas: AtlasSection = AtlasSection()
+    chart: ChartSection | None = None
     survey: SurveySection = SurveySection()
 
 

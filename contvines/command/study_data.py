@@ -227,7 +227,7 @@ def wrong_intervals(
     intervals = [("continue", go.parameter, go.within)]
     if isinstance(file, MachineSections) and file.sweep.within is not None:
         intervals.append(("sweep", go.parameter, file.sweep.within))
-    if isinstance(file, MachineSections) and file.chart is not None:
+    if file.chart is not None:
         intervals.append(("chart", file.chart.parameter, file.chart.within))
     for section, name, within in intervals:
         refused = next(filter(None, (refusal(name, value) for value in within)), "")

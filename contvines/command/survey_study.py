@@ -88,7 +88,7 @@ def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily
 
         assert isinstance(model, FlowProblem) and model.origin is not None
         file, name, _ = model.origin
-        return FlowFamily(file, name, study.parameter, study.parameters, study.listed_state)
+        return FlowFamily(file, name, study.parameter, study.parameters, study.listed_state, model.box)
     assert isinstance(model, Varying)
     return machines_of(study, model)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 
-from ..problems.abilities import Rough, Started
+from ..problems.abilities import Named, Rough, Started
 from ..problems.protocol import MEMBERS, Problem
 from .engine import Engine, Solved
 from .settings import SOLUTION
@@ -154,14 +154,21 @@ def start_remark(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
     problem = engine.problem
     if engine.compiled or not isinstance(problem, Rough):
         return ""
-    return "; ".join(part for part in (_moved(engine, u, p, found), _untold(problem.scales)) if part)
+    return "; ".join(part for part in (_moved(engine, u, p, found), _untold(problem, problem.scales)) if part)
 
 
-def _untold(scales: Scales | None) -> str:
+def _name(problem: object, i: int) -> str:
+    """What an unknown is called."""
+    return problem.unknown_name(i) if isinstance(problem, Named) else f"u{i}"
+
+
+def _untold(problem: object, scales: Scales | None) -> str:
     """A sentence on unknowns of which nothing tells how large they become; empty if there is none."""
     if scales is None or not scales.untold:
         return ""
-    names = ", ".join(f"u{i}" for i in scales.untold[:3]) + (", ..." if len(scales.untold) > 3 else "")
+    names = ", ".join(_name(problem, i) for i in scales.untold[:3]) + (
+        ", ..." if len(scales.untold) > 3 else ""
+    )
     return f"at the start nothing tells how large {names} may become: 1 is taken; scale= would say it"
 
 
@@ -176,13 +183,14 @@ def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
         return ""
     size = float(np.abs(problem.residuals(u, float(p))).max())
     i = int(np.argmax(moved))
+    place = f"{_name(problem, i)} = {found.u[i]:.6g} instead of {u[i]:.6g}"
     guessed = np.maximum(engine.scale[:-1], np.abs(u))  # a solution at zero tells no size, the guess does
     if not (np.abs(found.u - u) / guessed).max() <= engine.settings.escape:
         raise ValueError(
             f"the start given is no solution (the largest entry of F is {size:.2g}), and Newton's method ends far away, at "
-            f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}; give a better guess or another parameter value"
+            f"{place}; give a better guess or another parameter value"
         )
-    where = f"u{i} = {found.u[i]:.6g} instead of {u[i]:.6g}"
+    where = place
     if shift >= SOLUTION.told:
         where += f", {problem.parameter} = {found.p:.6g} instead of {float(p):.6g}"
     far = f", {moved[i]:.2g} of its typical size away" if moved[i] >= 0.1 else ""

@@ -68,6 +68,10 @@ class Equilibria(AlgebraicProblem):
             *self.flow.own_measures,
         )
 
+    def unknown_name(self, i: int) -> str:
+        """The state."""
+        return self.flow.states[i]
+
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures for an array of solutions."""
         own = [name for name in names if name in super(Equilibria, self).measure_names]

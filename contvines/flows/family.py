@@ -27,6 +27,8 @@ class FlowFamily:
         Of the parameters that do not vary from system to system.
     state : sequence of float, optional
         Diagrams begin with the cycle on which a motion from there settles; else, of flows that are not forced, with an equilibrium.
+    box : sequence of (low, high), optional
+        Ranges of the states from which simulations begin.
     """
 
     file: str
@@ -34,6 +36,7 @@ class FlowFamily:
     parameter: str
     values: Mapping[str, float]
     state: Sequence[float] | None = None
+    box: Sequence[tuple[float, float]] | None = None
 
     def __call__(self, values: Mapping[str, float], near: object = None) -> CycleOrbit | Equilibria:
         """The start of a system's diagram.
@@ -47,6 +50,7 @@ class FlowFamily:
         numbers: dict[str, Any] = {**self.values, **values}
         if flow is None:
             raise ValueError(f"{self.file} has no flow {self.name!r} any more")
+        flow.box = self.box
         if self.state is not None or flow.field.forced:
             return flow.attractor(self.state, **numbers)
         return flow.equilibria(self.parameter, numbers)

@@ -23,7 +23,7 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..interrupts import OPEN
-from ..problems.abilities import Adaptive
+from ..problems.abilities import Adaptive, EndsOnMesh
 from ..problems.protocol import Problem
 from .identity import Place, same_form, same_value, turns_at
 from .match_borders import is_border
@@ -254,6 +254,7 @@ def _doubt(engine: Engine, special: SpecialPoint) -> None:
         if own is None:
             own = problem.accuracy(special.u, special.value) * engine.parameter_unit(special.value)
         special.location_error = max(special.location_error, own)
+    if isinstance(problem, EndsOnMesh):
         if special.kind == "homoclinic":
             special.location_error = max(
                 special.location_error, problem.remaining(special.u, special.tangent)

@@ -11,7 +11,7 @@ import numpy as np
 from ..problems.protocol import Symmetry
 from ..problems.registry import rebuild
 from .borders import borders_at
-from .layout import KNOWN, PERIOD
+from .layout import FOLD, GROWTH, KNOWN, PERIOD
 from .on_mesh import OnMesh, on_mesh
 from .problem import LocusProblem, Work, described
 
@@ -26,6 +26,11 @@ class AdaptiveLocus(LocusProblem):
     def works(self) -> list[Work]:
         """Workspaces whose borders follow the mesh."""
         return []
+
+    @property
+    def tested(self) -> int:
+        """Folds of cycles in the plane by their multiplier: at canards the equations are singular to rounding all along the branch, and it is not 1."""
+        return GROWTH if self.condition == FOLD and self.n_multipliers == 1 else self.condition
 
     @property
     def mesh(self) -> OnMesh:
@@ -59,10 +64,6 @@ class AdaptiveLocus(LocusProblem):
         """Of values on the mesh, relative."""
         inner, value = self.split(u)
         return on_mesh(self.at(p)).accuracy(inner, float(value))
-
-    def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
-        """Loci end at no infinite period."""
-        return 0.0
 
     def normal_form(
         self,

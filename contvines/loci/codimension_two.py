@@ -82,8 +82,8 @@ def find(locus: Locus) -> list[Found]:
     born = [(index, point) for index, point in both if point is not None]
     found: list[Found] = []
     for index, point in _zeros(problem, points, locus.within, list(_sought(problem, locus.kinds))):
-        # where cycles begin other multipliers may be critical, too
-        begins = any(_at_one_place(point, other) for _, other in born)
+        # where cycles begin other multipliers may be critical, too, and tests are all but zero
+        begins = any(_at_one_place(point, other, PLACES.end) for _, other in born)
         if not begins and not any(same_point(point, other) for _, other in found):
             found.append((index, point))
     return sorted([*found, *born], key=lambda pair: pair[0])
@@ -309,8 +309,8 @@ def same_point(one: PlanePoint, other: PlanePoint) -> bool:
     return one.kind == other.kind and _at_one_place(one, other)
 
 
-def _at_one_place(one: PlanePoint, other: PlanePoint) -> bool:
-    return all(abs(a - b) <= PLACES.same * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
+def _at_one_place(one: PlanePoint, other: PlanePoint, near: float = PLACES.same) -> bool:
+    return all(abs(a - b) <= near * (1.0 + abs(a)) for a, b in zip(one.value, other.value))
 
 
 # ------------------------------------------------------------------ where a motion becomes a shorter or more symmetric one

@@ -13,6 +13,7 @@ Dynamical Equilibria, 2000, chapters 3 and 4). With borders b and c, M = [[F_u, 
     branch point     g, and the last entry of M^-1 (F_p, 0): F_u and (F_u, F_p) lose rank together; e stays zero
     margin           one margin of admissibility
     period           the period, an unknown, has a given value: of cycles that stand for homoclinic orbits
+    growth           the logarithm of the only multiplier, at folds of cycles in the plane
     pair             m1 m2 - 1 for the multipliers of a pair, l1 + l2 for eigenvalues of a flow
 
 Every solve is one elimination of the problem's own kernel with another column in the place of F_p. What is left are two (at branch

@@ -1,7 +1,7 @@
 """What stands where in the data and work arrays of the kernels of a locus, and the conditions that it may follow."""
 
-# PERIOD: one of the unknowns, the period, has a given value; problems in Python alone
-FOLD, FLIP, MARGIN, PAIR, BRANCH, PERIOD = range(6)
+# of problems in Python alone: PERIOD, one of the unknowns, the period, has a given value; GROWTH, the only multiplier is 1
+FOLD, FLIP, MARGIN, PAIR, BRANCH, PERIOD, GROWTH = range(7)
 
 # entries of `data`
 FIRST, SECOND, CALLS, KIND, WHICH, MULTIPLIERS, FLOW, UNIT = range(8)

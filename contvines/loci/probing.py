@@ -21,6 +21,7 @@ from .layout import (
     FLOW,
     FOLD,
     FROZEN,
+    GROWTH,
     KIND,
     KNOWN,
     LINES,
@@ -130,6 +131,8 @@ def tests(data, work, u, p, q, values):
         calls.inspect(first, u, p, trial, row)
         if kind == MARGIN:
             values[0] = row[2 * data[MULTIPLIERS] + data[WHICH]]
+        elif kind == GROWTH:
+            values[0] = math.log(abs(row[0])) if row[0] != 0.0 else -math.inf
         else:
             pair_of(row, data[MULTIPLIERS], data[FLOW], work[REFERENCE][0], work[REFERENCE][1:])
             values[0] = work[REFERENCE][1]

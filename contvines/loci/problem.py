@@ -167,7 +167,7 @@ class LocusProblem(ProblemDefaults):
         self.compiled = bool(kernels.compiled)
         self.kernels = TableKernels(native_table(TABLE)) if self.compiled else IN_PYTHON
         self.natural = has_natural_units(problem)
-        about = self.condition, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
+        about = self.tested, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
         self.data = Data(self.first.data, self.second.data, self.first.kernels, *about)
         if isinstance(kernels, TableKernels):
             places = memory_of(self.first.data), memory_of(self.second.data)
@@ -175,6 +175,11 @@ class LocusProblem(ProblemDefaults):
         shift = problem.period_shift
         if shift is not None and np.any(shift):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
+
+    @property
+    def tested(self) -> int:
+        """The condition whose test the kernels evaluate."""
+        return self.condition
 
     def workspace(self) -> Work:
         """Arrays for the kernels; borders and reference are state that a trace renews."""

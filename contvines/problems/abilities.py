@@ -35,6 +35,13 @@ class Evaluable(Protocol):
 
 
 @runtime_checkable
+class Named(Protocol):
+    """Its unknowns have names of their own."""
+
+    def unknown_name(self, i: int) -> str: ...
+
+
+@runtime_checkable
 class Rough(Protocol):
     """May be given a rough start: its equations can be evaluated without their derivatives, and the lengths over which they bend are known."""
 
@@ -196,11 +203,21 @@ class Returning(Protocol):
 
 
 @runtime_checkable
+class EndsOnMesh(Protocol):
+    """Branches on a mesh of which it is known by how much the parameter at their ends may be off: ``remaining(u, tangent)`` where the period grows
+    without bound, ``touch_error(point)`` at a border that is met between the mesh points.
+    """
+
+    def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float: ...
+    def touch_error(self, point: BorderPoint) -> float: ...
+
+
+@runtime_checkable
 class Adaptive(Protocol):
     """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
 
     ``adapted(u)`` returns how unknowns, and directions of unknowns (``image(v, direction=True)``), read on a better mesh, or None;
-    ``accuracy(u, p)`` is the relative accuracy of values on the mesh, ``remaining(u, tangent)`` of the parameter at the end of a branch whose period grows without bound, ``touch_error(point)`` that at a border which is met between the mesh points; ``normal_form`` is the coefficient at a fold (of the sign ``along`` a direction), a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms;
+    ``accuracy(u, p)`` is the relative accuracy of values on the mesh; ``normal_form`` is the coefficient at a fold (of the sign ``along`` a direction), a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms;
     ``anchor(u, p)`` keeps the phase of a solution for those that follow, until ``anchor(None)``;
     ``too_coarse(u)`` tells whether more unknowns are needed, and ``refined()`` and ``halved(u, direction)`` have these.
     """
@@ -208,8 +225,6 @@ class Adaptive(Protocol):
     chunk: int
 
     def accuracy(self, u: np.ndarray, p: float) -> float: ...
-    def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float: ...
-    def touch_error(self, point: BorderPoint) -> float: ...
     def normal_form(
         self,
         kind: str,

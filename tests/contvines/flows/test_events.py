@@ -64,3 +64,8 @@ def test_motions_stop_at_an_event():
 def test_bad_events_and_names_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
         cv.FlowProblem(stuart_landau, [0.0, 0.0], {"mu": 1.0}, **options)
+
+
+def test_a_start_that_is_no_solution_is_told_by_the_name_of_the_state():
+    flow = cv.FlowProblem(lambda x, p: [p.a - x[0], -x[1]], [0.2, 0.0], {"a": 0.5}, states=("x", "y"))
+    assert "begins at x = 0.5 instead of 0.2" in str(cv.diagram(flow, over="a", within=(-1.0, 1.0)))

@@ -5,8 +5,10 @@ import math
 
 import pytest
 
+import contvines
 from contvines.command.entry import main
 from contvines.command.study import StudyError, read_study
+from contvines.command.survey_study import family_of
 
 FILE = """
 import contvines as cv
@@ -78,6 +80,29 @@ def test_bad_studies_are_refused(study, change, words):
 def test_commands_for_machines_say_so(study, monkeypatch, capsys):
     assert run(monkeypatch, "sweep", "study.toml")
     assert "needs a machine" in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_chart_of_a_section(study, monkeypatch, capsys):
+    """Hopf points at m = c."""
+    (study.parent / "flow.py").write_text(
+        FILE.replace("p.m", "(p.m - p.c)").replace('{"m": -0.1}', '{"m": -0.1, "c": 0.05}')
+    )
+    study.write_text(STUDY + '[chart]\nparameter = "c"\nwithin = [0.1, 0.0]\n')
+    with pytest.raises(StudyError, match=r"\[chart\] within .* reversed"):
+        read_study(study)
+    study.write_text(STUDY + '[chart]\nparameter = "c"\nwithin = [0.0, 0.1]\n')
+    assert not run(monkeypatch, "chart", "study.toml")
+    assert "kept in study-chart.vines" in capsys.readouterr().err
+    locus = contvines.load(study.parent / "study-chart.vines").loci["HB1"]
+    assert locus.values[:, 0] == pytest.approx(locus.values[:, 1], abs=1e-10)
+
+
+def test_simulations_of_a_survey_begin_in_the_box_of_the_study(study):
+    study.write_text(STUDY + "[start]\nbox = [[-1.0, 1.0], [0.0, 2.0]]\n")
+    read = read_study(study)
+    family = family_of(read, read.flow)
+    read.flow.box = None  # another process has not read the study
+    assert family({}).population("m").box(0.0).tolist() == [[-1.0, 1.0], [0.0, 2.0]]
 
 
 def test_atlas_and_basins(study, monkeypatch, capsys):

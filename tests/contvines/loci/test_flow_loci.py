@@ -6,8 +6,11 @@ of g, their multipliers exp(2 pi lambda) with the eigenvalues lambda of these, o
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import contvines as cv
+from contvines.problems.abilities import Adaptive
 
 pytestmark = pytest.mark.slow
 
@@ -34,6 +37,32 @@ def bogdanov_takens(x, p):
     return [x[1], p.b1 + p.b2 * x[0] + x[0] ** 2 - x[0] * x[1]]
 
 
+def nerve(x, p):
+    """FitzHugh-Nagumo."""
+    return [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.e * (x[0] + 0.7 - 0.8 * x[1])]
+
+
+def canard(e, low, high):
+    """Current at which the slow manifolds meet above the fold x = -1, by simulation forwards and backwards."""
+
+    def height(current, start, sign):
+        def passes(t, y):
+            return y[0] + 1.0
+
+        def rate(t, y):
+            return [
+                sign * (y[0] - y[0] ** 3 / 3 - y[1] + current),
+                sign * e * (y[0] + 0.7 - 0.8 * y[1]),
+            ]
+
+        passes.terminal = True
+        begin = [start, start - start**3 / 3 + current]
+        found = solve_ivp(rate, (0, 1e4), begin, method="DOP853", rtol=1e-13, atol=1e-14, events=passes)
+        return found.y_events[0][0][1]
+
+    return brentq(lambda i: height(i, -1.6, 1.0) - height(i, -0.1, -1.0), low, high, xtol=1e-14)
+
+
 def resonant(x, p):
     """The same beside a cycle: folds of cycles, Neimark-Sacker points and a resonance 1:1."""
     return [*ring(x), *bogdanov_takens(x[2:], p)]
@@ -48,6 +77,22 @@ def test_folds_of_cycles_end_at_a_generalized_hopf_point():
     (point,) = locus.points.values()
     assert point.kind == "generalized-hopf"
     assert point.value == pytest.approx((0.0, 0.0), abs=1e-9)
+
+
+def test_folds_of_cycles_go_on_through_a_canard_explosion():
+    """Where the equations are singular to rounding along the whole explosion. By symmetry, (x, y, I) to -(x, y, I), both folds have the sum 7/4 of currents."""
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.0, "e": 0.08})
+    graph = cv.diagram(flow, over="I", within=(0.0, 2.0), depth=1, settings={"max_branches": 2})
+    left, right = (cv.locus(graph[label], over="e", within=(0.02, 0.5)) for label in ("LP1", "LP2"))
+    assert isinstance(left.problem, Adaptive)  # the mesh and the phase follow the cycles
+    for locus in (left, right):
+        assert [locus.values[0, 1], locus.values[-1, 1]] == [0.02, 0.5]
+        assert len(locus) < 100
+        assert not locus.points
+    for end in (0, -1):
+        assert left.values[end, 0] + right.values[end, 0] == pytest.approx(1.75, abs=1e-9)
+    # of relaxation oscillations the fold is within exp(-c/e) of the canard
+    assert left.values[0, 0] == pytest.approx(canard(0.02, 0.299, 0.301), abs=1e-10)
 
 
 def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable():
