@@ -256,7 +256,8 @@ def _segment(
     """A segment of a locus, its equations with the borders and the pair that belong to its beginning."""
     engine = Engine(problem.bordered_at(*_place(problem, ends[0]), at.reference), within, Settings())
     row = np.zeros(engine.row_size)
-    return Segment(engine, *(end._replace(tangent=engine.unit(end.tangent), row=row) for end in ends))
+    first, last = (end._replace(tangent=engine.unit(end.tangent), row=row) for end in ends)
+    return Segment(engine, first, last)
 
 
 def _root(plane: Plane, segment: Segment, test: Test, size: float) -> tuple[Place, float] | None:
