@@ -24,8 +24,8 @@ class Segment:
     a, b : Solved
         Their tangents make an angle of less than a right angle with the chord.
     turns : bool
-        A segment of which this is a part has one fold. The parameter is then known to turn back by more than rounding where its directions at the
-        ends differ, however near to each other these are.
+        A fold has been found on a segment of which this is a part: signs of the parameter's part of the tangent tell folds, however small it is, so
+        that as many are found on all parts together.
     """
 
     def __init__(self, engine: Engine, a: Solved, b: Solved, turns: bool = False) -> None:

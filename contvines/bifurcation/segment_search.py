@@ -93,7 +93,7 @@ class SegmentSearch:
         shortest = settings.sliver if pairs and (plus or minus) else settings.resolution
         if depth < self.deepest and segment.length > shortest:
             if self.parts < settings.parts:
-                turns = any(e.kind == "fold" for e in found)
+                turns = segment.turns or any(e.kind == "fold" for e in found)
                 return self.both(segment, 0.5, middle, real, depth + 1, turns)
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]

@@ -64,7 +64,9 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
         if not passes_for_certain(segment, root.position):
             continue
         if alone(engine, root.point):
-            points.append(Located.at(root, "", astray=True))
+            # neighbouring branches have opposite signs; on one branch the parameter turns by no more than rounding
+            if segment.a.sign * segment.b.sign < 0.0:
+                points.append(Located.at(root, "", astray=True))
         elif not rounded or passes(segment, root.position):
             points.append(Located.at(root, "branch-point", test.index))
     return points

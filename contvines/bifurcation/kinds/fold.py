@@ -26,7 +26,7 @@ def tests(segment: Segment, found: Sequence[Located]) -> list[Test]:
     if segment.engine.adaptive and _upright(segment):
         passed = passing(segment, "plus")
         return passed if len(passed) == 1 else []
-    upright = max(abs(one), abs(other)) <= segment.engine.upright(segment.a.p)
+    upright = not segment.turns and max(abs(one), abs(other)) <= segment.engine.upright(segment.a.p)
     return [] if upright or (one >= 0.0) == (other >= 0.0) else [Test(TURN)]
 
 

@@ -15,7 +15,7 @@ from ...problems.abilities import Adaptive
 from ..kind import Classified, Kind, Test
 from ..located import Located
 from ..normal_forms.criticality import pair_form, strong_resonance
-from ..point_on_branch import PointOnBranch
+from ..point_on_branch import Point, PointOnBranch
 from ..segment import Segment
 
 JUMP = 0.05  # change of a multiplier's logarithm over a small part of a segment: it has come from elsewhere
@@ -34,6 +34,16 @@ def passing(segment: Segment, sort: str) -> list[Test]:
 def flips(segment: Segment, found: Sequence[Located], kind: str) -> list[Test]:
     """Multipliers that pass -1, where the problem says that this is what they mean."""
     return passing(segment, "minus") if segment.engine.problem.flip_kind == kind else []
+
+
+def alone_at_circle(point: Point) -> bool:
+    """Whether the multiplier nearest to -1 is there: if another one is nearer to it than that, two have met beside the circle and left the axis."""
+    assert isinstance(point, PointOnBranch)
+    spectrum = point.engine.spectrum(point.solved.row)
+    gaps = np.nan_to_num(np.abs(spectrum + 1.0), nan=np.inf)
+    nearest = int(np.argmin(gaps))
+    others = np.abs(np.delete(spectrum, nearest) - spectrum[nearest])
+    return bool(gaps[nearest] <= max(point.engine.settings.critical, np.nanmin(others, initial=np.inf)))
 
 
 def pairs(segment: Segment, found: Sequence[Located], spectrum: str) -> list[Test]:
@@ -76,6 +86,7 @@ KINDS = (
         marker="D",
         filled=False,
         tests=partial(flips, kind="symmetry-breaking"),
+        verify=alone_at_circle,
         locus="flip",
         leaves="doubled",
         without="a pair of solutions of less symmetry leaves here; this problem has no equations for it",
@@ -87,6 +98,7 @@ KINDS = (
         marker="^",
         filled=False,
         tests=partial(flips, kind="period-doubling"),
+        verify=alone_at_circle,
         locus="flip",
         leaves="doubled",
         without="a solution of twice the period leaves here; this problem has no equations for it",
