@@ -11,7 +11,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..shared.floating_point import EPSILON, TINY
-from .consistency import unaccounted, unresolved
+from .consistency import at_one, unaccounted, unresolved
 from .determinant import singular
 from .evidence import Evidence, evidence, parabola_dips
 from .first_border import find_border, first_zero, rounding
@@ -93,7 +93,8 @@ class SegmentSearch:
         shortest = settings.sliver if pairs and (plus or minus) else settings.resolution
         if depth < self.deepest and segment.length > shortest:
             if self.parts < settings.parts:
-                turns = segment.turns or any(e.kind == "fold" for e in found)
+                # where an event of a virtual orbit grazes the parameter may turn back, but no multiplier is +1
+                turns = segment.turns or any(e.kind == "fold" and at_one(self.engine, e) for e in found)
                 return self.both(segment, 0.5, middle, real, depth + 1, turns)
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]

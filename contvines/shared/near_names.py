@@ -21,7 +21,7 @@ ASKED = ("word", "periods", "guess", "start", "count", "seed", "size", "time", "
 def no_parameter(given: object, machine: str, known: Iterable[str]) -> str:
     """The sentence that a machine has no such parameter, and which it has."""
     names = list(known)
-    return f"{given} is no parameter of {machine}{did_you_mean(given, [*names, *ASKED])}; it has {', '.join(names)}"
+    return f"{given} is no parameter of {machine}{did_you_mean(given, [name for name in (*names, *ASKED) if name != given])}; it has {', '.join(names)}"
 
 
 P = ParamSpec("P")

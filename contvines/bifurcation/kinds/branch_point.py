@@ -14,6 +14,7 @@ import numpy as np
 
 from ...continuation.aims import aim_at_multiplier
 from ...continuation.engine import Engine, Solved
+from ..consistency import unresolved
 from ..determinant import alone, by_elimination, by_sign, passes, passes_for_certain, singular, turned
 from ..kind import Kind
 from ..locate import Root, locate, locate_singular
@@ -39,8 +40,18 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
             turning = _near(segment, root.position, folds)
             # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
-                points.append(Located.at(root, "branch-point", astray=_astray(segment, root)))
+                place = Located.at(root, "branch-point", astray=_astray(segment, root))
+                points.append(place if place.astray or _may_pass(segment, root) else unresolved(segment, root.point))
     return points
+
+
+def _may_pass(segment: Segment, root: Root) -> bool:
+    """Whether a multiplier may be +1 at a change of the sign; where none is anywhere near, the sign is that of rounding."""
+    engine = segment.engine
+    if engine.detection != "map" or engine.scaled:
+        return True
+    rows = (segment.a.row, root.point.row, segment.b.row)
+    return any(np.abs(engine.spectrum(row) - 1.0).min(initial=np.inf) < 0.5 for row in rows)
 
 
 def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> list[Located]:
