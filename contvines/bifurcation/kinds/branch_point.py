@@ -41,7 +41,9 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
             # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
                 place = Located.at(root, "branch-point", astray=_astray(segment, root))
-                points.append(place if place.astray or _may_pass(segment, root) else unresolved(segment, root.point))
+                points.append(
+                    place if place.astray or _may_pass(segment, root) else unresolved(segment, root.point)
+                )
     return points
 
 
