@@ -23,6 +23,8 @@ def rounds_at(border: Place, edit: Edit, unchanged: list[tuple[np.ndarray, float
         What `derivative` says of solutions next to the border with the old word, from far to near.
     """
     other, solutions = _near_border(border, edit)
+    if not solutions:
+        return None
     kinds = [unchanged[-2:], [derivative(other, held.u, held.p) for held in solutions[-2:]]]
     flow, model = border.orbit.flow, border.orbit.model
     loose = {*flow.loose(model, border.problem.word)} & {*flow.loose(model, other.word)}
@@ -37,14 +39,19 @@ def _elsewhere(derivative: np.ndarray, entries: list[int]) -> np.ndarray:
 
 
 def _near_border(border: Place, edit: Edit) -> tuple[CycleProblem, list[Held]]:
-    """The new word's solutions at or next to the border, real or not, with what grows at sizes that become smaller."""
+    """The new word's solutions at or next to the border, real or not, with what grows at sizes that become smaller.
+
+    None where these do not tend to the border: they say nothing about what is next to it.
+    """
     begun = border.begun(edit)
     if begun.start is None:
         return border.problem, []
     other, guess = begun.start[:2]
     if begun.growing is None:
         return other, [Held(guess, border.p, guess, 0.0)]
-    return other, begun.climbed(BORDERING.sizes[0])
+    climbed = begun.climbed(BORDERING.sizes[0])
+    apart = [abs(held.p - border.p) for held in climbed[-2:]]
+    return other, climbed if len(apart) == 2 and apart[1] <= apart[0] else []
 
 
 def derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndarray, float] | None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
+from orbits import Absorber, Cavity
 from orbits.borders.crossing import _followed
 
 MACHINE = Absorber(restitution=0.76, friction=0.2, gravity=0.211, mass_ratio=0.006)
@@ -42,3 +42,25 @@ def test_orbit_branch_and_border_agree_on_what_is_real(room, real):
         and graph["WG1"].orbit.margin == pytest.approx(0.0, abs=1e-14)
     )
     assert all(branch.orbit(i).real is real for i in range(1, len(branch) - 1))
+
+
+def test_what_does_not_come_near_a_border_says_nothing_about_it():
+    """Solutions with the new word lay far from the border; the doubled motion that leaves there was taken for impossible (simulation follows it)."""
+    machine = Cavity(
+        restitution_left=0.08292846201663458,
+        restitution_right=0.5784702071020484,
+        friction_left=0.0,
+        friction_right=0.0,
+        gravity=0.46012986147542956,
+        slope=-0.13053441728369253,
+        distance_left=0.9764767238173357,
+        distance_right=0.7522464460157717,
+        mass_ratio=0.006,
+    )
+    nodes = [[0.45939839848482694, 0.20170061511834067], [6.969023212546848, 0.17645388394360836]]
+    start = machine.orbit("LL", 2, nodes, amplitude=0.19169698203192065)
+    graph = cv.diagram(start, over="amplitude", within=(0.17, 0.3), depth=2)
+    (border,) = (p for p in graph.special.values() if abs(p.value - 0.257905414617) < 1e-10)
+    beyond = [graph[link.target].orbit(5) for link in graph.switches if link.point == border.label]
+    (doubled,) = (orbit for orbit in beyond if len(orbit.word) == 11)
+    assert doubled.real and doubled.replay() < 1e-7
