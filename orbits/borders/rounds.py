@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.borders.holding import Held
+from orbits.borders.holding import Held, parameter_unit
 from orbits.borders.neighbours import Place
 from orbits.cycles.rounds import Rounds, derived, judged
 from orbits.protocol import CycleProblem
@@ -50,8 +50,12 @@ def _near_border(border: Place, edit: Edit) -> tuple[CycleProblem, list[Held]]:
     if begun.growing is None:
         return other, [Held(guess, border.p, guess, 0.0)]
     climbed = begun.climbed(BORDERING.sizes[0])
-    apart = [abs(held.p - border.p) for held in climbed[-2:]]
-    return other, climbed if len(apart) == 2 and apart[1] <= apart[0] else []
+    if len(climbed) < 2:
+        return other, []
+    far, near = (abs(held.p - border.p) for held in climbed[-2:])
+    # of the distances at which something has a tenth of its size none is more than a tenth, but for higher orders
+    nearer = near <= max(0.5 * far, BORDERING.placed * parameter_unit(border.problem, border.p))
+    return other, climbed if nearer else []
 
 
 def derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndarray, float] | None:

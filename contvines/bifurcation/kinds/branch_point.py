@@ -48,12 +48,12 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
 
 
 def _may_pass(segment: Segment, root: Root) -> bool:
-    """Whether a multiplier may be +1 at a change of the sign; where none is anywhere near, the sign is that of rounding."""
+    """Whether a multiplier may be +1 at a change of the sign; where all are next to zero the sign is that of rounding."""
     engine = segment.engine
     if engine.detection != "map" or engine.scaled:
         return True
     rows = (segment.a.row, root.point.row, segment.b.row)
-    return any(np.abs(engine.spectrum(row) - 1.0).min(initial=np.inf) < 0.5 for row in rows)
+    return any(np.abs(engine.spectrum(row)).max(initial=0.0) > 0.5 for row in rows)
 
 
 def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> list[Located]:
