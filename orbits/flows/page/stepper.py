@@ -435,6 +435,31 @@ class Stepper:
         self.state, self.clock = before, self.clock - EVENTS.leave
         return False
 
+    def _driven(self, friction: int) -> int | None:
+        """A wall that holds a body and moves by itself, so that the friction cannot stop it; None where there is none."""
+        wall = next(
+            (w for w in self._touched if self.modes[w] == HELD and friction in dict(self._touched[w])), None
+        )
+        if wall is None:
+            return None
+        values, _, guards = self._guards(self._with(friction, STUCK))
+        # the reserves to both sides add up to twice the limit, times what a unit of force moves
+        freedom = sum(v for v, g in zip(values, guards) if g.contact == friction)
+        return None if freedom > 0.0 else wall
+
+    def _turned_by(self, wall: int, friction: int) -> tuple[int, int, int]:
+        """The velocity of a friction changes its sign while a wall that moves holds the body: it turns, unless the wall would have to pull then.
+
+        Where the wall lets go what becomes of the velocity is the next event.
+        """
+        turned = self._with(friction, -self.modes[friction])
+        values, _, guards = self._guards(turned)
+        if any(v < 0.0 for v, g in zip(values, guards) if g.contact == wall and g.kind == RELEASE):
+            self._let_go(wall)
+            return wall, RELEASE, 0
+        self.modes = turned
+        return friction, TURN, turned[friction]
+
     def _happened(self, guard: Guard) -> tuple[int, int, int] | None:
         j, kind = guard.contact, guard.kind
         if kind == HIT:
@@ -443,6 +468,9 @@ class Stepper:
                 return None
             return j, self._struck(j), 0
         if kind == TURN:
+            wall = self._driven(j)
+            if wall is not None:
+                return self._turned_by(wall, j)
             before = self.modes[j]
             after = self._at_rest(j)
             if after == before:
