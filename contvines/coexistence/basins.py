@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack, runtime_checkable
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..graph.shortening import short_word
 from ..problems.abilities import Gauged, notation_of
+from ..shared.number_text import figures
 from ..shared.plot_options import PlotOptions
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
@@ -26,6 +27,14 @@ PER_START = 30
 Numbers = TypeVar("Numbers", float, np.ndarray)
 
 CONFIDENCE = 1.96  # standard errors of a 95 % interval
+
+
+@runtime_checkable
+class OnCurve(Protocol):
+    """A motion of which states are known, shape (n, d); None where it does not recur."""
+
+    @property
+    def curve(self) -> np.ndarray | None: ...
 
 
 @hinted
@@ -59,6 +68,8 @@ class Basins:
         Of the parameter's value; empty for a plain number.
     gauges : dict
         What one of a coordinate is in the unit in which it is shown, and that unit; none for plain numbers.
+    states : list of ndarray
+        Of each attractor a state on it, as the plane has it, or None.
     """
 
     parameter: str
@@ -75,6 +86,17 @@ class Basins:
     leftward: str = ""
     unit: str = ""
     gauges: dict[str, tuple[float, str]] = field(default_factory=dict)
+    states: list[np.ndarray | None] = field(default_factory=list)
+
+    def told(self, k: int, most: int | None = None) -> str:
+        """What attractor `k` is called, its name in at most so many letters; where another one has its name, with a state on it."""
+        about, state = self.attractors[k], self.states[k] if self.states else None
+        name = short_word(about.name) if most is None else short_word(about.name, most)
+        alike = [a for a in self.attractors if (a.name, a.periods) == (about.name, about.periods)]
+        if state is None or len(alike) < 2:
+            return name
+        places = (f"{name} = {figures(float(x))}" for name, x in zip(self.axes, state, strict=True))
+        return f"{name} through {', '.join(places)}"
 
     def shown(self, name: str, values: Numbers) -> Numbers:
         """Values of a coordinate in the unit in which it is shown."""
@@ -278,7 +300,15 @@ def basins(
         getattr(population, "leftward", ""),
         getattr(population, "units", {}).get(population.parameter, ""),
         population.gauges(names, float(at)) if isinstance(population, Gauged) else {},
+        [_on_plane(m, names, (across, up)) for m in motions],
     )
+
+
+def _on_plane(motion: object, names: Sequence[str], axes: tuple[str, str]) -> np.ndarray | None:
+    """A state on a motion of a flow, as the plane has it; None of others, which have words."""
+    if not isinstance(motion, OnCurve) or motion.curve is None:
+        return None
+    return motion.curve[0][[names.index(name) for name in axes]]
 
 
 def _cells(low: float, high: float, count: int) -> np.ndarray:

@@ -41,7 +41,7 @@ def _shares(basins: Basins) -> Table:
         low, high = basins.interval(k)
         rows.append(
             (
-                short_word(about.name),
+                basins.told(k),
                 f"k={about.periods}" if about.periods else "",
                 f"{about.share:.2%}",
                 f"{low:.2%} to {high:.2%}",

@@ -76,7 +76,7 @@ def plot_basins(
         if legend:
             entries = []
             for k, about in enumerate(basins.attractors):
-                name = short_word(about.name, 20)
+                name = basins.told(k, 20)
                 cycles = f", k={about.periods}" if about.periods > 1 else ""
                 entries.append(Patch(color=base[k], label=f"{name}{cycles}: {about.share:.1%}"))
                 if 0.0 < about.mirror_share < about.share:

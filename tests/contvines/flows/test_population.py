@@ -128,4 +128,6 @@ def test_basins_of_a_forced_flow():
         ).y[:, -1]
         other = flow.attractor(start)
         assert np.abs(end - other.states[0]).max() < 1e-4
+        assert found.states[found.index[i, j]] == pytest.approx(end, abs=1e-4)
+    assert str(found).count("cycle through x0 = ") == 2  # both are called so
     assert set(found.index.ravel().tolist()) == {0, 1}
