@@ -174,7 +174,7 @@ def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
 
     def refusal(parameter: str, value: float) -> str:
         try:
-            machine.check_value(parameter, value)
+            machine.vector({**parameters, parameter: value})
         except ValueError as error:
             return f": {error}."
         return ""
@@ -190,7 +190,7 @@ def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
             wrong.append(f"[start] state has {key!r}; it may have {', '.join(known)}.")
     if not wrong:
         try:
-            machine.word(file.start.word or "", machine.vector(values))
+            machine.word(file.start.word or "", machine.vector(parameters))
         except ValueError as error:
             wrong.append(f"[start] {error}")
     refuse(wrong)

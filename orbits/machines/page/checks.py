@@ -125,7 +125,8 @@ def _check_periods(draws: Draws, rates: Sequence[Any]) -> None:
     values = [value for _, value in told]
     here, there = draws.of(values), draws.of(values, clock=draws.clock + 2.0 * np.pi)
     for (what, _), a, b in zip(told, here.T, there.T):
-        gap = np.abs(a - b)
+        with np.errstate(invalid="ignore"):
+            gap = np.abs(a - b)
         if np.nanmax(gap, initial=0.0) > FORMULAS.same * (1.0 + np.nanmax(np.abs(a), initial=0.0)):
             k = int(np.nanargmax(gap))
             raise PageError(

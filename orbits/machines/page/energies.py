@@ -11,7 +11,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from orbits.contacts.dry_friction import DryFriction
-from orbits.integrators.expressions import constant, derivatives, variable
+from orbits.integrators.expressions import constant, derivatives, variable, variables_of
 from orbits.machines.page.formulas import PageError
 from orbits.symbols import Symbol
 
@@ -41,6 +41,21 @@ def impact_mass(e: Equations, wall: int) -> Symbol:
     push = e.push[wall]
     turned = _along(e, e.gap_rate(wall), push)
     return _curvature(e, push) / (turned * turned)
+
+
+def body_masses(e: Equations) -> list[tuple[str, Symbol]]:
+    """Speeds that a wall or a friction changes, by name, and the mass that moves with each; none without an energy."""
+    if e.energy is None:
+        return []
+    frictions = [j for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction)]
+    force = {j: variable(f"force_{e.contacts[j].name}") for j in frictions}
+    moved = [bool(set().union(*map(variables_of, force.values())) & variables_of(rate)) if force else False for rate in e.motion_with(force)]
+    found = []
+    for k, name in enumerate(e.states):
+        if moved[k] or any(push[k].number != 0.0 for push in e.push.values()):
+            unit = [constant(float(k == place)) for place in range(len(e.states))]
+            found.append((name, _curvature(e, unit)))
+    return found
 
 
 def friction_power(pattern: Pattern) -> Symbol:

@@ -21,6 +21,7 @@ from orbits.machines.page.formulas import PageError
 from orbits.machines.page.mirror import MirrorImage
 from orbits.machines.page.page import Page, again, object_name, page_of
 from orbits.machines.page.patterns import Contact, Equations
+from orbits.machines.page.possible import Possible
 from orbits.machines.page.si import Units
 from orbits.machines.parameters import ParameterError
 from orbits.machines.varying import Varying
@@ -89,8 +90,13 @@ class Machine(Varying):
         energy: Callable | None = None,
         response: str | None = None,
     ) -> None:
-        self.given_units, self.energy, self.response = dict(units or {}), energy, response
+        self.energy, self.response = energy, response
+        if not isinstance(parameters, Mapping):
+            raise PageError(
+                f"parameters = {parameters!r} must have a value for each name, for example {{'gap': 1.0}}"
+            )
         self._units = Units(units, states, tuple(parameters), phase_rate)
+        self.given_units = self._units.said
         parameters = {key: self._units.number(key, value) for key, value in parameters.items()}
         names.check_names(name, states, parameters, phase_rate, contacts)
         self.name = name
@@ -107,7 +113,7 @@ class Machine(Varying):
         self.equations = Equations(
             self.states, self.parameter_names, phase_rate, motion, self.contacts, self._units.factors, energy
         )
-        params = self.vector()
+        params = self._numbers({})
         flips = self.equations.flips = checks.check_contacts(self.equations, params)
         image = None if mirror is None else MirrorImage(self.equations, params, mirror)
         images, turned = (None, frozenset()) if image is None else (image.images, image.turned)
@@ -122,6 +128,10 @@ class Machine(Varying):
             )
         self.alphabet = Alphabet(self.contacts, images, turned, flips, rides)
         self.equations.motion_with(dict.fromkeys(self._frictions, self.equations.x[0]))
+        self._units.check(self.equations)
+        self._possible = Possible(self.equations, self.units)
+        if wrong := self._possible.wrong(params):
+            raise PageError(wrong)
 
     def __repr__(self) -> str:
         kind = "self-excited" if self.phase_rate is None else f"forced at {self.phase_rate}"
@@ -180,9 +190,16 @@ class Machine(Varying):
         Raises
         ------
         ParameterError
-            If a name is unknown, or a value is not finite or out of range.
+            If a name is unknown, or a value is not finite or out of range, by itself or together with others.
         """
-        given = {key: self._units.number(key, value) for key, value in dict(values or {}).items()}
+        params = self._numbers(values or {})
+        if wrong := self._possible.wrong(params):
+            raise ParameterError(wrong)
+        return params
+
+    def _numbers(self, values: Mapping[str, float]) -> np.ndarray:
+        """The parameter vector, each value checked by itself."""
+        given = {key: self._units.number(key, value) for key, value in values.items()}
         for key, value in given.items():
             if key not in self.parameters:
                 raise ParameterError(no_parameter(key, f"the machine {self.name!r}", self.parameter_names))
@@ -193,8 +210,8 @@ class Machine(Varying):
             if not np.isfinite(number):
                 raise ParameterError(f"{key} = {number} is not finite; give a number")
         merged = {**self.parameters, **{key: float(value) for key, value in given.items()}}
-        for key, value in merged.items():
-            self.check_value(key, value)
+        if self.phase_rate is not None and not (speed := merged[self.phase_rate]) > 0.0:
+            raise ParameterError(f"{self.phase_rate} = {speed:g}: a forcing frequency is above 0")
         return np.array([merged[key] for key in self.parameter_names])
 
     def phase_speed(self, params: np.ndarray) -> Reals:
@@ -212,25 +229,16 @@ class Machine(Varying):
         return None if np.all(found == 1.0) else np.append(1.0, found)
 
     def check_value(self, name: str, value: float) -> None:
-        """Refuse a value that a parameter cannot have: the forcing's frequency, limits of friction and coefficients of restitution
-        have limits.
+        """Refuse a value that a parameter cannot have whatever the others are; see `orbits.machines.page.possible`.
 
         Raises
         ------
         ParameterError
             Naming the parameter, the value and a way out.
         """
-        if name == self.phase_rate and not value > 0.0:
-            raise ParameterError(f"{name} = {value:g}: a forcing frequency is above 0")
-        for contact in self.contacts:
-            if isinstance(contact, Wall) and contact.restitution == name and not 0.0 < value <= 1.0:
-                raise ParameterError(
-                    f"{name} = {value:g} is out of range: the restitution of wall {contact.letter!r} is above 0 and at most 1"
-                )
-            if isinstance(contact, DryFriction) and contact.limit == name and value < 0.0:
-                raise ParameterError(
-                    f"{name} = {value:g} is out of range: the limit of friction {contact.name!r} is 0 or above"
-                )
+        vector = self._numbers({name: value})
+        if wrong := self._possible.wrong(vector, alone=name):
+            raise ParameterError(wrong)
 
     def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
         """Whether the mirror image of every motion is one at these parameters, whatever the value of the one that varies."""

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TypeVar
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from contvines.shared.modulation import BAND
 from contvines.shared.near_names import did_you_mean
+from orbits.integrators.expressions import constant
 from orbits.machines.page.formulas import PageError
 from orbits.machines.physical.quantities import QuantityError
 from orbits.machines.physical.units import counted, in_si, size
+
+if TYPE_CHECKING:
+    from orbits.machines.page.patterns import Equations
+    from orbits.symbols import Symbol
 
 OF_A_STATE = ("max", "min", "first", "strobe")
 """Measures that are values of a state."""
@@ -36,6 +42,8 @@ class Units:
         parameters: Sequence[str],
         phase_rate: str | None,
     ) -> None:
+        if not isinstance(said or {}, Mapping):
+            raise PageError(f"units = {said!r} must have a unit for each name, for example {{'gap': 'mm'}}")
         self.said, self.factors = dict(said or {}), {}
         for name, unit in self.said.items():
             if name not in (*states, *parameters):
@@ -66,6 +74,33 @@ class Units:
                 found[i] = max(1.0, length * rate / speed)
         return found
 
+    def check(self, e: Equations) -> None:
+        """Refuse units of another kind than their neighbours: in a distance or a velocity that adds them, and of a state whose rate is another state.
+
+        Raises
+        ------
+        PageError
+        """
+        kinds = {f"x_{name}": name for name in e.states} | {f"p_{name}": name for name in e.p.__dict__}
+        for table, what in ((e.gap, "gap"), (e.velocity, "velocity")):
+            for j, value in table.items():
+                names = [kinds[term] for term in _terms(value) if kinds.get(term) in self.said]
+                for one, other in pairwise(names):
+                    if size(self.said[one], self.said[other]) is None:
+                        raise PageError(
+                            f"units: the {what} of {e.contacts[j].described} adds {one} in {self.said[one]!r} to {other} in "
+                            f"{self.said[other]!r}; give units of one kind"
+                        )
+        still = dict.fromkeys(e.velocity, constant(0.0))
+        for name, rate in zip(e.states, e.motion_with(still)):
+            (term, *more) = _terms(rate)
+            if not more and name in self.said and kinds.get(term) in self.said and term.startswith("x_"):
+                unit, wanted = self.said[kinds[term]], f"{self.said[name]}/s"
+                if size(unit, wanted) is None:
+                    raise PageError(
+                        f"units: the rate of {name}, in {wanted!r}, is {kinds[term]}, in {unit!r}; give {kinds[term]} in {wanted!r}, or in a unit of its kind"
+                    )
+
     def shown(self, states: Sequence[str]) -> dict[str, str]:
         """Units of parameters, states and measures by name."""
         if not self.said:
@@ -75,3 +110,15 @@ class Units:
         }
         bands = {name: self.said[states[0]] for name in BAND if states[0] in self.said}
         return {**self.said, **of_states, **bands, "period": "s", "time": "s", "approach_speed": "m/s"}
+
+
+def _terms(value: Symbol) -> list[str]:
+    """The variables that a sum adds, each with a number before it; what else it adds is ""."""
+    if value.operation in "+-":
+        return [term for part in value.operands for term in _terms(part)]
+    while value.operation in "*/":
+        one, other = value.operands
+        if other.number is None and (value.operation == "/" or one.number is None):
+            return [""]
+        value = other if other.number is None else one
+    return [value.operands[0] if value.operation == "variable" else ""]

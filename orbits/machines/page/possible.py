@@ -1,0 +1,168 @@
+"""Values of parameters that no machine can have: walls that overlap, masses and restitutions that are none, friction that pushes, divisions by zero.
+
+What a machine file says is asked at random states; a value is impossible where the answer is the same at all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from orbits.contacts.dry_friction import DryFriction
+from orbits.integrators.expressions import Values, constant, derivatives, replaced, variable, variables_of
+from orbits.machines.page.checks import Draws
+from orbits.machines.page.energies import CONTACT, body_masses
+from orbits.machines.page.patterns import Equations
+from orbits.settings import FORMULAS
+from orbits.symbols import Symbol
+
+SHOWN = 4  # parameters that a sentence names
+
+
+@dataclass(frozen=True)
+class Demand:
+    """A formula of the machine, and which of its values are possible.
+
+    Attributes
+    ----------
+    value : Symbol
+    holds : callable
+        Values at random states -> bool array: which are possible.
+    rule : str
+        The same in words, behind "is out of range: ".
+    """
+
+    value: Symbol
+    holds: Callable[[np.ndarray], np.ndarray]
+    rule: str
+
+    @property
+    def parameters(self) -> frozenset[str]:
+        """Names of the parameters on which it depends."""
+        return frozenset(n.removeprefix("p_") for n in variables_of(self.value) if n.startswith("p_"))
+
+
+class Possible:
+    """What the parameters of a machine must satisfy.
+
+    Parameters
+    ----------
+    equations : Equations
+    units : mapping of str to str
+        Of the parameters, by name.
+    """
+
+    def __init__(self, equations: Equations, units: Mapping[str, str]) -> None:
+        self.equations, self.units = equations, units
+        self.names = [name.removeprefix("p_") for name in equations.layout.numbers if name.startswith("p_")]
+        self.demands = [*_rooms(equations, units), *_masses(equations), *_rates(equations), *_contacts(equations)]
+        if CONTACT in self.names:
+            self.demands.append(Demand(variable(f"p_{CONTACT}"), _open, "an impact lasts longer than 0"))
+        self._asked: dict[str | None, tuple[list[Demand], Values]] = {}
+        self._passed = b""  # values that were asked last, and are possible
+
+    def wrong(self, params: np.ndarray, alone: str | None = None) -> str:
+        """A sentence on the first demand that is not met; empty if all are.
+
+        Parameters
+        ----------
+        params : float array (P,)
+        alone : str, optional
+            Only what depends on this parameter and no other.
+        """
+        if alone is None and params.tobytes() == self._passed:
+            return ""
+        if alone not in self._asked:
+            demands = [one for one in self.demands if alone is None or one.parameters == {alone}]
+            self._asked[alone] = demands, Values(self.equations.layout, [one.value for one in demands])
+        demands, formulas = self._asked[alone]
+        if not demands:
+            return ""
+        draws = Draws(self.equations, params)
+        with np.errstate(all="ignore"):
+            table = formulas(draws.states, draws.clock, np.hstack([draws.params, draws.signs]))
+        for demand, values in zip(demands, table.T):
+            if not demand.holds(values).any():
+                return self._sentence(demand, dict(zip(self.names, params.tolist())))
+        if alone is None:
+            self._passed = params.tobytes()
+        return ""
+
+    def _sentence(self, demand: Demand, values: Mapping[str, float]) -> str:
+        """Which values are to blame: those not above zero, else all on which the formula depends."""
+        known = [name for name in self.names if name in demand.parameters]
+        blamed = ([name for name in known if values[name] <= 0.0] or known)[:SHOWN]
+        told = ", ".join(f"{name} = {values[name]:g} {self.units.get(name, '')}".rstrip() for name in blamed)
+        if not told:
+            return f"it must hold that {demand.rule}"
+        return f"{told} {'are' if len(blamed) > 1 else 'is'} out of range: {demand.rule}"
+
+
+def _rooms(e: Equations, units: Mapping[str, str]) -> list[Demand]:
+    """Two walls that face one another, as those of a cavity: a weighted sum of their gaps is the room between them, wherever the bodies are."""
+    slopes: dict[int, list[float]] = {}
+    for j, gap in e.gap.items():
+        row = derivatives([gap], e.x)[0]
+        if all(not variables_of(entry) for entry in row):
+            slopes[j] = [float(entry.number or 0.0) for entry in row]
+    found = []
+    for i, j in combinations(slopes, 2):
+        one, other = np.array(slopes[i]), np.array(slopes[j])
+        size, weight = float(one @ one), -float(one @ other)
+        if not weight > 0.0 or np.abs(other * size + one * weight).max() > FORMULAS.same * weight:
+            continue
+        walls = " and ".join(repr(e.contacts[k].letter) for k in (i, j))
+        room = e.gap[i] * (weight / size) + e.gap[j]
+        found.append(Demand(room, _open, f"walls {walls} leave no room between them{_way_out(room, units)}"))
+    return found
+
+
+def _way_out(room: Symbol, units: Mapping[str, str]) -> str:
+    """Where the room is a multiple of one parameter and a constant: from which value on there is some."""
+    names = [name for name in variables_of(room) if name.startswith("p_")]
+    if len(names) == 1:
+        slope, rest = derivatives([room], [variable(names[0])])[0][0].number, replaced(room, {n: 0.0 for n in variables_of(room)}).number
+        if slope and rest is not None:
+            name = names[0].removeprefix("p_")
+            limit = f"{-rest / slope + 0.0:g} {units.get(name, '')}".rstrip()
+            return f"; give {name} {'above' if slope > 0.0 else 'below'} {limit}"
+    return ""
+
+
+def _masses(e: Equations) -> list[Demand]:
+    """Of the bodies that meet at walls or rub, where the machine tells its energy."""
+    return [Demand(mass, _open, f"the mass that moves with {name} is above 0") for name, mass in body_masses(e)]
+
+
+def _contacts(e: Equations) -> list[Demand]:
+    found = []
+    for j, value in e.restitution.items():
+        rule = f"the restitution of {e.contacts[j].described} is above 0 and at most 1"
+        found.append(Demand(value, lambda r: (r > 0.0) & (r <= 1.0), rule))
+        effect = constant(0.0)
+        for slope, push in zip(derivatives([e.gap_rate(j)], e.x)[0], e.push[j]):
+            effect = effect + slope * push
+        rule = f"an impulse at {e.contacts[j].described} changes the rate of its gap by a number"
+        found.append(Demand(effect, np.isfinite, rule))
+    force = {j: variable(f"force_{c.name}") for j, c in enumerate(e.contacts) if isinstance(c, DryFriction)}
+    rates = e.motion_with(force)
+    for j, unit in force.items():
+        what = e.contacts[j].described
+        found.append(Demand(e.limit[j], lambda x: x >= 0.0, f"the limit of {what} is 0 or above"))
+        (effect,) = derivatives([e.along(e.velocity[j], rates)], [unit])
+        alone = replaced(effect[0], {name: 0.0 for one in force.values() for name in variables_of(one)})
+        found.append(Demand(alone, _open, f"a force along the velocity of {what} makes it faster"))
+    return found
+
+
+def _rates(e: Equations) -> list[Demand]:
+    still = {j: constant(0.0) for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction)}
+    named = zip(e.states, e.motion_with(still))
+    return [Demand(rate, np.isfinite, f"motion's rate of {name} is a number") for name, rate in named]
+
+
+def _open(values: np.ndarray) -> np.ndarray:
+    return np.isfinite(values) & (values > 0.0)
