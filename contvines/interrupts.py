@@ -134,6 +134,11 @@ class Resumable:
 
     rest: Callable[[], Any] | None = None
 
+    @property
+    def stopped(self) -> bool:
+        """Whether a budget is used up: with a larger one the same call goes on."""
+        return False
+
 
 class Interrupted(KeyboardInterrupt):
     """Raised when Ctrl-C stops a long computation.

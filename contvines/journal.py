@@ -13,6 +13,11 @@ class Kept(Protocol):
 
     finished: bool
 
+    @property
+    def stopped(self) -> bool:
+        """Whether a run with a larger budget may still go on from what the journal has."""
+        ...
+
     def entries(self) -> Iterable[tuple[str, str, dict[str, Any]]]:
         """Everything as (kind, key, content); content holds arrays and JSON values by name."""
         ...
@@ -35,7 +40,8 @@ class Journal(Protocol):
         ...
 
     def checkpoint(self, graph: Kept) -> None:
-        """Called with the graph so far, after each finished branch and at the end (``graph.finished``)."""
+        """Called with the graph so far, after each finished branch and at the end (``graph.finished``): what is recorded is of no use then, unless
+        ``graph.stopped``."""
         ...
 
 

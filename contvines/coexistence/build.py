@@ -26,8 +26,10 @@ from .population import Population, population_of
 from .roots import add_root
 from .windows import CYCLES, Windows, run_apart
 
+STARTS = 256  # at each of the given values where no number is given, in closed form
 FEW = 16  # starts at each of the further values
 SOUGHT = 8  # starts at each given value from which cycles are looked for, stable or not
+TRACED = "values whose motions are not traced"
 GIVEN, BETWEEN, SCATTERED = "given values", "values between changes", "scattered values"
 ENDS = "ends of stable stretches"
 FOLLOWED = 4  # starts that follow the motion past an end of stability
@@ -41,7 +43,7 @@ def atlas(
     over: str | None = None,
     within: tuple[float, float] | None = None,
     values: int | Sequence[float] = 16,
-    starts: int = 256,
+    starts: int | None = None,
     seed: int = 0,
     scan: int | None = None,
     budget: int | None = None,
@@ -59,14 +61,15 @@ def atlas(
     At each value starts are drawn, simulated, and what they settle on is solved: it is then a point of a known branch,
     exactly, or the root of a new one, which is traced with everything that leaves it. The search begins with the motions that most starts reach:
 
-    1. `starts` starts at each of `values`;
+    1. `starts` starts at each of `values`, all of them before the first motion is traced;
     2. fewer starts in every stretch between two changes of what is known to be stable, wide stretches first;
     3. fewer starts at values scattered evenly over the interval, until `scan` values in a row have met nothing new;
     4. past every end of a stable stretch the motion that is lost there is followed to what comes after it, wide stretches first;
     5. narrow windows: unstable cycles, from chaos and from a few starts, are traced, and kept where they lead to a stable one;
     6. steps 4 and 2 for what is new, and values where a kind of motion without a branch begins or ends.
 
-    When the budget is used up, the piece of work at hand is finished, and the message of the graph says what is left out.
+    When the budget is used up, the piece of work at hand is finished, and the message of the graph says what is left out. A file keeps what was
+    computed: the same call with ``journal=contvines.resume("FILE.vines")`` and a larger budget goes on from there.
 
     Parameters
     ----------
@@ -78,8 +81,8 @@ def atlas(
         Its interval.
     values : int or sequence of float
         Where starts are simulated: so many evenly spread values, or these.
-    starts : int
-        How many at each value.
+    starts : int, optional
+        How many at each value; by default 256, of a machine whose flow is integrated 32.
     seed : int
         Of the starts and the further values; equal seeds give equal graphs.
     scan : int, optional
@@ -87,8 +90,9 @@ def atlas(
         together. 0 leaves them out and all else that looks beyond the given values: unstable cycles, ends of stability that are followed to what
         comes after them, stretches between two changes.
     budget : int, optional
-        Work that the atlas may take, by default 500000: so many points of branches, or a hundred times as many simulated periods (steps of a map). It does not
-        depend on the machine's speed or load; ``settings["work"]`` of the graph says how much of it was used.
+        Work that the atlas may take, by default 500000, which is some minutes: so many points of branches in closed form, or a hundred times as many
+        simulated periods (steps of a map); those of a machine whose flow is integrated count twentyfold. It does not depend on the computer's speed or
+        load; ``settings["work"]`` of the graph says how much of it was used, and ``settings["left"]`` what it left out.
     depth, virtual, user_functions, journal, progress, settings, kinds, interrupt
         As for :func:`contvines.diagram`.
 
@@ -108,6 +112,8 @@ def atlas(
             f"within = None: give the interval of {population.parameter}, for example within=(0.2, 1.3)"
         )
     where = check_values(values, within)
+    if starts is None:
+        starts = max(2 * FEW, round(STARTS / population.price))
     if not (isinstance(starts, int) and starts >= 1):
         raise ValueError(f"starts = {starts!r} must be a whole number, 1 or more")
     if not (isinstance(seed, int) and seed >= 0):
@@ -231,13 +237,20 @@ class _Looking:
         run.left = lambda: Left(self.effort.share, *self.effort.pieces, self.effort.seconds)
 
     def given(self, values: Sequence[float], starts: int) -> None:
-        """Simulate starts at the given values."""
+        """Simulate starts at the given values, then trace what they reach."""
         self.effort.expect(GIVEN, len(values))
+        self.effort.expect(TRACED, len(values))
+        met: list[list[Counted]] = []
         for k, p in enumerate(values):
-            if self._over(GIVEN, len(values) - k):
+            if k and self._over(GIVEN, len(values) - k):
                 break
             with self.effort.piece(GIVEN):
-                self.at(p, starts)
+                met.append(self.simulated(p, starts))
+        for k, counted in enumerate(met):
+            if k and self._over(TRACED, len(met) - k):
+                break
+            with self.effort.piece(TRACED):
+                join(self.run, counted)
 
     def _over(self, what: str, left: int) -> bool:
         """Whether the budget is used up; then so many pieces of work are left out."""
@@ -245,13 +258,17 @@ class _Looking:
             self.left[what] = left
         return self.effort.over
 
-    def at(self, p: float, starts: int, seed: int | None = None) -> int:
-        """Simulate starts at a value; the number of branches that this has added."""
+    def simulated(self, p: float, starts: int, seed: int | None = None) -> list[Counted]:
+        """Simulate starts at a value."""
         self.run.tell(f"{starts} starts at {self.population.parameter} = {p:.6g}", p)
         counted = census(self.population, p, starts, self.seed if seed is None else seed, self.run.journal)
         self.asked.append(p)
         self.found += counted
-        return join(self.run, counted)
+        return counted
+
+    def at(self, p: float, starts: int, seed: int | None = None) -> int:
+        """Simulate starts at a value, and trace what they reach; the number of branches that this has added."""
+        return join(self.run, self.simulated(p, starts, seed))
 
     def for_cycles(self, values: Sequence[float]) -> None:
         """Follow unstable cycles, out of the chaos that has been met and from elsewhere, to where they are born with a stable one."""
@@ -321,6 +338,7 @@ class _Looking:
             leave_waiting(self.run)
         graph.settings |= {"work": effort.spent, "unknown": [list(p) for p in unknown(graph, self.asked)]}
         if self.left:
+            graph.settings["left"] = dict(self.left)
             left = ", ".join(f"{what} ({count})" for what, count in self.left.items())
             stopped = f"stopped at budget = {effort.budget}; left out are {left}: raise budget to look on"
             graph.message, graph.complete = "; ".join(filter(None, (graph.message, stopped))), False

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .population import Population
 
-BUDGET = 500_000  # units of work that an atlas may take where no number is given
+BUDGET = 500_000  # units of work that an atlas may take where no number is given: some minutes
 PERIODS = 100  # simulated forcing periods, or steps of a map, that take about as long as a point of a branch
 
 
 class Effort:
-    """Work so far, counted in points of branches; the same on every machine, however busy.
+    """Work so far, counted in points of branches in closed form; the same on every computer, however busy.
 
     Parameters
     ----------
     population : Population
-        Whose ``work`` are the periods simulated so far.
+        Whose ``work`` are the periods simulated so far, and ``price`` what a point or a period costs beside one in closed form.
     budget : int
     points : callable
         Returns how many points of branches there are so far.
@@ -36,8 +36,8 @@ class Effort:
 
     @property
     def spent(self) -> int:
-        """Points of branches, and simulated periods in units of :data:`PERIODS`."""
-        return int(self.points() + (self.population.work - self.begun) / PERIODS)
+        """Points of branches, and simulated periods in units of :data:`PERIODS`, at their price."""
+        return int(self.population.price * (self.points() + (self.population.work - self.begun) / PERIODS))
 
     @property
     def over(self) -> bool:

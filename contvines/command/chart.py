@@ -8,6 +8,7 @@ import typer
 
 from contvines.command.amounts import interval
 from contvines.command.frame import (
+    DetailsOption,
     FileArgument,
     FreshOption,
     LabelArgument,
@@ -25,6 +26,7 @@ from contvines.command.frame import (
     refuse_detached,
     refuse_unfinished,
     say,
+    tell_result,
     working,
 )
 
@@ -102,6 +104,7 @@ def chart(
     virtual: VirtualOption = False,
     quiet: QuietOption = False,
     trust: TrustOption = False,
+    details: DetailsOption = False,
 ) -> None:
     """Chart of two parameters: loci of special points, codimension-two points, regions; an interrupted run goes on."""
     target = place_of(output, file, "-chart.vines")
@@ -114,14 +117,14 @@ def chart(
         found = chart_of(
             graph, over, ends, virtual, target, quiet, _source(diagram, target, over, ends, virtual)
         )
-    _tell(found, target, plot, quiet)
+    _tell(found, target, plot, quiet, details)
 
 
-def _tell(found: "Chart", target: Path, plot: Path | None, quiet: bool) -> None:
+def _tell(found: "Chart", target: Path, plot: Path | None, quiet: bool, details: bool = False) -> None:
     """Say where a chart is kept, print it, draw it."""
     say(f"kept in {target}", quiet)
     if not quiet:
-        typer.echo(str(found))
+        tell_result(found, target, details)
     draw(plot, found.plot, quiet)
 
 

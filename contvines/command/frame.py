@@ -38,6 +38,13 @@ FreshOption = Annotated[
     bool,
     typer.Option("--fresh", help="Begin again; an existing file is renamed, FILE.vines to FILE.old.vines."),
 ]
+MANY = 30  # branches or loci; of a larger result a summary is printed alone
+DetailsOption = Annotated[
+    bool,
+    typer.Option(
+        "--details", help=f"Print the whole tables, even if there are more than {MANY} branches (or loci)."
+    ),
+]
 TrustOption = Annotated[
     bool,
     typer.Option(
@@ -279,6 +286,35 @@ def tell(found: object, data: object = None) -> None:
     from contvines.export import json_text
 
     typer.echo(json_text(data))
+
+
+def tell_result(found: "Graph | Chart", file: Path, details: bool) -> None:
+    """What matters most of a result first; then its tables where they are short, or are asked for."""
+    from contvines.graph.graph import Graph
+
+    if isinstance(found, Graph):
+        from contvines.graph.summary import summary
+
+        known = any(branch.stable is not None for branch in found.branches.values())
+        size, whole = (
+            len(found.branches),
+            f"{len(found.branches)} branches, {len(found.special)} special points",
+        )
+        first = (lambda brief: summary(found, brief=brief)) if known else None
+    else:
+        from contvines.loci.summary import chart_summary
+
+        size, whole = len(found.loci), f"{len(found.loci)} loci, {len(found.points)} points"
+        first = (lambda brief: chart_summary(found)) if size > MANY else None
+    brief = size > MANY and not details
+    if first is not None:
+        typer.echo(first(brief) + "\n")
+    if brief and first is not None:
+        typer.echo(f"{whole}: contvines show {file}")
+        if found.message not in ("", "finished"):
+            typer.echo(fitted(found.message))
+        return
+    typer.echo(str(found))
 
 
 def check_plot(plot: Path | None, size: tuple[float, float] | None = None) -> None:

@@ -62,6 +62,8 @@ def rerun(
     study, source = _study(file, kept.get("source"), trust)
     target = place_of(output, file, "-rerun.vines")
     command = source["command"]
+    if command == "atlas" and not isinstance(before, Chart):
+        study = study.with_budget(before.settings["budget"])  # it may have gone on with a larger one
     with held(target, quiet, fresh or _finished(target)):
         if isinstance(before, Chart):
             diagram = target.with_name(f"{target.stem}-diagram.vines")

@@ -8,6 +8,7 @@ import typer
 
 from contvines.command.frame import (
     CompareOption,
+    DetailsOption,
     FileArgument,
     FreshOption,
     LabelArgument,
@@ -25,6 +26,7 @@ from contvines.command.frame import (
     place_of,
     refuse_unfinished,
     say,
+    tell_result,
     working,
 )
 
@@ -36,7 +38,6 @@ if TYPE_CHECKING:
     from .study_data import Study
 
 SIMULATED = "#2f6f3e"
-MANY = 30  # branches; of a larger graph `diagram` tells the stable motions alone
 OutputOption = Annotated[
     Path | None,
     typer.Option(
@@ -72,13 +73,7 @@ def diagram(
         ),
     ] = True,
     compare: CompareOption = None,
-    details: Annotated[
-        bool,
-        typer.Option(
-            "--details",
-            help=f"Print all branches and special points, even if there are more than {MANY} branches.",
-        ),
-    ] = False,
+    details: DetailsOption = False,
 ) -> None:
     """Automatic bifurcation diagram of a study; an interrupted run goes on."""
     _run("diagram", study, output, plot, fresh, quiet, x, y, compare, look, details)
@@ -92,14 +87,25 @@ def atlas(
     quiet: QuietOption = False,
     x: XOption = None,
     y: YOption = None,
+    details: DetailsOption = False,
+    budget: Annotated[
+        int | None,
+        typer.Option(
+            "--budget",
+            min=1,
+            metavar="N",
+            help="Work that it may take, in place of [atlas] budget. A larger one goes on from what was computed.",
+        ),
+    ] = None,
 ) -> None:
     """All coexisting motions: many starts are simulated, and all that they reach is continued.
 
     [atlas] in the study sets the values of the parameter, the number of
-    starts at each, their seed, and after how many further values without a
-    new motion the search ends. An interrupted run goes on.
+    starts at each, their seed, after how many further values without a
+    new motion the search ends, and how much work it may take. An interrupted
+    run goes on, and one that has used up its budget does with a larger one.
     """
-    _run("atlas", study, output, plot, fresh, quiet, x, y)
+    _run("atlas", study, output, plot, fresh, quiet, x, y, details=details, budget=budget)
 
 
 def trace(
@@ -171,11 +177,14 @@ def _run(
     compare: list[str] | None = None,
     look: bool = False,
     details: bool = False,
+    budget: int | None = None,
 ) -> None:
     from contvines.command.compose import check_shaken
     from contvines.command.study import read_study
 
     study = read_study(path)
+    if budget is not None:
+        study = study.with_budget(budget)
     if x or y or study.bounds:
         from contvines.command.asked_measures import check_axes, check_bounds
 
@@ -192,7 +201,10 @@ def _run(
         problems = plot is not None or (command == "diagram" and not quiet)  # measures need them
         graph = graph_of(study, command, target, quiet, problems=problems, look=look)
     if not quiet:
-        _tell(graph, target, command == "diagram", details)
+        tell_result(graph, target, details) if command != "trace" else typer.echo(str(graph))
+    if graph.stopped:
+        more = 2 * graph.settings["budget"]
+        say(f"contvines atlas {path} --budget {more} goes on from what is kept in {target}", quiet)
     if compare and not quiet:
         from contvines.command.compare import compared_text
         from contvines.text_table import fitted
@@ -205,32 +217,24 @@ def _run(
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 
-def _tell(graph: "Graph", target: Path, summarised: bool, details: bool) -> None:
-    """The stable motions first; then the whole graph where it is small, or is asked for."""
-    from contvines.graph.summary import summary
-
-    if summarised and any(branch.stable is not None for branch in graph.branches.values()):
-        typer.echo(summary(graph) + "\n")
-        if len(graph.branches) > MANY and not details:
-            typer.echo(
-                f"{len(graph.branches)} branches, {len(graph.special)} special points: contvines show {target}"
-            )
-            if not graph.complete:
-                typer.echo(str(graph.message))
-            return
-    typer.echo(str(graph))
-
-
 def graph_of(
     study: "Study", command: str, target: Path, quiet: bool, *, problems: bool, look: bool
 ) -> "Graph":
     """The graph of a study: from its file if that is finished, computed else."""
+    from contvines.coexistence.effort import BUDGET
     from contvines.command.compose import first_orbit, population, run_atlas, run_diagram
     from contvines.graph.graph import Graph
     from contvines.store import Store
 
     fingerprint = study.fingerprint(command)
     graph = finished_of(Graph, target, fingerprint, quiet, problems=problems)
+    if (
+        graph is not None
+        and graph.stopped
+        and (budget := study.atlas.budget or BUDGET) > graph.settings["budget"]
+    ):
+        say(f"{target} was stopped at budget = {graph.settings['budget']}: going on to {budget}.", quiet)
+        graph = None
     if graph is None:
         alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
         run = run_atlas if command == "atlas" else run_diagram

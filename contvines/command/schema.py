@@ -8,10 +8,8 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
-    SerializerFunctionWrapHandler,
     WithJsonSchema,
     create_model,
-    model_serializer,
 )
 from pydantic.fields import FieldInfo
 
@@ -131,8 +129,8 @@ class AtlasSection(Section):
         text("a whole number of values from 1 to 10000, for example 16, or a list of values"),
     ] = 16
     starts: Annotated[
-        int, text("a whole number of starts from 1 to 10000000, for example 256", ge=1, le=10_000_000)
-    ] = 256
+        int | None, text("a whole number of starts from 1 to 10000000, for example 256", ge=1, le=10_000_000)
+    ] = None
     seed: Seed = 0
     scan: Annotated[
         int | None,
@@ -140,10 +138,9 @@ class AtlasSection(Section):
     ] = None
     budget: Annotated[int | None, text("a whole number of 1 or more, for example 500000", ge=1)] = None
 
-    @model_serializer(mode="wrap")
-    def _settings(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without a budget that was not given: files of studies that knew none are theirs still."""
-        return {name: value for name, value in write(self).items() if (name, value) != ("budget", None)}
+    def of_results(self) -> dict[str, Any]:
+        """What files of a run and of one that goes on from it share; older ones have the number of starts that was the only default."""
+        return {**self.model_dump(exclude={"budget"}), "starts": self.starts or 256}
 
 
 class ChartSection(Section):

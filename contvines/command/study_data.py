@@ -4,7 +4,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -157,6 +157,10 @@ class Study:
         more = {"conditions": self.conditions} if self.conditions else {}
         return {"model": self._model(), "start": start, "continue": go, **more}
 
+    def with_budget(self, budget: int) -> "Study":
+        """The study with another budget of its atlas."""
+        return replace(self, atlas=self.atlas.model_copy(update={"budget": budget}))
+
     def kept(self, command: str, target: Path) -> dict[str, Any]:
         """What a file keeps of its study: `describe()`, and the text from which `contvines rerun` does the command again.
 
@@ -181,8 +185,8 @@ class Study:
         return {**own, "name": self.name, **self.parameters}
 
     def fingerprint(self, command: str = "diagram") -> str:
-        """Digest of `describe()` and the command: two runs that must give the same graph share it."""
-        more = {"atlas": self.atlas.model_dump()} if command == "atlas" else {}
+        """Digest of `describe()` and the command: two runs that must give the same graph share it, and those that go on from one another."""
+        more = {"atlas": self.atlas.of_results()} if command == "atlas" else {}
         text = json.dumps({"command": command, **more, **self.describe()}, sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()
 

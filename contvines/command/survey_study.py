@@ -182,7 +182,8 @@ def _spelled(study: Study) -> list[str]:
 def asked_of(study: Study) -> dict[str, Any]:
     """What decides the rows of a study's survey beside its plan, ready for JSON."""
     survey = study.survey.model_dump(exclude={"vary", "atlas"})
-    atlas = {"atlas": study.atlas.model_dump()} if study.survey.atlas else {}
+    budget = {} if study.atlas.budget is None else {"budget": study.atlas.budget}
+    atlas = {"atlas": {**study.atlas.of_results(), **budget}} if study.survey.atlas else {}
     return {"study": study.describe(), "survey": survey, **atlas}
 
 

@@ -162,6 +162,11 @@ class Graph(Resumable):
         return f"{text}\n\n{self.message}" if self._cut else text
 
     @property
+    def stopped(self) -> bool:
+        """Whether it is an atlas that has used up its budget."""
+        return bool(self.settings.get("left"))
+
+    @property
     def _cut(self) -> bool:
         return not self.complete and self.settings.get("max_branches") != 1
 

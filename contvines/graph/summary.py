@@ -13,19 +13,23 @@ from .graph import Graph
 from .measures import default_measure
 from .shortening import motion_name
 from .stretches import at_points, gaps, stretches
-from .table import with_unit
+from .table import attractors_table, simulated, with_unit
 
 MOST = 8  # motions that are listed
 
 
-def summary(graph: Graph, width: int | None = None) -> str:
+def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     """Stable motions of a graph: word, period, where, largest response; then what part of the interval has none.
+
+    Of an atlas that is told in brief also the motions that most simulated starts reach.
 
     Parameters
     ----------
     graph : Graph
     width : int, optional
         Characters to a line; those of the terminal by default.
+    brief : bool
+        Whether no tables follow.
     """
     width = terminal_width() if width is None else width
     measure = default_measure(graph)
@@ -57,9 +61,8 @@ def summary(graph: Graph, width: int | None = None) -> str:
         f"largest {with_unit(measure, graph.units.get(measure))}",
     )
     lines = Table(head, rows).lines(width) if rows else ["no stable motion on these branches"]
-    lines.insert(
-        0, fitted(f"stable motions of {len(graph.branches)} branches, the widest first") if rows else ""
-    )
+    if rows:
+        lines.insert(0, fitted(f"stable motions of {len(graph.branches)} branches, the widest first"))
     if len(found) > len(listed):
         lines.append(f"and {len(found) - len(listed)} more, on narrow stretches")
     open_ = gaps(graph)
@@ -72,7 +75,10 @@ def summary(graph: Graph, width: int | None = None) -> str:
                 f"no stable motion on a branch in {100.0 * part:.3g} % of the interval, most of it {where}: modulated or chaotic motions, or motions that are not connected to these"
             )
         )
-    return "\n".join(line for line in lines if line)
+    if brief and graph.attractors:
+        reached = attractors_table(graph, MOST)
+        lines += ["", *reached.lines(width), "", fitted(simulated(graph))]
+    return "\n".join(lines)
 
 
 def _kind(about: Mapping[str, Any]) -> str:

@@ -113,8 +113,11 @@ def special_table(graph: Graph, reasons: bool = True) -> Table:
     return Table(("point", "kind", "on", name, "", "leads to"), rows, ("",))
 
 
-def attractors_table(graph: Graph) -> Table:
-    """A row per motion that simulated starts have met: where, and its share of the starts, over the interval and at most."""
+def attractors_table(graph: Graph, most: int | None = None) -> Table:
+    """A row per motion that simulated starts have met: where, and its share of the starts, over the interval and at most.
+
+    With `most` so many of them, those with the largest shares first.
+    """
     name = with_unit(graph.parameter, graph.units.get(graph.parameter))
     values = np.array(sorted({a.value for a in graph.attractors if a.starts}))
     low, high = graph.within
@@ -126,8 +129,10 @@ def attractors_table(graph: Graph) -> Table:
         met.setdefault(key, []).append(about)
     rows = []
     number = figures_in(graph.within)
-    for (label, motion, periods), seen in met.items():
-        share = sum(a.share * parts[a.value] for a in seen if a.starts)
+    shares = {key: sum(a.share * parts[a.value] for a in seen if a.starts) for key, seen in met.items()}
+    listed = list(met) if most is None else sorted(met, key=lambda key: -shares[key])[:most]
+    for label, motion, periods in listed:
+        seen, share = met[label, motion, periods], shares[label, motion, periods]
         span = f"{number(seen[0].value)}..{number(seen[-1].value)}"
         where = span if len(seen) > 1 else number(seen[0].value)
         rows.append(
@@ -140,6 +145,8 @@ def attractors_table(graph: Graph) -> Table:
                 f"{max(a.share for a in seen):.0%}",
             )
         )
+    if len(listed) < len(met):
+        rows.append((f"and {len(met) - len(listed)} more", *[""] * 5))
     return Table(
         ("attractor", "branch", f"met at {name}", "values", "share of starts", "at most"), rows, ("values",)
     )

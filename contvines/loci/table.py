@@ -29,7 +29,7 @@ def table(chart: Chart, width: int | None = None) -> str:
     width : int, optional
         Characters to a line; None: as many as it takes.
     """
-    lines = [fitted(_title(chart), width) if width else _title(chart)]
+    lines = [fitted(title(chart), width) if width else title(chart)]
     for part in _tables(chart):
         lines += ["", *part.lines(width)]
     if chart.message not in ("", "finished"):
@@ -45,10 +45,11 @@ def shown(chart: Chart) -> str:
 def page(chart: Chart) -> str:
     """The same as HTML."""
     said = [] if chart.message in ("", "finished") else [f"<p>{html.escape(chart.message)}</p>"]
-    return "".join([f"<p>{html.escape(_title(chart))}</p>", *(part.html() for part in _tables(chart)), *said])
+    return "".join([f"<p>{html.escape(title(chart))}</p>", *(part.html() for part in _tables(chart)), *said])
 
 
-def _title(chart: Chart) -> str:
+def title(chart: Chart) -> str:
+    """What the tables are of, in one line."""
     p, q = chart.parameters
     (plo, phi), (qlo, qhi) = chart.within
     ends = (f"[{plo:.6g}, {phi:.6g}]", f"[{qlo:.6g}, {qhi:.6g}]")
@@ -93,18 +94,28 @@ def _tables(chart: Chart) -> list[Table]:
         )
         for point in chart.points.values()
     ]
-    regions = [
+    found += [Table(("point", "kind", q, p, "on", "coefficients"), points)] if points else []
+    return [*found, *([regions_table(chart)] if chart.regions else [])]
+
+
+def regions_table(chart: Chart, most: int | None = None) -> Table:
+    """A row per region, the largest first: where it was simulated, its share of the plane, what is stable; with `most` so many of them."""
+    p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
+    at = [
+        figures_in(within, [point.value[k] for point in chart.points.values()]) for k, within in enumerate(chart.within)
+    ]  # fmt: skip
+    rows = [
         (
             at[1](region.at[1]),
             at[0](region.at[0]),
             f"{100.0 * region.share:.1f} %",
             _stable(region, at),
         )
-        for region in chart.regions
+        for region in chart.regions[:most]
     ]
-    found += [Table(("point", "kind", q, p, "on", "coefficients"), points)] if points else []
-    head = (f"region at {q}", p, "share", "stable (simulated)")
-    return [*found, *([Table(head, regions)] if regions else [])]
+    if len(rows) < len(chart.regions):
+        rows.append((f"and {len(chart.regions) - len(rows)} more", "", "", ""))
+    return Table((f"region at {q}", p, "share", "stable (simulated)"), rows)
 
 
 def _stable(region: Region, at: Sequence[Callable[[float], str]]) -> str:

@@ -214,7 +214,7 @@ class Store:
                 self._db.execute("DELETE FROM entry WHERE kind = ? AND key = ?", place)
                 del self._kept[place]
             self._db.execute("UPDATE meta SET value = ? WHERE key = 'finished'", (json.dumps(finished),))
-            if finished:  # the journal has done its work
+            if finished and not graph.stopped:  # the journal has done its work
                 self._db.execute("DELETE FROM entry WHERE kind = 'journal'")
 
     def _renew(self, kind: str, key: str, content: Mapping[str, Any]) -> tuple[str, str]:

@@ -231,11 +231,6 @@ class PageEquations:
             for key in dict.fromkeys(self._keys)
         ]
 
-    @cached_property
-    def sparsity(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rows and columns of the bordered matrix's entries."""
-        return flights.sparsity(self.length, self.size + 1)
-
     # ------------------------------------------------------------------ numerics
     @cached_property
     def scratch(self) -> flights.Work:

@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 from scipy.linalg import get_lapack_funcs
 
+from contvines.core.block_cyclic import eliminate
+from contvines.core.library import native
 from contvines.core.multipliers.periodic_schur import periodic_multipliers
 from orbits.integrators.engine import engine
 from orbits.numbers import ROUNDOFF
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
     from orbits.words import Word
 
 (_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
-SPARSE = 120  # unknowns from which sparse elimination is faster
+CYCLIC = 120  # unknowns from which elimination by blocks is faster
 AHEAD = 2.0  # periods of a forced machine: in a flight that is longer Newton's method has lost its way
 TOGETHER = 4
 """Flights in one mode from which they are integrated side by side: a flight of two states then takes 11 to 15 us in place of 35 to 40, of four
@@ -103,8 +105,6 @@ class Pieces(Protocol):
     def event_groups(self) -> Sequence[tuple[Values | None, np.ndarray, bool]]: ...
     @cached_property
     def guard_groups(self) -> list[tuple[Values, list[Guard], Watch, list[int]]]: ...
-    @cached_property
-    def sparsity(self) -> tuple[np.ndarray, np.ndarray]: ...
     def allowed(self, p: float) -> bool: ...
     def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]: ...
     def clock_rate(self, numbers: np.ndarray) -> Reals: ...
@@ -231,8 +231,8 @@ def bordered(
     sides = np.zeros((size + 1, 2), order="F")
     sides[:size, 0] = -work.residual.ravel()
     sides[size, 0], sides[size, 1] = target, 1.0
-    if size > SPARSE and not data.pinned:
-        return _sparse(data, work, border, sides, step, tangent)
+    if size > CYCLIC and not data.pinned and native():
+        return _cyclic(data, work, border, sides, step, tangent)
     matrix = np.zeros((size + 1, size + 1), order="F")
     fill(data, work, matrix)
     matrix[:size, size] = work.derivative.ravel()
@@ -282,66 +282,28 @@ def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
     return own, following
 
 
-def _sparse(
-    data: Pieces,
-    work: Work,
-    border: np.ndarray,
-    sides: np.ndarray,
-    step: np.ndarray,
-    tangent: np.ndarray,
+def _cyclic(
+    data: Pieces, work: Work, border: np.ndarray, sides: np.ndarray, step: np.ndarray, tangent: np.ndarray
 ) -> float:
-    from scipy.sparse import csc_matrix
-    from scipy.sparse.linalg import splu
-
-    size = data.dimension
-    rows, columns = data.sparsity
-    own, following = closing(data, work)
-    blocks = [work.own[:-1].ravel(), own.ravel(), work.following[:-1].ravel(), following.ravel()]
-    entries = np.concatenate([*blocks, work.derivative.ravel(), border])
-    if not np.all(np.isfinite(entries)):
+    """By blocks, as the cycle has them."""
+    length, d = data.length, data.size + 1
+    blocks = np.empty((length, d, 2 * d))
+    blocks[:-1, :, :d], blocks[:-1, :, d:] = work.own[:-1], work.following[:-1]
+    blocks[-1, :, :d], blocks[-1, :, d:] = closing(data, work)
+    columns = np.empty((length, d, 3))
+    columns[:, :, 0], columns[:, :, 1:] = work.derivative, sides[:-1].reshape(length, d, 2)
+    rows, foot = border[:-1].reshape(length, 1, d), np.array([[border[-1], *sides[-1]]])
+    back = slice(None, None, -1) if work.turned[0] else slice(None)
+    if work.turned[0]:  # each column of blocks becomes a row; backwards its neighbour follows again
+        before = np.roll(blocks[:, :, d:], 1, axis=0)
+        blocks = np.concatenate([blocks[:, :, :d], before], axis=1).transpose(0, 2, 1)[back]
+        columns, rows = columns[back], rows[back]
+    if not (np.isfinite(blocks).all() and np.isfinite(columns).all() and np.isfinite(rows).all()):
         return 0.0
-    if work.turned[0]:
-        inner = len(entries) - 2 * size - 1
-        rows, columns = (np.append(a[:inner], b[inner:]) for a, b in ((columns, rows), (rows, columns)))
-    matrix = csc_matrix((entries, (rows, columns)), shape=(size + 1, size + 1))
-    try:
-        factors = splu(matrix)
-    except RuntimeError:  # exactly singular
-        matrix = matrix + csc_matrix(
-            (np.full(size + 1, ROUNDOFF * np.abs(entries).max()), (np.arange(size + 1),) * 2)
-        )
-        try:
-            factors = splu(matrix)
-        except RuntimeError:
-            return 0.0
-    solution = factors.solve(sides)
-    step[:], tangent[:] = solution[:, 0], solution[:, 1]
-    negative = np.count_nonzero(factors.U.diagonal() < 0.0)
-    odd = _odd(factors.perm_r) + _odd(factors.perm_c) + negative
-    return -1.0 if odd % 2 else 1.0
-
-
-def _odd(permutation: np.ndarray) -> int:
-    """1 if a permutation is odd."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(permutation)
-    graph = coo_matrix((np.ones(n), (np.arange(n), permutation)), shape=(n, n))
-    cycles = connected_components(graph, directed=False)[0]
-    return (n - cycles) % 2
-
-
-def sparsity(length: int, d: int) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns of the entries of the bordered matrix, in the order in which `_sparse` lists them."""
-    i, r, c = np.meshgrid(np.arange(length), np.arange(d), np.arange(d), indexing="ij")
-    rows, own, onward = (i * d + r).ravel(), (i * d + c).ravel(), (((i + 1) % length) * d + c).ravel()
-    size = length * d
-    every = np.arange(size)
-    return (
-        np.concatenate([rows, rows, every, np.full(size + 1, size)]),
-        np.concatenate([own, onward, np.full(size, size), np.arange(size + 1)]),
-    )
+    found = eliminate(blocks, columns, rows, foot, d)
+    for k, place in enumerate((step, tangent)):
+        place[:-1], place[-1] = found.states[back, :, k].ravel(), found.shared[0, k]
+    return -found.sign if d % 2 and length % 2 == 0 else found.sign  # the first node is eliminated last
 
 
 def factors(data: Pieces, work: Work) -> np.ndarray:

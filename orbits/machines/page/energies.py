@@ -49,7 +49,10 @@ def body_masses(e: Equations) -> list[tuple[str, Symbol]]:
         return []
     frictions = [j for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction)]
     force = {j: variable(f"force_{e.contacts[j].name}") for j in frictions}
-    moved = [bool(set().union(*map(variables_of, force.values())) & variables_of(rate)) if force else False for rate in e.motion_with(force)]
+    moved = [
+        bool(set().union(*map(variables_of, force.values())) & variables_of(rate)) if force else False
+        for rate in e.motion_with(force)
+    ]
     found = []
     for k, name in enumerate(e.states):
         if moved[k] or any(push[k].number != 0.0 for push in e.push.values()):

@@ -58,7 +58,12 @@ class Possible:
     def __init__(self, equations: Equations, units: Mapping[str, str]) -> None:
         self.equations, self.units = equations, units
         self.names = [name.removeprefix("p_") for name in equations.layout.numbers if name.startswith("p_")]
-        self.demands = [*_rooms(equations, units), *_masses(equations), *_rates(equations), *_contacts(equations)]
+        self.demands = [
+            *_rooms(equations, units),
+            *_masses(equations),
+            *_rates(equations),
+            *_contacts(equations),
+        ]
         if CONTACT in self.names:
             self.demands.append(Demand(variable(f"p_{CONTACT}"), _open, "an impact lasts longer than 0"))
         self._asked: dict[str | None, tuple[list[Demand], Values]] = {}
@@ -114,7 +119,7 @@ def _rooms(e: Equations, units: Mapping[str, str]) -> list[Demand]:
         size, weight = float(one @ one), -float(one @ other)
         if not weight > 0.0 or np.abs(other * size + one * weight).max() > FORMULAS.same * weight:
             continue
-        walls = " and ".join(repr(e.contacts[k].letter) for k in (i, j))
+        walls = " and ".join(repr(e.contacts[k].name) for k in (i, j))
         room = e.gap[i] * (weight / size) + e.gap[j]
         found.append(Demand(room, _open, f"walls {walls} leave no room between them{_way_out(room, units)}"))
     return found
@@ -124,7 +129,10 @@ def _way_out(room: Symbol, units: Mapping[str, str]) -> str:
     """Where the room is a multiple of one parameter and a constant: from which value on there is some."""
     names = [name for name in variables_of(room) if name.startswith("p_")]
     if len(names) == 1:
-        slope, rest = derivatives([room], [variable(names[0])])[0][0].number, replaced(room, {n: 0.0 for n in variables_of(room)}).number
+        slope, rest = (
+            derivatives([room], [variable(names[0])])[0][0].number,
+            replaced(room, dict.fromkeys(variables_of(room), 0.0)).number,
+        )
         if slope and rest is not None:
             name = names[0].removeprefix("p_")
             limit = f"{-rest / slope + 0.0:g} {units.get(name, '')}".rstrip()
@@ -134,7 +142,9 @@ def _way_out(room: Symbol, units: Mapping[str, str]) -> str:
 
 def _masses(e: Equations) -> list[Demand]:
     """Of the bodies that meet at walls or rub, where the machine tells its energy."""
-    return [Demand(mass, _open, f"the mass that moves with {name} is above 0") for name, mass in body_masses(e)]
+    return [
+        Demand(mass, _open, f"the mass that moves with {name} is above 0") for name, mass in body_masses(e)
+    ]
 
 
 def _contacts(e: Equations) -> list[Demand]:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.graph.persistence import same_graph
 from orbits import Absorber
 from orbits.attractors.recurrence import attracted
 from orbits.machines.catalogue import stepper as machine
@@ -23,8 +24,10 @@ def motions(graph):
     return {(a.value, a.word, a.kind) for a in graph.attractors}
 
 
-def made(budget):
-    return cv.atlas(logistic(), within=(2.55, 3.4), values=4, starts=4, scan=1, depth=1, budget=budget)
+def made(budget, journal=None):
+    return cv.atlas(
+        logistic(), within=(2.55, 3.4), values=4, starts=4, scan=1, depth=1, budget=budget, journal=journal
+    )
 
 
 def test_a_budget_is_kept_and_what_it_leaves_out_is_said():
@@ -36,11 +39,44 @@ def test_a_budget_is_kept_and_what_it_leaves_out_is_said():
     least = made(1)
     assert len({a.value for a in least.attractors}) == 1  # the first of the four given values
     assert least.finished and not least.complete
-    assert "given values (3)" in least.message and "raise budget" in least.message
+    assert (
+        least.settings["left"]["given values"] == 3
+        and "given values (3)" in least.message
+        and "raise budget" in least.message
+    )
     budget = least.settings["work"] + 1
     part = made(budget)
     assert not part.complete and budget <= part.settings["work"] < work
     assert motions(least) <= motions(part) <= motions(whole)
+
+
+def test_a_larger_budget_goes_on_from_what_was_computed(tmp_path):
+    """A file keeps all pieces of work until nothing is left out; the result is that of one run with the larger budget."""
+    whole, path = made(10**9), tmp_path / "a.vines"
+    records, asked = [], []
+    for budget in (1, made(1).settings["work"] + 1, 10**9):
+        with cv.resume(path) as journal:
+            before, record = journal.records, journal.record
+            journal.record = lambda key, values, record=record: asked.append(key) or record(key, values)
+            graph = made(budget, journal)
+            records.append((before, journal.records))
+        assert graph.finished and graph.stopped == (budget < 10**9)
+    assert [before for before, _ in records[1:]] == [after for _, after in records[:-1]]
+    assert 0 < records[0][1] < records[1][1] and records[2][1] == 0
+    assert len(set(asked)) == len(asked)  # nothing was computed twice
+    graph.settings["budget"] = whole.settings["budget"]
+    assert same_graph(graph, whole)
+
+
+def test_the_price_of_integrated_flights_counts():
+    """At twice the price the same budget allows half the work."""
+    dear = logistic()
+    type(dear).price, price = 2.0, type(dear).price
+    try:
+        doubled = cv.atlas(dear, within=(2.55, 3.4), values=4, starts=4, scan=1, depth=1)
+    finally:
+        type(dear).price = price
+    assert doubled.settings["work"] == pytest.approx(2 * made(10**9).settings["work"], abs=1)
 
 
 def test_a_motion_between_the_given_values_that_all_starts_reach():

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from contvines.command.cli import main
+from contvines.graph.persistence import same_graph
 from contvines.store import load
 from tests.contvines.studies import PAPER_MACHINE
 
@@ -193,3 +194,32 @@ def test_export_has_the_measures_of_every_point(folder, monkeypatch):
         B, R, h = float(row["B"]), 0.24 / 1.76, math.pi / 2 * 1.006 * 0.5 * 0.211
         assert float(row["C2"]) == pytest.approx((1 - math.pi * B / 2) ** 2 + (R * B + h) ** 2, rel=1e-9)
         assert float(row["friction_loss"]) == pytest.approx(0.5 * 0.211 * 4, rel=1e-14)
+
+
+def test_large_results_are_told_in_brief(folder, capsys, monkeypatch):
+    """A summary and where the tables are, or with --details the tables; one way for diagrams, atlases and charts."""
+    monkeypatch.setattr("contvines.command.frame.MANY", 0)
+    monkeypatch.chdir(folder)
+    atlas = "[atlas]\nvalues = [0.5, 1.0]\nstarts = 4\nscan = 0\n"
+    (folder / "a.toml").write_text(STUDY.format(depth=0, virtual="false") + atlas)
+    for words in (["diagram", "s.toml", "-o", "s.vines", "--no-look"], ["atlas", "a.toml"]):
+        call(*words)
+        brief = capsys.readouterr().out
+        assert "stable motions of" in brief and "contvines show" in brief and "from .. to" not in brief
+        call(*words, "--details")
+        assert "from .. to" in capsys.readouterr().out
+
+
+def test_an_atlas_goes_on_with_a_larger_budget(folder, capsys, monkeypatch):
+    """The file of the small one is not set aside; the result is that of the large one alone."""
+    monkeypatch.chdir(folder)
+    atlas = "[atlas]\nvalues = [0.5, 1.0]\nstarts = 4\nscan = 0\n"
+    (folder / "b.toml").write_text(STUDY.format(depth=0, virtual="false") + atlas)
+    call("atlas", "b.toml", "--budget", "1")
+    said = capsys.readouterr()
+    assert "left out are" in said.out and "contvines atlas b.toml --budget 2 goes on" in said.err
+    call("atlas", "b.toml")
+    assert "nothing to compute" not in (said := capsys.readouterr()).err and "left out" not in said.out
+    call("atlas", "b.toml", "-o", "alone.vines", "--quiet")
+    parts, alone = (load(folder / name, problems=False) for name in ("b-atlas.vines", "alone.vines"))
+    assert same_graph(parts, alone) and not (folder / "b-atlas.old.vines").exists()

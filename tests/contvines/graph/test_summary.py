@@ -14,3 +14,14 @@ def test_a_logistic_map_is_summarised():
     assert "1.5..3" in told and "3..3.449" in told
     assert "no stable motion on a branch in 2.53 % of the interval" in told  # (3.5 - 3.449)/2
     assert "3.449 to 3.5" in told
+
+
+def test_an_atlas_in_brief_has_what_most_starts_reach():
+    """Of the cubic map x' = a x - x^3, odd, all starts with |x| < 1 reach one of the two fixed points +-(a - 1)^(1/2), stable from a = 1 to 2."""
+    problem = cv.MapProblem(lambda x, a: a * x - x**3, np.array([0.5]), 1.5)
+    population = problem.population(box=[(-0.9, 0.9)])
+    atlas = cv.atlas(population, within=(1.2, 1.8), values=2, starts=10, scan=0, depth=0)
+    told = summary(atlas, 100, brief=True).splitlines()
+    assert [line.split()[-2] for line in told if line.startswith("1-cycle k=1")] == ["50.00%", "50.00%"]
+    assert "starts simulated at 2 values" in told[-1]
+    assert "share of starts" not in summary(atlas, 100)  # the tables that follow have it

@@ -9,6 +9,8 @@ import pytest
 
 import contvines as cv
 from contvines.command.cli import app
+from contvines.loci.summary import chart_summary
+from contvines.loci.table import table
 
 
 def cubic(u, p):
@@ -48,6 +50,16 @@ def test_the_wedge_of_the_cusp_is_a_region_of_its_own(chart):
         assert len({tuple(place) for place in places}) >= 3 and not region.others
         inside = [b > 0.0 and abs(a) < 2.0 * (b / 3.0) ** 1.5 for a, b in places]
         assert all(inside) if region.words == ["2 x equilibrium"] else not any(inside)
+
+
+def test_the_same_in_a_few_lines(chart):
+    """A locus of folds, a cusp at (0, 0), and the two regions as the table of the chart has them."""
+    told = chart_summary(chart, 100).splitlines()
+    rows = [line.split() for line in told]
+    assert ["fold", "1"] in [row[:2] for row in rows] and ["cusp", "1", "0", "0"] in rows
+    assert [line for line in table(chart, 100).splitlines() if "%" in line] == [
+        line for line in told if "%" in line
+    ]
 
 
 def test_json_is_the_documented_one(chart):

@@ -156,7 +156,8 @@ def test_values_that_no_machine_can_have(name):
 def test_two_walls_part_with_two_parameters():
     """A cavity from -left to gap: its room is their sum, whatever the sign of either."""
     machine = declared(
-        parameters={**USUAL, "left": 1.0}, contacts=[wall(), Wall("L", lambda s, ph, p: p.left + s.x, {"v": 1.0})]
+        parameters={**USUAL, "left": 1.0},
+        contacts=[wall(), Wall("L", lambda s, ph, p: p.left + s.x, {"v": 1.0})],
     )
     assert machine.vector({"gap": -0.5})[2] == -0.5
     with pytest.raises(ValueError, match="gap = -1.5 is out of range: walls 'R' and 'L' leave no room"):
