@@ -13,14 +13,18 @@ _NAMES = (("weak modulation", "strong modulation"), ("chaotic weak modulation", 
 MODULATIONS = frozenset(_NAMES[0] + _NAMES[1])
 """What a modulated motion may be called, where others have a word."""
 FEW = 0.01  # of the periods without an impact: fewer do not make a modulation strong
+STEADY = 0.001  # of the largest response: one that varies by less, which no table shows, is steady
 
 
 def modulation_of(measures: Mapping[str, float], chaotic: bool = False) -> str:
     """``weak modulation``, ``strong modulation`` where impacts stop and begin again (the strongly modulated response of vibro-impact
-    absorbers), either with ``chaotic`` before it; empty for a motion without a band, such as one that recurs."""
-    if not math.isfinite(measures.get(BAND[1], math.nan)):
+    absorbers), either with ``chaotic`` before it; empty for a motion without a band, such as one that recurs, and for one whose response is steady while
+    the absorber wanders."""
+    low, mean, high = (measures.get(name, math.nan) for name in BAND)
+    strong = is_strong(measures)
+    if not math.isfinite(mean) or not (strong or high - low > STEADY * abs(high)):
         return ""
-    return _NAMES[int(chaotic)][int(is_strong(measures))]
+    return _NAMES[int(chaotic)][int(strong)]
 
 
 def is_strong(measures: Mapping[str, float]) -> bool:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, is_strong, modulation_of
+from contvines.shared.modulation import BAND, is_strong
 
 from ..coexistence.places import UNBRANCHED
 from ..graph.measures import default_measure
@@ -162,7 +162,7 @@ def modulated(found: Findings) -> dict[str, float]:
     mean: lowest, mean and highest of its largest displacements in a forcing period; the share of such motions whose impacts stop and begin
     again (strong modulation)."""
     low, high = found.graph.within
-    met = [one.measures for one in found.unbranched if modulation_of(one.measures)]
+    met = [one.measures for one in found.unbranched if np.isfinite(one.measures.get(BAND[1], np.nan))]
     if not met:
         return {"modulated": 0.0, **dict.fromkeys((*BAND, "modulated_strong"), np.nan)}
     known = sum(b - a for a, b in gaps(found.graph)) - sum(b - a for a, b in _unknown_parts(found))

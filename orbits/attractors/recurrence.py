@@ -57,8 +57,9 @@ def attracted(
         rests = simulator.rests(run, last)
         if rests:
             rest = Orbit.at_rest(model, simulator.params) if model.in_cavity else None
+            periods = 0 if rest is None else rest.periods  # what sticks moves with its cavity
             return Attractor(
-                model, simulator.params, simulator.resting, 0, rest, run, 0, simulator.state.copy()
+                model, simulator.params, simulator.resting, periods, rest, run, 0, simulator.state.copy()
             )
         if rests is None:
             attempt, length = attempt + 1, waiting.longer * (length or run.lasted)

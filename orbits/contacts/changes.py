@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     import numpy as np
 
-Mode = Any
-"""What the contacts do between two events; read and written by the alphabet (`orbits.words.alphabet`)."""
+Mode = int | tuple[int, ...]
+"""What the contacts do between two events: an entry for each, or that of the one contact whose mode is written; read and written by the
+alphabet (`orbits.words.alphabet`)."""
 
 
 class What(Enum):

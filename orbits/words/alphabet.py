@@ -104,13 +104,19 @@ class Alphabet:
     # ------------------------------------------------------------------ modes
     def entry(self, mode: Mode, contact: int) -> int:
         """What a contact does in a mode."""
-        if self.alone is None:
+        if isinstance(mode, tuple):
             return mode[contact]
         return mode if contact == self.alone else FREE
 
+    def entries(self, mode: Mode) -> tuple[int, ...]:
+        """What every contact does in a mode."""
+        return (
+            mode if isinstance(mode, tuple) else tuple(self.entry(mode, j) for j in range(len(self.contacts)))
+        )
+
     def with_entry(self, mode: Mode, contact: int, value: int) -> Mode:
         """The mode with another entry for one contact."""
-        if self.alone is not None:
+        if not isinstance(mode, tuple):
             return value if contact == self.alone else mode
         changed = list(mode)
         changed[contact] = value
@@ -148,7 +154,8 @@ class Alphabet:
     def mirrored_mode(self, mode: Mode) -> Mode:
         """The mirror image of a mode."""
         assert self.mirror is not None
-        if self.alone is not None:
+        if not isinstance(mode, tuple):
+            assert self.alone is not None
             return self.contacts[self.alone].mirrored(mode, self.alone in self.turned)
         image = [0] * len(mode)
         for j, value in enumerate(mode):

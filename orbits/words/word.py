@@ -206,6 +206,10 @@ class Word:
         """The mode after an event."""
         return self.modes[place % len(self.modes)]
 
+    def entries(self, place: int) -> tuple[int, ...]:
+        """What every contact does after an event."""
+        return self.alphabet.entries(self.mode(place))
+
     @cached_property
     def impacts(self) -> int:
         """Number of impacts l."""

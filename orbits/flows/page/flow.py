@@ -153,7 +153,7 @@ class PageFlow:
         """Of the wall that is hit, as its formula has it there."""
         model, node = motion.model, motion.nodes[place]
         clock = node[:1] if model.forced else np.zeros(1)
-        numbers = model.compiled.numbers(motion.params, motion.word.mode(place))
+        numbers = model.compiled.numbers(motion.params, motion.word.entries(place))
         rebound = model.compiled.rebound(motion.word.letter(place).contact)
         return float(rebound(node[None, 1:], clock, numbers[None])[0, 1])
 

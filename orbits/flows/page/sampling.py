@@ -67,7 +67,7 @@ def states_at(orbit: Motion[Machine], phases: np.ndarray) -> np.ndarray:
     for i in np.unique(segments).tolist():
         places = np.flatnonzero(segments == i)
         order = places[np.argsort(wanted[places])]
-        mode, node = word.mode(i), orbit.nodes[i]
+        mode, node = word.entries(i), orbit.nodes[i]
         grid = node[0] + np.concatenate([[0.0], wanted[order] - begins[i]])
         watch = compiled.watch(e.pattern_key(mode))
         out[order] = watch.path(node[1:], grid, compiled.numbers(orbit.params, mode))[1:]

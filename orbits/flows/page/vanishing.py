@@ -35,7 +35,7 @@ def _end(orbit: Motion[Machine], place: int, share: float) -> int:
 def _closest(orbit: Motion[Machine], place: int, contact: int) -> tuple[float, np.ndarray, int]:
     """Where the guards of a contact come closest to zero in a flight: clock from its start, state, sign of the guard's event."""
     compiled, e = orbit.model.compiled, orbit.model.equations
-    mode = orbit.word.mode(place)
+    mode = orbit.word.entries(place)
     key = e.pattern_key(mode)
     numbers = compiled.numbers(orbit.params, mode)
     guards, values, watch = e.pattern(key).guards, compiled.guards(key), compiled.watch(key)

@@ -26,7 +26,7 @@ def test_a_periodic_motion_has_no_band():
     assert found.recurrent
     top = found.found.root().measure("max_abs_q1")  # of the closed form
     assert (seen.low, seen.mean, seen.high) == pytest.approx((top, top, top), rel=2e-3)
-    assert seen.silent == 0.0 and seen.kind == "weak modulation"
+    assert seen.silent == 0.0 and seen.kind == ""
 
 
 def test_a_modulated_motion_is_that_of_a_dense_sampling():
@@ -38,6 +38,20 @@ def test_a_modulated_motion_is_that_of_a_dense_sampling():
     assert seen.high == pytest.approx(max(tops), rel=5e-3) and seen.low == pytest.approx(min(tops), rel=5e-3)
     assert seen.mean == pytest.approx(np.mean(tops), rel=5e-3)
     assert seen.low < seen.mean < seen.high
+
+
+def test_a_steady_response_is_not_modulated_by_what_tables_do_not_show():
+    """Of a light absorber that wanders in its cavity: 2.0000 to 2.0005 is 2, whatever impacts do; impacts that come and go are told."""
+    from orbits.attractors.modulation import Modulation
+
+    assert Modulation(2.0, 2.0002, 2.0005, 0.0).kind == ""
+    assert Modulation(2.0, 2.002, 2.005, 0.0).kind == "weak modulation"
+    assert Modulation(2.0, 2.0002, 2.0005, 0.4).kind == "strong modulation"
+
+
+def test_what_sticks_moves_with_its_cavity_once_a_forcing_period():
+    found = find_attractor(MACHINE, observed=False, forcing=0.1, frequency=0.9, friction=0.9)
+    assert (found.kind, found.periods) == ("stuck", 1)
 
 
 def test_impacts_that_stop_and_begin_again_make_it_strong():
