@@ -36,7 +36,8 @@ PROMISING = (
     0.7  # of the largest response of all branches: one without a branch is followed to where it is largest
 )
 HALVINGS = 5  # of the distance between values about the largest response that was simulated, ...
-NEARLY = 0.998  # ... to where it is nearly as large
+NEARLY = 0.998  # ... to where it is nearly as large, ...
+FLAT = 0.002  # ... and no further from there than this part of the interval: between values further apart it may be larger
 ON_ITS_WAY = ("slow", "impossible")  # a transient that has not ended; a start inside a wall
 
 
@@ -196,8 +197,8 @@ def _of_branches(graph: Graph) -> float:
 def _about_the_largest(
     graph: Graph, left: Sequence[Unbranched], looked: Collection[float]
 ) -> tuple[list[float], np.ndarray | None]:
-    """Values half-way from the largest response without a branch to its neighbours that are not as large, and a state on its motion; no values where
-    branches have much larger ones, or these are near."""
+    """Values half-way from the largest response without a branch to its neighbours that are not as large or are far, and a state on its motion; no
+    values where branches have much larger ones, or these are near."""
     name, (low, high) = default_measure(graph), graph.within
     known: dict[float, float] = {}
     for one in left:
@@ -209,6 +210,7 @@ def _about_the_largest(
     least = COVERAGE.least * (high - low)
     below = max((p for p in places if p < top - least), default=top)
     above = min((p for p in places if p > top + least), default=top)
-    beside = [p for p in (below, above) if p != top and known.get(p, -np.inf) < NEARLY * known[top]]
+    flat = {p for p in (below, above) if known.get(p, -np.inf) >= NEARLY * known[top]}
+    beside = [p for p in (below, above) if p not in flat or abs(p - top) > FLAT * (high - low)]
     state = next(one.state for one in left if one.value == top and one.measures.get(name) == known[top])
     return [0.5 * (top + other) for other in beside], state

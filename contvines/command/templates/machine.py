@@ -13,6 +13,7 @@ machine = Machine(
     name="impact_oscillator",
     states=("x", "v"),
     parameters={"forcing": 1.0, "frequency": 2.3, "damping": 0.01, "gap": 0.0, "restitution": 0.8},
+    # units={"x": "mm", "v": "mm/s", "gap": "mm", "frequency": "Hz"},  # formulas then see metres and seconds (extra "units")
     phase_rate="frequency",
     motion=motion,
     contacts=[

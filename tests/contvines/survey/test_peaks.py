@@ -110,6 +110,23 @@ def test_a_chaotic_response_is_known_where_it_is_simulated():
     assert made.best("peak") == ({"half_width": 8.0}, made["peak"][0])
 
 
+def test_the_largest_chaotic_response_lies_between_two_values_that_are_as_large():
+    """What follows a cascade from the left and one from the right is alike; the response is a fifteenth larger half-way."""
+    within = (7.0, 9.0)
+    case = {
+        **CASE, "oscillator_mass": "3.8 kg", "damping_ratio": 0.007, "half_width": "12 mm", "restitution": 0.6634379,
+        "friction": 0.2661425, "base_amplitude": "0.3 mm",
+    }  # fmt: skip
+    machine = physical("coupled", case)
+    made = survey(
+        Family(machine, None, over="frequency", within=within), {"half_width": [12.0]}, over="frequency",
+        within=within, depth=2, workers=1,
+    )  # fmt: skip
+    rows = sweep(machine, "frequency", np.linspace(7.94, 7.97, 13))
+    largest = max(row.measures["max_abs_q1"] for row in rows)
+    assert made["peak"][0] == pytest.approx(largest, rel=0.005)
+
+
 def test_a_large_chaotic_motion_beside_a_stable_one_is_followed_to_where_it_is_largest():
     """Two absorbers: a slow sweep downwards from 8.01 Hz meets it, and keeps it for 2000 periods; starts at these frequencies lead to the small
     motion that coexists. Further down it is a transient."""
