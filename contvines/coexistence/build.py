@@ -90,8 +90,8 @@ def atlas(
         together. 0 leaves them out and all else that looks beyond the given values: unstable cycles, ends of stability that are followed to what
         comes after them, stretches between two changes.
     budget : int, optional
-        Work that the atlas may take, by default 500000, which is some minutes: so many points of branches in closed form, or a hundred times as many
-        simulated periods (steps of a map); those of a machine whose flow is integrated count twentyfold. It does not depend on the computer's speed or
+        Work that the atlas may take, by default 500000, which is some minutes: so many points of branches in closed form (one of many unknowns counts as
+        often as it has 64), or a hundred times as many simulated periods (steps of a map); those of a machine whose flow is integrated count twentyfold. It does not depend on the computer's speed or
         load; ``settings["work"]`` of the graph says how much of it was used, and ``settings["left"]`` what it left out.
     depth, virtual, user_functions, journal, progress, settings, kinds, interrupt
         As for :func:`contvines.diagram`.
@@ -231,7 +231,7 @@ class _Looking:
         self.found: list[Counted] = []
         self.handover = Handover(run, population)
         apart = run_apart(run)
-        self.effort = Effort(population, budget, lambda: run.points + apart.points)
+        self.effort = Effort(population, budget, lambda: run.cost + apart.cost)
         self.windows = Windows(run, population, apart, self.effort)
         self.left: dict[str, int] = {}  # pieces of work that the budget did not allow
         run.left = lambda: Left(self.effort.share, *self.effort.pieces, self.effort.seconds)

@@ -23,7 +23,7 @@ class Effort:
         Whose ``work`` are the periods simulated so far, and ``price`` what a point or a period costs beside one in closed form.
     budget : int
     points : callable
-        Returns how many points of branches there are so far.
+        Returns how many points of branches there are so far, those of many unknowns counted several times.
     """
 
     def __init__(self, population: Population, budget: int, points: Callable[[], int]) -> None:

@@ -291,16 +291,17 @@ def _picture(
         from contvines.plots.diagram import plot_diagram
 
         figure = plot_diagram(graph, x, y)
-    if graph.looked and x in (None, graph.parameter) and _shows_oscillator(graph, y):
+    if study.flow is None and graph.looked and x in (None, graph.parameter) and _shows_response(graph, y):
         _add_simulated(figure.axes[0], graph, study)
     return figure
 
 
-def _shows_oscillator(graph: "Graph", y: str | None) -> bool:
-    """Whether the picture shows a response of which simulations tell the band."""
+def _shows_response(graph: "Graph", y: str | None) -> bool:
+    """Whether the picture shows how far something goes, of which simulations tell the band."""
     from contvines.graph.measures import default_measure
 
-    return default_measure(graph) == "max_abs_q1" and y in (None, "max_abs_q1")
+    shown = default_measure(graph)
+    return shown.startswith("max_") and y in (None, shown)
 
 
 def _add_simulated(axes: "Axes", graph: "Graph", study: "Study") -> None:

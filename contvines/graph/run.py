@@ -27,6 +27,8 @@ from .limits import NO_LIMITS, Limits
 if TYPE_CHECKING:
     from ..journal import Journal
 
+LARGE = 64  # unknowns from which a point takes longer the more it has
+
 
 class Origin(StrEnum):
     """From what a branch is reached."""
@@ -157,6 +159,7 @@ class Run:
         self.compared: dict[tuple[int, int], tuple[Solved, SpecialPoint, bool]] = {}
         self.serial = 0
         self.points = 0
+        self.cost = 0  # points, those of many unknowns as often as they have `LARGE`
 
     def tell(self, message: str, value: float) -> None:
         """Report progress."""

@@ -207,7 +207,12 @@ def unseen(
     return found
 
 
-def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], values: int) -> list[float]:
+def spread(
+    open_: Sequence[tuple[float, float]],
+    within: tuple[float, float],
+    values: int,
+    everywhere: float = SIMULATED,
+) -> list[float]:
     """Values spread evenly over gaps, one at least in each but the shortest, which are a thousandth of the interval together.
 
     Parameters
@@ -217,6 +222,8 @@ def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], va
         The whole interval.
     values : int
         At least so many, more where the gaps are a large part of the interval; 0 for none.
+    everywhere : float
+        So many where they are all of it.
     """
     size = within[1] - within[0]
     ascending = sorted(open_, key=lambda gap: gap[1] - gap[0])
@@ -225,7 +232,7 @@ def spread(open_: Sequence[tuple[float, float]], within: tuple[float, float], va
     if not values or not wide:
         return []
     length = sum(high - low for low, high in wide)
-    places = np.linspace(0.0, length, max(values, int(np.ceil(SIMULATED * length / size))) + 2)[1:-1]
+    places = np.linspace(0.0, length, max(values, int(np.ceil(everywhere * length / size))) + 2)[1:-1]
     found: list[float] = []
     for low, high in wide:
         found += [low + p for p in places.tolist() if 0.0 <= p < high - low] or [0.5 * (low + high)]

@@ -11,7 +11,7 @@ from contvines.shared.modulation import BAND, modulation_of
 from ..coexistence.population import Population
 from ..graph.graph import Graph
 from ..graph.measures import default_measure
-from ..graph.stretches import gaps, spread
+from ..graph.stretches import SIMULATED, gaps, spread
 from .completion import FEW, ON_ITS_WAY
 
 VALUES = 5  # in the gaps, at least
@@ -42,7 +42,7 @@ class Simulated:
 
 
 def simulated(graph: Graph, population: Population, starts: int = FEW) -> list[Simulated]:
-    """What starts settle on at some values of every gap between the stable stretches of a graph.
+    """What starts settle on at some values of every gap between the stable stretches of a graph, at fewer where a motion is integrated.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def simulated(graph: Graph, population: Population, starts: int = FEW) -> list[S
         At each value.
     """
     name, found = default_measure(graph), []
-    for p in spread(gaps(graph), graph.within, VALUES):
+    for p in spread(gaps(graph), graph.within, VALUES, SIMULATED / np.cbrt(population.price)):
         motions, index, _ = population.settle(population.starts(starts, 0, p), p)
         for k, motion in enumerate(motions):
             if motion.kind in ON_ITS_WAY or motion.state is None:

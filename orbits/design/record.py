@@ -29,8 +29,22 @@ MOST_EVENTS = 20_000  # in a hundredth of the natural period
 SLICE = 20_000  # rows of one call of the native core
 
 
+class Dissipation:
+    """What impacts, friction and the oscillator's own damping have taken until the end of a motion."""
+
+    impacts: float
+    friction: float
+    damping: float
+
+    @property
+    def absorber_share(self) -> float:
+        """Share of what is dissipated that impacts and friction take."""
+        lost = self.impacts + self.friction + self.damping
+        return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
+
+
 @dataclass(frozen=True, eq=False)
-class Response:
+class Response(Dissipation):
     """The answer to a recorded motion of the base, in the machine's own units.
 
     Attributes
@@ -61,12 +75,6 @@ class Response:
     def bare_peak(self) -> float:
         """The same without absorber."""
         return float(np.abs(self.bare).max())
-
-    @property
-    def absorber_share(self) -> float:
-        """Share of what is dissipated that impacts and friction take."""
-        lost = self.impacts + self.friction + self.damping
-        return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
 
 
 def recorded(

@@ -10,6 +10,7 @@ import numpy as np
 
 from orbits.design.coupled_page import coupled_page
 from orbits.design.page_transients import page_transient
+from orbits.design.record import Dissipation
 from orbits.design.settling import settled
 from orbits.machines.base import ParameterError
 from orbits.machines.physical.machine import Physical
@@ -24,7 +25,7 @@ PER_PERIOD = 80  # samples
 
 
 @dataclass(frozen=True, eq=False)
-class StartUp:
+class StartUp(Dissipation):
     """The first periods of a machine; lengths in half-widths, times in 1/omega_0, energies in the machine's own unit.
 
     Attributes
@@ -49,12 +50,6 @@ class StartUp:
     damping: float
     settled: float
     bare_settled: float
-
-    @property
-    def absorber_share(self) -> float:
-        """Share of what is dissipated that impacts and friction take."""
-        lost = self.impacts + self.friction + self.damping
-        return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
 
 
 def start_up(

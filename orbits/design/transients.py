@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.design.record import Response, recorded
+from orbits.design.record import Dissipation, Response, recorded
 from orbits.machines.base import ParameterError
 from orbits.numbers import SMALLEST
 from orbits.settings import DESIGNING
@@ -25,7 +25,7 @@ LONGEST = 4000.0  # forcing periods of a free decay
 
 
 @dataclass(frozen=True, eq=False)
-class Decay:
+class Decay(Dissipation):
     """A free decay; energies are those of vibration (kinetic, and of the spring) over the first one, times in 1/omega_0.
 
     Attributes
@@ -49,12 +49,6 @@ class Decay:
     damping: float
     pumping_time: float
     bare_time: float
-
-    @property
-    def absorber_share(self) -> float:
-        """Share of what is dissipated that impacts and friction take."""
-        lost = self.impacts + self.friction + self.damping
-        return (self.impacts + self.friction) / lost if lost > 0.0 else math.nan
 
 
 def free_decay(model: Model, params: np.ndarray, displacement: float, lost: float = NINE_TENTHS) -> Decay:
