@@ -37,6 +37,10 @@ WORDS = {
 }
 NAME = re.compile(r"[A-Za-z_]\w*")
 ALLOWED = re.compile(r"^[\w\s.+\-*/(),]*$")
+DECLARED = re.compile(
+    r"(par\w*|p|number|num|init|i)\s+(?=[a-z_]\w*\s*=)"
+)  # words before name=value, no names themselves
+PASSED = re.compile(r"(aux|set|only)\s|[@\"]")
 PARAMETER = re.compile(r"([A-Za-z_]\w*)\s*=\s*([^,\s]+)")
 
 
@@ -89,19 +93,18 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
     for number, raw in enumerate(Path(path).read_text(encoding="utf-8").splitlines(), start=1):
         line = raw.split("#")[0].strip()
         low = line.lower()
-        if not line or low.startswith(("aux", "@", '"', "set ", "only ")):
+        if not line or PASSED.match(low):
             continue
         if low == "done":
             break
         where = f"{path}, line {number}: {raw.strip()!r}"
-        if low.startswith(("par", "number", "init", "i ", "p ", "num ")):
-            pairs = PARAMETER.findall(line.split(maxsplit=1)[1] if " " in line else "")
-            if not pairs:
-                raise ValueError(f"{where}: no name=value is there")
-            target = starts if low.startswith("i") else parameters
-            for name, value in pairs:
+        if declared := DECLARED.match(low):
+            target = starts if declared[1].startswith("i") else parameters
+            for name, value in PARAMETER.findall(line[declared.end() :]):
                 target[name.lower()] = _number(value, where)
             continue
+        if re.match(r"(par|number|init)\w*(\s|$)", low) and "=" not in low:
+            raise ValueError(f"{where}: no name=value is there")
         found = re.match(r"([a-z_]\w*)\s*'\s*=(.*)$|d([a-z_]\w*)/dt\s*=(.*)$", low)
         if found:
             name, text = (found[1], found[2]) if found[1] else (found[3], found[4])

@@ -39,6 +39,35 @@ def test_a_file_of_xpp(tmp_path):
     assert flow.attractor().period == pytest.approx(6.6632868593231301, abs=1e-8)
 
 
+def test_names_that_begin_like_words_of_xpp(tmp_path):
+    """``auxin`` is a state, ``partial`` and ``i`` are fixed quantities."""
+    lines = [
+        "par a=2 b = 0.5, c=1",
+        "p d=4",
+        "init auxin=1 set=2",
+        "partial=a*auxin",
+        "i = b + set",
+        "number e=3",
+    ]
+    rates = [
+        "auxin' = partial - i*c",
+        "dset/dt=d*auxin-e*set",
+        "initial'=-initial",
+        "aux power=partial",
+        "done",
+    ]
+    (tmp_path / "names.ode").write_text("\n".join([*lines, *rates]))
+    flow = read_ode(tmp_path / "names.ode")
+    assert flow.states == ("auxin", "set", "initial")
+    assert flow.values.values == {"a": 2.0, "b": 0.5, "c": 1.0, "d": 4.0, "e": 3.0}
+    assert flow.x0.tolist() == [1.0, 2.0, 0.0]
+    assert flow.field(np.array([[1.5, 0.5, 2.0]]), 2.0)[0].tolist() == [
+        2.0,
+        4.5,
+        -2.0,
+    ]  # 2 x 1.5 - (0.5 + 0.5), 4 x 1.5 - 3 x 0.5
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
