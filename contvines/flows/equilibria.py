@@ -11,6 +11,7 @@ from ..problems.algebraic import AlgebraicProblem
 from ..problems.functions import NotEvaluable, Operator
 from ..problems.protocol import Embedding, Seed, margin_of
 from . import mesh
+from .equilibrium import Equilibrium
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -119,6 +120,18 @@ class Equilibria(AlgebraicProblem):
 
     def _matrix(self, u: np.ndarray, p: float) -> np.ndarray | csc_array | Operator:
         return self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
+
+    def orbit(self, u: np.ndarray, p: float) -> Equilibrium:
+        """The equilibrium, with its eigenvalues."""
+        x, matrix = np.array(u, dtype=float)[: self.node], self._matrix(u, p)
+        values = np.zeros(0, dtype=complex)
+        if not isinstance(matrix, Operator):
+            full = matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
+            values = np.sort_complex(np.linalg.eigvals(full))[::-1]
+        states = dict(zip(self.flow.states, x.tolist(), strict=True))
+        return Equilibrium(
+            self.parameter, float(p), x, states, {**self.parameters, self.parameter: float(p)}, values
+        )
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex

@@ -51,6 +51,15 @@ def test_diagram_picture_and_orbit(study, monkeypatch, capsys):
     assert (study.parent / "diagram.png").stat().st_size > 1000
     assert not run(monkeypatch, "orbit", "study.vines", "B2:3", "--trust")
     assert "cycle of period 6.283  " in capsys.readouterr().out
+    assert not run(monkeypatch, "orbit", "study.vines", "B1:0", "--trust")
+    assert capsys.readouterr().out.split("\n")[:4] == [
+        "equilibrium  (stable)", "  x0 = 0  x1 = 0", "  m = -0.2", "  eigenvalues: -0.2 + 1i, -0.2 - 1i",
+    ]  # fmt: skip
+    assert not run(monkeypatch, "orbit", "study.toml", "--json")
+    assert json.loads(capsys.readouterr().out)["eigenvalues"] == [
+        [pytest.approx(-0.1), 1.0],
+        [pytest.approx(-0.1), -1.0],
+    ]
 
 
 def test_what_a_motion_settles_on(study, monkeypatch, capsys):

@@ -1,0 +1,62 @@
+"""Equilibrium: one equilibrium, as users hold it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from contvines.shared.number_text import complex_figures, figures
+
+from ..problems.protocol import Solution
+
+
+@dataclass(frozen=True)
+class Equilibrium(Solution):
+    """An equilibrium of a flow.
+
+    Attributes
+    ----------
+    parameter : str
+    value : float
+        Of the parameter.
+    u : ndarray, shape (d,)
+    states : dict of float
+        The same by name.
+    parameters : dict of float
+    eigenvalues : ndarray of complex
+        Of the Jacobian; none where it is not at hand as a matrix.
+    """
+
+    states: dict[str, float] = field(default_factory=dict)
+    parameters: dict[str, float] = field(default_factory=dict)
+    eigenvalues: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether all eigenvalues have negative real parts; None where they are not known."""
+        return bool((np.real(self.eigenvalues) < 0.0).all()) if self.eigenvalues.size else None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The equilibrium as JSON-able dict."""
+        return {
+            "parameter": self.parameter,
+            "value": self.value,
+            "u": self.u.tolist(),
+            "equilibrium": dict(self.states),
+            "stable": self.stable,
+            "parameters": dict(self.parameters),
+            "eigenvalues": [[float(m.real), float(m.imag)] for m in self.eigenvalues],
+        }
+
+    def __str__(self) -> str:
+        nature = {True: "  (stable)", False: "  (unstable)", None: ""}[self.stable]
+        lines = [
+            f"equilibrium{nature}",
+            "  " + "  ".join(f"{name} = {figures(x)}" for name, x in self.states.items()),
+            "  " + "  ".join(f"{name} = {value:.7g}" for name, value in self.parameters.items()),
+        ]
+        if self.eigenvalues.size:
+            lines.append(f"  eigenvalues: {complex_figures(self.eigenvalues)}")
+        return "\n".join(lines)
