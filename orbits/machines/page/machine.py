@@ -222,10 +222,11 @@ class Machine(Varying):
         return speed * self.equations.factors.get(self.phase_rate, 1.0)
 
     def sizes(self, params: np.ndarray) -> np.ndarray | None:
-        """Typical sizes of a node's entries, shape (n,): speeds of a forced machine in small units, such as mm/s, are numbers far above its lengths."""
+        """Typical sizes of a node's entries, shape (n,), of a forced machine: in small units lengths, and speeds even more, are large numbers."""
         if not self.forced:
             return None
-        found = self._units.speeds(self.states, float(self.phase_speed(params)))
+        named = dict(zip(self.parameter_names, params.tolist(), strict=True))
+        found = self._units.sizes(self.states, named, float(self.phase_speed(params)))
         return None if np.all(found == 1.0) else np.append(1.0, found)
 
     def check_value(self, name: str, value: float) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 OF_A_STATE = ("max", "min", "first", "strobe")
 """Measures that are values of a state."""
+LONGEST = 50.0  # typical sizes of a state
 
 
 Given = TypeVar("Given")
@@ -63,15 +64,24 @@ class Units:
         """A value, such as "1.2 mm", counted in the unit of its name; what is no text is a number in that unit already."""
         return counted(name, value, self.said.get(name, "")) if isinstance(value, str) else value
 
-    def speeds(self, states: Sequence[str], rate: float) -> np.ndarray:
-        """For each state that is a speed its number where the smallest unit of length is passed at a rate, at least 1; 1 for the others."""
-        known = [size(self.said[name], "m") for name in states if name in self.said]
-        length = min((one for one in known if one), default=None)
+    def sizes(self, states: Sequence[str], parameters: Mapping[str, float], rate: float) -> np.ndarray:
+        """Typical size of each state in its unit, at least 1; 1 of states that are neither lengths nor speeds.
+
+        No parameter is a length of more than `LONGEST` sizes, and a speed is that of passing a size at a rate (radians a second).
+        """
+        unit = {name: size(said, "m") for name, said in self.said.items()}
+        own = [unit[name] for name in states if unit.get(name)]
+        if not own:
+            return np.ones(len(states))
+        longest = max(
+            (abs(value) * (unit.get(name) or 0.0) for name, value in parameters.items()), default=0.0
+        )
+        length = max(min(one for one in own if one), longest / LONGEST)
         found = np.ones(len(states))
         for i, name in enumerate(states):
             speed = size(self.said[name], "m/s") if name in self.said else None
-            if length and speed:
-                found[i] = max(1.0, length * rate / speed)
+            if unit.get(name) or speed:
+                found[i] = max(1.0, length * rate / speed if speed else length / (unit[name] or 1.0))
         return found
 
     def check(self, e: Equations) -> None:

@@ -1,4 +1,4 @@
-"""A machine whose speeds are hundreds of mm/s has the branches of the same machine in m/s."""
+"""A machine has the same branches in every unit: its motions are thousands of micrometres, or thousandths of a metre."""
 
 import math
 
@@ -13,13 +13,13 @@ pytest.importorskip("pint")
 MASS, STIFFNESS, DAMPING, FORCE, GAP = 4.0, 16e3, 12.0, 40.0, 8e-3
 
 
-def machine(speed):
+def machine(length, speed):
     """A mass of 4 kg on a spring beside a wall at 8 mm, driven by 40 N."""
     return Machine(
         name="press",
         states=("x", "v"),
         parameters={"gap": "8 mm", "frequency": "9 Hz", "restitution": 0.6},
-        units={"x": "mm", "v": speed, "gap": "mm", "frequency": "Hz"},
+        units={"x": length, "v": speed, "gap": length, "frequency": "Hz"},
         phase_rate="frequency",
         motion=lambda state, phase, p, contact: (
             state.v,
@@ -34,9 +34,9 @@ def machine(speed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("speed", ["mm/s", "m/s"])
-def test_the_branch_ends_where_the_linear_response_reaches_the_wall(speed):
-    start = machine(speed).orbit("R", frequency=10.0)
+@pytest.mark.parametrize(("length", "speed"), [("m", "m/s"), ("mm", "mm/s"), ("mm", "m/s"), ("um", "um/s")])
+def test_the_branch_ends_where_the_linear_response_reaches_the_wall(length, speed):
+    start = machine(length, speed).orbit("R", frequency=10.0)
     graph = cv.diagram(start, over="frequency", within=(8.0, 11.5), depth=0)
     assert {name: point.kind for name, point in graph.special.items()} == {
         "WG1": "wall-graze",
@@ -50,4 +50,4 @@ def test_the_branch_ends_where_the_linear_response_reaches_the_wall(speed):
     half, rest = 1.0 - 2.0 * ratio**2, 1.0 - (FORCE / STIFFNESS / GAP) ** 2
     square = half - math.sqrt(half**2 - rest)
     assert graph["WG1"].value == pytest.approx(natural * math.sqrt(square) / (2.0 * math.pi), rel=1e-9)
-    assert not graph.unresolved and len(graph["B1"]) < 200
+    assert not graph.unresolved and len(graph["B1"]) < 500
