@@ -151,6 +151,7 @@ class PageEquations:
         ]
         self.trivial = len(self.loose) + len(stuck)
         self.still = () if symmetric else self._still(stuck)
+        self.anywhere = self._anywhere(stuck)
         self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
         self.n_margins = len(word.alphabet.columns) * self.length
         self.period_shift = np.zeros(self.dimension) if self.forced else None
@@ -174,6 +175,18 @@ class PageEquations:
             letter = Letter("", j, STICK)
             key = e.pattern_key(self.word.modes[0])
             found.append((places[-1], self.machine.compiled.event(letter, 0, key, (self.index,))))
+        return tuple(found)
+
+    def _anywhere(self, frictions: Sequence[int]) -> tuple[str, ...]:
+        """Names of the frictions that stick for ever where nothing says at which place: its rate is a velocity that is zero all along."""
+        e, names = self.machine.equations, self.machine.equations.layout.states
+        patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.modes)]
+        found = []
+        for j in frictions:
+            velocity = variables_of(e.velocity[j]) & set(names)
+            places = [k for k, name in enumerate(names) if k not in self.loose and name not in velocity]
+            if any(all(variables_of(pattern.rates[k]) == velocity for pattern in patterns) for k in places):
+                found.append(self.machine.contacts[j].name)
         return tuple(found)
 
     def _assign(self) -> None:
