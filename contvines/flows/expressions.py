@@ -44,20 +44,31 @@ PASSED = re.compile(r"(aux|set|only)\s|[@\"]")
 PARAMETER = re.compile(r"([A-Za-z_]\w*)\s*=\s*([^,\s]+)")
 
 
+def name_of(symbol: object) -> str:
+    """Of a symbol, or of a function of time that stands for a state, as x(t) of SymPy's mechanics."""
+    from sympy.core.function import AppliedUndef
+
+    return type(symbol).__name__ if isinstance(symbol, AppliedUndef) else str(symbol)
+
+
 def compiled_expressions(
     expressions: Sequence[object], states: Sequence[object], parameters: Sequence[str], time: object = None
 ) -> tuple[Callable, Callable]:
     """f and its Jacobian from SymPy expressions of states and parameters."""
     import sympy
 
-    symbols = [*states, *(sympy.Symbol(name) for name in parameters), *([] if time is None else [time])]
-    rates = sympy.Matrix([sympy.sympify(e) for e in expressions])
-    unknown = sorted(str(s) for s in rates.free_symbols if str(s) not in {str(t) for t in symbols})
+    # real symbols: the derivative of an absolute value is a sign
+    plain = {s: sympy.Symbol(name_of(s), real=True) for s in (*states, *([] if time is None else [time]))}
+    rates = sympy.Matrix([sympy.sympify(e) for e in expressions]).subs(plain)
+    rates = rates.subs({s: sympy.Symbol(str(s), real=True) for s in rates.free_symbols})
+    own = [
+        *(plain[s] for s in states),
+        *(sympy.Symbol(name, real=True) for name in parameters),
+        *([] if time is None else [plain[time]]),
+    ]
+    unknown = sorted(str(s) for s in rates.free_symbols - set(own))
     if unknown:
         raise ValueError(f"the expressions have {', '.join(unknown)}; give a value in params for each")
-    plain = {s: sympy.Symbol(str(s)) for s in rates.free_symbols | set(symbols)}
-    rates = rates.subs(plain)
-    own = [plain[s] for s in symbols]
     d = len(states)
     value = sympy.lambdify(own, list(rates), modules="numpy")
     slope = sympy.lambdify(own, rates.jacobian(own[:d]).tolist(), modules="numpy")

@@ -23,7 +23,7 @@ from .compiled import CompiledRates
 from .cycles import CycleProblem
 from .equilibria import Equilibria
 from .events import Events
-from .expressions import compiled_expressions
+from .expressions import compiled_expressions, name_of
 from .field import Field
 from .names import OF_STATES, checked_names
 from .newton import settled
@@ -195,7 +195,7 @@ class FlowProblem:
         ----------
         expressions : sequence of sympy expressions
             The rates of the states.
-        states : sequence of sympy symbols
+        states : sequence of sympy symbols, or functions of time as x(t)
         x0 : array_like
         params : mapping of str to float
             Values of all other symbols, by name.
@@ -210,7 +210,7 @@ class FlowProblem:
             If a symbol has no value.
         """
         f, jacobian = compiled_expressions(expressions, states, list(params), time)
-        return cls(f, x0, params, jacobian=jacobian, states=[str(state) for state in states], **options)
+        return cls(f, x0, params, jacobian=jacobian, states=[name_of(state) for state in states], **options)
 
     def _find_mirror(self) -> None:
         """Whether the mirror image of a forced motion is one at the same time, or half a period later.

@@ -31,6 +31,23 @@ def test_sympy_gives_what_python_gives():
         cv.FlowProblem.from_sympy([y, mu * y - x], [x, y], [1.0, 0.0], {"nu": 1.0})
 
 
+def test_functions_of_time_and_absolute_values_of_sympy():
+    """v' = -c |v| v - x cos t: its derivative by v is -2 c |v|."""
+    t, c = sympy.symbols("t c")
+    x, v = sympy.Function("x")(t), sympy.Function("v")(t)
+    flow = cv.FlowProblem.from_sympy(
+        [v, -c * sympy.Abs(v) * v - x * sympy.cos(t)],
+        [x, v],
+        [1.0, 0.5],
+        {"c": 0.3},
+        time=t,
+        period=2 * np.pi,
+    )
+    assert flow.states == ("x", "v")
+    slope = flow.field.jacobian(np.array([[0.2, -0.5]]), 0.3, np.array([1.2]))[0]
+    assert slope == pytest.approx(np.array([[0.0, 1.0], [-np.cos(1.2), -0.3]]), abs=1e-14)
+
+
 def test_a_file_of_xpp(tmp_path):
     (tmp_path / "vdp.ode").write_text(ODE)
     flow = read_ode(tmp_path / "vdp.ode")
