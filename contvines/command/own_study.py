@@ -183,6 +183,8 @@ def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
     over, (low, high) = file.continue_.parameter, file.continue_.within
     if over not in values and not low <= parameters[over] <= high:
         parameters[over] = 0.5 * (low + high)
+    if alone := refusal(over, machine.parameters[over]):
+        refuse([f"[model]{alone.removeprefix(':')}"])
     wrong = wrong_intervals(file, parameters[over], refusal)
     known = (*machine.states, "phase")
     for key in file.start.state or {}:

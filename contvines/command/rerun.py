@@ -62,7 +62,7 @@ def rerun(
     study, source = _study(file, kept.get("source"), trust)
     target = place_of(output, file, "-rerun.vines")
     command = source["command"]
-    if command == "atlas" and not isinstance(before, Chart):
+    if command == "atlas" and not isinstance(before, Chart) and "budget" in before.settings:
         study = study.with_budget(before.settings["budget"])  # it may have gone on with a larger one
     with held(target, quiet, fresh or _finished(target)):
         if isinstance(before, Chart):

@@ -64,9 +64,20 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
         plan = planned(said, study.survey.sampling, study.survey.samples, study.survey.seed)
         for name, values in {**plan.axes, **plan.samples}.items():
             check_range(study.tables, name, values.tolist(), f"[survey] vary.{name}")
+        if study.sort is Sort.PAGE:
+            for name, values in plan.axes.items():  # of samples, one that is impossible is a row that says so
+                for value in values.tolist() if name not in study.conditions else ():
+                    _check(model, name, value)
         return plan, model
     except ValueError as error:
         raise ValueError(f"{study.path}: {str(error).rstrip('.')}.") from None
+
+
+def _check(model: Varying, name: str, value: float) -> None:
+    try:
+        model.check_value(name, value)
+    except ValueError as error:
+        raise ValueError(f"[survey] vary.{name}: {error}") from None
 
 
 def names_of(study: Study) -> Iterable[str]:

@@ -12,6 +12,7 @@ from contvines.command.cli import app
 from contvines.command.recommend import _target
 from contvines.command.recommending import recommend
 from contvines.command.study import StudyError, check_study, read_study
+from contvines.command.survey_study import plan_and_machine
 
 PAGE = """
 from orbits import Machine, Wall
@@ -84,6 +85,33 @@ def test_refusals(study, line):
     with pytest.raises(StudyError) as refused:
         read_study(study)
     assert REFUSED[line] in str(refused.value)
+
+
+TWO = """
+units = "si"
+[model]
+name = "coupled_two"
+MODEL
+[continue]
+parameter = "frequency"
+within = ["7.5 Hz", "8.5 Hz"]
+[survey]
+vary.clearance_2 = ["8 mm", "10 mm"]
+"""
+IMPOSSIBLE = {
+    ("MODEL", 'clearance_1 = "-15 mm"'): "[model] clearance_1 = -15 mm is out of range: walls 'L1' and 'R1' leave no room",
+    ("MODEL", 'oscillator_mass = "0 kg"'): "[model] oscillator_mass = 0 kg is out of range: the mass that moves with q_rate",
+    ('"frequency"\nwithin = ["7.5 Hz", "8.5 Hz"]', '"friction_1"\nwithin = [-0.1, 0.5]'): "[continue] within = [-0.1, 0.5]: friction_1 = -0.1 is out of",
+    ('["8 mm"', '["-8 mm"'): "[survey] vary.clearance_2: clearance_2 = -8 mm is out of range: walls 'L2' and 'R2'",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("change", IMPOSSIBLE)
+def test_values_that_no_machine_has_are_refused_where_they_stand(study, change):
+    study.write_text(TWO.replace(*change).replace("MODEL", ""))
+    with pytest.raises(ValueError) as refused:
+        plan_and_machine(read_study(study))
+    assert IMPOSSIBLE[change] in str(refused.value)
 
 
 def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
