@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .curves import Curve
 
 RUNAWAY = 6.0  # a range so many times wider than where special points and most points lie is not shown whole
+UPRIGHT = 1e-6  # part of the width of a picture: a line that is narrower stands upright
 MOST = (4.0, 96.0)  # per cent: where most points lie
 
 
@@ -38,7 +39,7 @@ def frame(
     drawn = [v for curve in curves for _, ys in curve.strands() for v in ys[np.isfinite(ys)]]
     heights = [np.atleast_1d(np.asarray(line.get_ydata(), dtype=float)) for line in axes.lines]
     marks = [float(one[0]) for one in heights if len(one) == 1 and np.isfinite(one[0])]
-    limits = _without_runaways(np.array(drawn), np.array(marks))
+    limits = _without_runaways(np.array(drawn), np.array(marks), _leaning(curves, axes.get_xlim()))
     if limits is not None and axes.get_yscale() == "linear":
         axes.set_ylim(*limits)
 
@@ -73,14 +74,25 @@ def fit_height(axes: Axes) -> None:
     axes.set_ylim(*(limits or (low - pad, high + pad)))
 
 
-def _without_runaways(values: np.ndarray, marks: np.ndarray) -> tuple[float, float] | None:
-    """Narrower limits where a few points lie far from all others; None where all may be shown."""
+def _leaning(curves: list[Curve], limits: tuple[float, float]) -> np.ndarray:
+    """Heights along all branches but those that stand upright, as families of cycles at one value of the parameter, which have all amplitudes."""
+    strands = [strand for curve in curves for strand in curve.strands()]
+    least = UPRIGHT * abs(limits[1] - limits[0])
+    kept = [ys[np.isfinite(ys)] for xs, ys in strands if xs.size and np.nanmax(xs) - np.nanmin(xs) > least]
+    return np.concatenate([np.empty(0), *kept])
+
+
+def _without_runaways(
+    values: np.ndarray, marks: np.ndarray, most: np.ndarray | None = None
+) -> tuple[float, float] | None:
+    """Narrower limits where a few points, or those that are not among `most`, lie far from all others; None where all may be shown."""
     if values.size < 10:
         return None
-    inner = np.concatenate([np.percentile(values, MOST), marks])
+    typical = values if most is None or most.size < 10 else most
+    inner = np.concatenate([np.percentile(typical, MOST), marks])
     low, high = float(inner.min()), float(inner.max())
     room = high - low
     if not room > 0.0 or float(np.ptp(values)) <= RUNAWAY * room:
         return None
-    least, most = float(values.min()), float(values.max())
-    return max(low - 0.5 * room, least - 0.04 * room), min(high + 0.5 * room, most + 0.04 * room)
+    least, largest = float(values.min()), float(values.max())
+    return max(low - 0.5 * room, least - 0.04 * room), min(high + 0.5 * room, largest + 0.04 * room)

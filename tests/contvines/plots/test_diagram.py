@@ -4,6 +4,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
+import contvines as cv
 from contvines.plots import plot_diagram
 from contvines.plots.style import LINES
 from contvines.problems.protocol import ProblemDefaults
@@ -128,3 +129,12 @@ def test_two_graphs_on_the_same_axes(graph):
     colors = {line.get_color() for line in axes.lines if len(line.get_xdata()) > 1}
     assert len(colors) >= 6
     plt.close(figure)
+
+
+def test_a_family_of_cycles_at_one_value_does_not_set_the_height():
+    """Van der Pol: a linear oscillator at mu = 0, with cycles of all amplitudes; those at other values have an amplitude near 2."""
+    flow = cv.FlowProblem(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], [0.0, 0.0], {"mu": -0.5})
+    graph = cv.diagram(flow, over="mu", within=(-0.5, 1.0))
+    assert max(branch.measure("max x0").max() for branch in graph.branches.values()) > 50.0
+    low, high = graph.plot(y="max x0").axes[0].get_ylim()
+    assert -2.0 < low < 0.0 and 2.0 < high < 5.0
