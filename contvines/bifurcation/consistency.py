@@ -73,9 +73,9 @@ def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
     if not passed:
         return False
     first, last = ({plus + minus + 2 * pairs} for plus, minus, pairs in segment.counts)
-    near = segment.engine.settings.critical
-    ends = [segment.engine.spectrum(point.row) for point in (segment.a, segment.b)]
-    marginal = any(np.any(np.abs(np.abs(end) - 1.0) <= near) for end in ends)
+    marginal = any(
+        on_circle(segment.engine, point, segment.engine.settings.critical) for point in (segment.a, segment.b)
+    )
     outside = first
     for crossing in passed:
         if crossing is None:
@@ -108,6 +108,11 @@ def _others_outside(engine: Engine, event: Located) -> tuple[int, int, bool] | N
     if np.any(np.abs(others - 1.0) <= engine.settings.critical):
         return None
     return int(np.count_nonzero(others > 1.0)), own, bool(gaps[order[0]] <= engine.settings.critical)
+
+
+def on_circle(engine: Engine, point: Solved, within: float) -> bool:
+    """Whether a multiplier is so near to the circle that numbers past it tell nothing."""
+    return bool(np.any(np.abs(np.abs(engine.spectrum(point.row)) - 1.0) <= within))
 
 
 def at_one(engine: Engine, event: Located) -> bool:

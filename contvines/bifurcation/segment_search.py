@@ -11,7 +11,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..shared.floating_point import EPSILON, TINY
-from .consistency import at_one, unaccounted, unresolved
+from .consistency import at_one, on_circle, unaccounted, unresolved
 from .determinant import singular
 from .evidence import Evidence, evidence, parabola_dips
 from .first_border import find_border, first_zero, rounding
@@ -24,6 +24,7 @@ from .one_sided_limits import one_sided
 from .point_on_branch import PointOnBranch
 from .scan import spectra
 from .segment import Segment
+from .settings import LIMITS
 from .symmetry_test import SymmetryTest
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ class SegmentSearch:
         self.parts += depth > 0
         place, start = self._beside_infinity(segment)
         if start is not None:
-            rest = self.search(Segment(self.engine, start, segment.b), real, depth)
+            rest = self.search(Segment(self.engine, start, segment.b, segment.turns), real, depth)
             return [replace(e, position=place + (1.0 - place) * e.position) for e in rest]
         stop, before = self._stop(segment, real, depth)
         if before is not None:
@@ -94,7 +95,7 @@ class SegmentSearch:
         if depth < self.deepest and segment.length > shortest:
             if self.parts < settings.parts:
                 # where an event of a virtual orbit grazes the parameter may turn back, but no multiplier is +1
-                turns = segment.turns or any(e.kind == "fold" and at_one(self.engine, e) for e in found)
+                turns = any(e.kind == "fold" and at_one(self.engine, e) for e in found)
                 return self.both(segment, 0.5, middle, real, depth + 1, turns)
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]
@@ -167,7 +168,10 @@ class SegmentSearch:
             if not short > 0.0:
                 return borders, []
             if last is not None:
-                return borders, self.before(segment, short, last, real, depth + 1)
+                found = self.before(segment, short, last, real, depth + 1)
+                return borders, found + self._at_border(
+                    short, Segment(engine, last, borders[0].point), borders[0]
+                )
         events = self._meetings(segment)
         if events:
             # behind a meeting lies the image of what is before it, so that what was passed before it is passed again
@@ -179,6 +183,27 @@ class SegmentSearch:
             if last is not None:
                 return events, self.before(segment, short, last, real, depth)
         return [*events, *borders], None
+
+    def _at_border(self, short: float, end: Segment, border: Located) -> list[Located]:
+        """The special points between a border and the place close before it up to which others are looked for, where both tell of some."""
+        engine, (before, after) = self.engine, end.counts
+        if before == after or not end.length > engine.settings.resolution:
+            return []
+        if (
+            engine.detection != "map"
+            or engine.adaptive
+            or _unbounded(engine, end.b)
+            or _drowned(engine, end.b)
+        ):
+            return []  # of cycles on meshes multipliers jump by rounding
+        if on_circle(engine, end.b, LIMITS.agreeing):  # it is the border's
+            return []
+        found: list[Located] = []
+        for kind in self.kinds:
+            found = [*found, *self._of_kind(kind, end, found)]
+        middle = end.at(0.5) if unaccounted(end, found) else None
+        found = [e for e in found if not e.astray] + ([] if middle is None else [unresolved(end, middle)])
+        return [replace(e, position=short + (border.position - short) * e.position) for e in found]
 
     def _borders(self, segment: Segment, real: bool) -> tuple[list[Located], Solved | None]:
         border = find_border(segment, real)
@@ -326,13 +351,20 @@ class SegmentSearch:
         self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0, turns: bool = False
     ) -> list[Located]:
         """The special points of the first part of a segment."""
-        part = self.search(Segment(self.engine, segment.a, middle, turns), real, depth)
+        part = self.search(Segment(self.engine, segment.a, middle, turns or segment.turns), real, depth)
         return [replace(e, position=s * e.position) for e in part]
 
     def both(
         self, segment: Segment, s: float, middle: Solved, real: bool, depth: int = 0, turns: bool = False
     ) -> list[Located]:
-        """The special points of a segment from its two parts; `turns` where a fold has been found on it."""
+        """The special points of a segment from its two parts; `turns` where a fold has been found on it, or its inside tells of two."""
+        slopes = np.array([point.tangent[-1] for point in (segment.a, middle, segment.b)])
+        certain = np.abs(slopes).min() > self.engine.upright(middle.p)
+        turns = (
+            turns
+            or segment.turns
+            or bool(certain and slopes[0] * slopes[1] < 0.0 and slopes[1] * slopes[2] < 0.0)
+        )
         second = self.search(Segment(self.engine, middle, segment.b, turns), real, depth)
         return self.before(segment, s, middle, real, depth, turns) + [
             replace(e, position=s + (1.0 - s) * e.position) for e in second
@@ -346,3 +378,8 @@ def _drowned(engine: Engine, point: Solved) -> bool:
     sizes = np.sort(np.abs(engine.spectrum(point.row)))
     near = np.abs(sizes[:-1] - 1.0).min(initial=np.inf) <= EPSILON * sizes.max(initial=0.0)
     return bool(near or not np.isfinite(sizes).all())
+
+
+def _unbounded(engine: Engine, point: Solved) -> bool:
+    """Whether a multiplier grows without bound towards a point: nothing tells on which side."""
+    return bool(np.abs(engine.spectrum(point.row)).max(initial=0.0) >= LIMITS.unbounded)

@@ -8,6 +8,7 @@ function of its own, so that an even number of branches at once is seen, too.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -41,9 +42,9 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
             # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
                 place = Located.at(root, "branch-point", astray=_astray(segment, root))
-                points.append(
-                    place if place.astray or _may_pass(segment, root) else unresolved(segment, root.point)
-                )
+                if not (place.astray or _may_pass(segment, root)):
+                    place = replace(unresolved(segment, root.point), kind="branch-point")
+                points.append(place)
     return points
 
 

@@ -30,3 +30,55 @@ def test_as_many_folds_as_the_direction_changes():
     problem = Spectrum(1728)
     folds = sorted(fold.u[0] for fold in problem.graph().of_kind("fold"))
     assert folds == pytest.approx(list(problem.folds), abs=1e-6 * problem.size)
+
+
+class Bordered(Spectrum):
+    """One whose branch ends within its cluster, at a place in units of the cluster's size."""
+
+    n_margins = 1
+
+    def __init__(self, seed, edge):
+        super().__init__(seed)
+        self.edge = self.size * edge
+
+    @staticmethod
+    def _inspect(data, u, p, work, row):
+        Spectrum._inspect(data, u, p, work, row)
+        row[4] = data.edge - u[0]
+
+    def margin_kind(self, j):
+        return "velocity-graze"
+
+    def places(self):
+        return [place for place in super().places() if place.u < self.edge]
+
+
+@pytest.mark.parametrize(("seed", "edge"), [(278, 0.6043194360076303), (304, 2.770818128156563)])
+def test_as_many_folds_as_the_direction_changes_before_a_border(seed, edge):
+    # the parameter turns by less than rounding between the second fold and the border
+    said, _ = Bordered(seed, edge).wrong()
+    assert not said
+
+
+class BesideBorder(Spectrum):
+    """p = u with the multiplier -1 at a place, in front of a border at u = 0."""
+
+    n_margins = 1
+
+    def __init__(self, place):
+        super().__init__(0)
+        self.place, self.folds, self.doublings, self.edge = place, [], [place], 0.0
+        self.heights, self.widths = [2.0, 1.0], [0.5, 0.5]
+        self.slope, self.value = self.slope.__class__([1.0]), self.slope.__class__([0.0, 1.0])
+        self.p0 = float(self.u0[0])
+
+    _inspect, margin_kind, places = staticmethod(Bordered._inspect), Bordered.margin_kind, Bordered.places
+
+
+@pytest.mark.parametrize("place", [-8e-7, -3e-7, -1.5e-7])
+def test_a_doubling_close_before_a_border(place):
+    """Between the border and the place close before it from which one-sided limits are taken."""
+    graph = BesideBorder(place).graph()
+    (doubling,) = graph.of_kind("period-doubling")
+    assert doubling.u[0] == pytest.approx(place, abs=1e-12)
+    assert not graph.unresolved

@@ -246,3 +246,9 @@ def test_a_doubling_within_rounding_of_a_fold_is_said_to_be_unresolved(fold):
     doublings = [p.value for p in graph.of_kind("period-doubling") if p.branch == point.branch]
     told = [0.5 * (u.low + u.high) for u in graph.unresolved if u.branch == point.branch]
     assert min(abs(x - fold) for x in doublings + told) < 1e-10
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("absorber", 2), ("level", 13)])
+def test_a_sign_of_rounding_beside_where_a_branch_begins_is_nothing_unresolved(kind, seed):
+    """A virtual stick-slip motion, all of whose multipliers are zero, begins at a stick: the parameter is stationary there to rounding."""
+    assert not diagram(kind, seed, 60611).unresolved
