@@ -29,10 +29,10 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
     for i in sorted(special):
         if i + 1 not in special or not (i in events or i + 1 in events):
             continue
-        ends = (
+        one, other = (
             Solved(u, p, tangent, np.zeros(0), 0.0, 0.0, 0.0) for u, p, tangent in map(half.at, (i, i + 1))
         )
-        segment = Segment(engine, *ends)
+        segment = Segment(engine, one, other)
         narrow = a_sliver(kinds.get(i, BEGINNING), kinds.get(i + 1, BEGINNING))
         if not segment.length > (engine.settings.sliver if narrow else engine.settings.one_place):
             continue
