@@ -28,9 +28,9 @@ vanishing Hurwitz determinant, a multiplier -1, a product of multipliers 1). The
 1e-15 (the largest difference as a part of the interval, when the page was made, stands in the table); a test says so. That there are
 no more was asked by Newton's method for the same equations from 150 random starts for each kind (cycles of length one, up to six unknowns). Cycles are followed to twice or four times their length only.
 
-Printed is what the source prints; a closed form is what its equations say by hand. None printed: the sources print no value, for the first five digits
-of every value were looked for in the repositories of AUTO-07p (manual, demos and log of its test), PyDSTool, BifurcationKit and its documentation (as written
-and as rendered), MatContM and cl_matcontL, and nothing was found. These demos show their values when they are run, or as pictures, or are those of a textbook.
+Printed is what the source prints; a closed form is what its equations say by hand. *None printed*: the sources print no value. The first five digits
+of every value were looked for, without result, in the repositories of AUTO-07p (manual, demos and log of its test), PyDSTool, BifurcationKit and its documentation (as written
+and as rendered), MatContM and cl_matcontL. These demos show their values when they are run, or as pictures, or are those of a textbook.
 The manuals and tutorials of MatCont, MatContM and COCO are no repositories, and were not available whole.
 
 In other units: the same demos with u, p and the rows of F times 1e9 or 1e-9, in {sets} sets of units that nothing is said about
