@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..shared.modulation import MODULATIONS
@@ -28,6 +29,18 @@ def short_word(word: str, limit: int = 24) -> str:
         cut = root[: limit - 8]
         root = f"{cut[: cut.rfind(joint)] if joint else cut}... {events} events"
     return f"({root}){power}" if power else root
+
+
+def told_apart(words: Iterable[str], limit: int = 24) -> dict[str, str]:
+    """Short forms of words by word: those of different words differ, and are longer where they have to be."""
+    limits = dict.fromkeys(words, limit)
+    while True:
+        short = {word: short_word(word, most) for word, most in limits.items()}
+        times = Counter(short.values())
+        alike = [word for word, most in limits.items() if times[short[word]] > 1 and most < len(word)]
+        if not alike:
+            return short
+        limits.update((word, 2 * limits[word]) for word in alike)
 
 
 def short_text(text: str, limit: int = 100) -> str:

@@ -11,7 +11,7 @@ from ..shared.number_text import PART, figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .graph import Graph
 from .measures import default_measure
-from .shortening import motion_name
+from .shortening import told_apart
 from .stretches import at_points, gaps, stretches
 from .table import attractors_table, simulated, with_unit
 
@@ -36,10 +36,12 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     met: dict[tuple[str, str], list[Any]] = {}
     for part in stretches(graph):
         about = part.branch.description
-        met.setdefault((motion_name(about), _kind(about)), []).append(part)
+        name = str(about.get("word") or about.get("name", ""))
+        met.setdefault((name, _kind(about)), []).append(part)
     length = graph.within[1] - graph.within[0]
     found = sorted(((_length(parts), key, parts) for key, parts in met.items()), key=lambda row: -row[0])
     listed = [row for row in found if row[0] >= PART * length][:MOST] or found[:MOST]
+    short = told_apart(word for _, (word, _), _ in listed)
     rows, ends_of = [], [_united(parts) for _, _, parts in listed]
     number = figures_in(graph.within, [end for ends in ends_of for interval in ends for end in interval])
     for (_, (word, kind), parts), stable in zip(listed, ends_of):
@@ -47,7 +49,7 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
         ends = [f"{number(a)}..{number(b)}" for a, b in stable]
         rows.append(
             (
-                word,
+                short[word],
                 kind,
                 ", ".join(ends[:3]) + (f" and {len(ends) - 3} more" if len(ends) > 3 else ""),
                 f"{figures(top.response)} at {number(top.value)}" if np.isfinite(top.response) else "-",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from ..continuation.settings import hinting
-from ..graph.shortening import short_word
+from ..graph.shortening import told_apart
 from .basins import COLORS
 from .diagram import draw_diagram
 from .figures import Size, Style, freeze, given_axes, new_figure, settle, styled, thin_ticks
@@ -112,6 +112,7 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
         names[key] = names.get(key, 0.0) + about.share
     shown = sorted(names, key=lambda key: -names[key])[:most]
     order = [key for key in names if key in shown]
+    short = told_apart([name for name, _ in order], 14)
     bottoms = np.zeros(len(edges) - 1)
     for k, key in enumerate([*order, None]):
         heights = np.zeros(len(edges) - 1)
@@ -122,7 +123,7 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
                 heights[group[i]] += about.share * weights[i]
         if not heights.any():
             continue
-        name = "others" if key is None else short_word(key[0], 14)
+        name = "others" if key is None else short[key[0]]
         if key is not None and sum(key[0] == other for other, _ in order) > 1:
             name = f"{name}, k={key[1]}"
         color, hatch = ("0.8", None) if key is None else (COLORS[k % len(COLORS)], HATCHES[k % len(HATCHES)])

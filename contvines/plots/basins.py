@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..continuation.settings import hinting
-from ..graph.shortening import short_word
+from ..graph.shortening import told_apart
 from ..shared.number_text import figures
 from .figures import LOW, Size, Style, drawing
 from .legends import place_legend
@@ -82,7 +82,7 @@ def plot_basins(
                 if 0.0 < about.mirror_share < about.share:
                     entries.append(Patch(color=light[k], label=f"{name}, mirror image"))
             if basins.manifolds:
-                words = list(dict.fromkeys(short_word(curve.word, 20) for curve in basins.manifolds))
+                words = list(told_apart((curve.word for curve in basins.manifolds), 20).values())
                 few, left = ", ".join(words[:NAMED]), len(words) - NAMED
                 label = f"manifolds of {few}" + (f"\nand {left} more" if left > 0 else "")
                 entries.append(Line2D([], [], color="black", linewidth=0.8, label=label))

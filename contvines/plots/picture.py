@@ -13,7 +13,7 @@ from ..bifurcation.kinds import BY_NAME
 from ..graph.measures import measure_at, measured, undrawn
 from ..graph.proving import mark as proof_of
 from ..graph.proving import stretches
-from ..graph.shortening import motion_name, short_word
+from ..graph.shortening import motion_name, told_apart
 from .curves import Curve
 from .figures import pixels, root
 from .insets import Region, add_inset, crowded_region, find_room, outlines
@@ -82,7 +82,7 @@ class Picture:
             tint = colors[i % len(colors)]
             if self.color == "word":
                 word = str(branch.description.get("word") or branch.description.get("name", ""))
-                tint = words.setdefault(short_word(word, 24), colors[len(words) % len(colors)])
+                tint = words.setdefault(word, colors[len(words) % len(colors)])
             self.tint[branch.label] = tint
             xs, ys = (measured(branch, name) for name in (self.x, self.y))  # or refused in a sentence
             for first, last, stable in branch.pieces():
@@ -100,7 +100,8 @@ class Picture:
                 self.axes.plot(xs[points], ys[points], **band)
                 self.key.proved = True
         if self.color == "word":
-            self.key.colors |= words
+            short = told_apart(words)
+            self.key.colors |= {short[word]: tint for word, tint in words.items()}
 
     def draw_points(self, ends: bool, kinds: Collection[str] | None = None) -> None:
         """Marks of the special points, all or those of some kinds."""

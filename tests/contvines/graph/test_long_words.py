@@ -2,7 +2,7 @@
 
 import pytest
 
-from contvines.graph.shortening import short_word
+from contvines.graph.shortening import short_word, told_apart
 
 SHORT = {
     "LtRLttR" * 8: "(LtRLttR)^8",
@@ -17,3 +17,10 @@ SHORT = {
 @pytest.mark.parametrize("word", SHORT)
 def test_what_a_long_word_becomes(word):
     assert short_word(word) == SHORT[word]
+
+
+def test_different_words_have_different_short_forms():
+    words = ["L1 t2 t2 R1 R2 L2", "L1 t2 L2 R2 R1 L2", "LR", "LR"]
+    short = told_apart(words, 14)
+    assert list(short) == words[:3] and len(set(short.values())) == 3
+    assert short["LR"] == "LR"
