@@ -118,11 +118,11 @@ def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | No
         )
     if len(u) != engine.n or not np.all(np.isfinite(u)):
         raise ValueError(f"the start must be {engine.n} finite numbers, not {u}")
-    _refuse_stuck(engine.problem, p)
     found = engine.start(u, p, tangent)
     if found is None:
         residual = engine.residual(u, p)
-        _refuse_stuck(engine.problem, p)
+        if stuck := getattr(engine.problem, "stuck", ""):
+            raise ValueError(f"from the start at {name} = {p:.10g} no step can be made: {stuck}")
         why = f"does not converge (its residual is {residual:.3g})"
         if residual < SOLUTION.solved:
             why = "is a solution, but where the derivatives of the equations vanish or are singular, in the parameter, too"
@@ -133,12 +133,6 @@ def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | No
             f"the start at {name} = {p:.10g} {why}; give a better guess or another parameter value"
         )
     return found
-
-
-def _refuse_stuck(problem: Problem, p: float) -> None:
-    """Raise ValueError if the problem says why no step can be made."""
-    if stuck := getattr(problem, "stuck", ""):
-        raise ValueError(f"from the start at {problem.parameter} = {p:.10g} no step can be made: {stuck}")
 
 
 def start_remark(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
