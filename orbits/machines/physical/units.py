@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from contvines.shared.extras import pip_install
@@ -57,11 +55,9 @@ def registry() -> Any:
         raise QuantityError(
             f"quantities with units are read by pint, which is not installed: {pip_install('units')}"
         ) from None
-    from platformdirs import user_cache_dir
-
-    # what pint keeps names the files of one installation: another one cannot read them when the first is deleted
-    home = hashlib.sha256(str(pint.__file__).encode()).hexdigest()[:16]
-    return pint.UnitRegistry(cache_folder=Path(user_cache_dir("contvines")) / f"pint-{home}")
+    # nothing is kept on disk: pint's cache is read half written where two processes begin at once, and names the
+    # files of one installation
+    return pint.UnitRegistry()
 
 
 @cache
