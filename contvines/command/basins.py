@@ -3,19 +3,9 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from contvines.command.amounts import inside
-from contvines.command.frame import (
-    JsonOption,
-    PlotOption,
-    SizeOption,
-    StudyArgument,
-    check_plot,
-    draw,
-    load_file,
-    tell,
-)
+from contvines.command.frame import draw, load_file, tell
+from contvines.command.options import JsonOption, PlotOption, SizeOption, StudyArgument, option
 
 if TYPE_CHECKING:
     pass
@@ -23,26 +13,18 @@ if TYPE_CHECKING:
 
 def basins(
     study: StudyArgument,
-    at: Annotated[str, typer.Option("--at", metavar="VALUE", help="Value of the study's parameter.")],
+    at: Annotated[str, option("--at VALUE", "Value of the study's parameter.")],
     plane: Annotated[
         tuple[str, str] | None,
-        typer.Option(
-            "--plane",
-            metavar="X Y",
-            help="Two states that vary; by default the first position and its rate.",
-        ),
+        option("--plane X Y", "Two states that vary; by default the first position and its rate."),
     ] = None,
     points: Annotated[
         int | None,
-        typer.Option("--points", help="Starts per axis; by default 200, for declared machines 60."),
+        option("--points", "Starts per axis; by default 200, for declared machines 60."),
     ] = None,
     saddles: Annotated[
         Path | None,
-        typer.Option(
-            "--saddles",
-            metavar="FILE.vines",
-            help="Also draw the stable manifolds of this graph's unstable motions.",
-        ),
+        option("--saddles FILE.vines", "Also draw the stable manifolds of this graph's unstable motions."),
     ] = None,
     plot: PlotOption = None,
     size: SizeOption = None,
@@ -53,7 +35,6 @@ def basins(
     from contvines.command.compose import population
     from contvines.command.study import read_study
 
-    check_plot(plot, size)
     asked = read_study(study)
     starts = population(asked)
     units = getattr(starts, "units", {})

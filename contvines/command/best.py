@@ -2,34 +2,68 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
 import typer
 
 from contvines.command.frame import draw, tell
 from contvines.command.study_data import Sort, Study
+from contvines.command.survey_study import (
+    family_of,
+    options_of,
+    outcomes_of,
+    plan_and_machine,
+    units_of,
+    ways_of,
+)
 from contvines.shared.number_text import figures
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from contvines.flows.problem import FlowProblem
+    from contvines.survey import Survey
     from orbits.design import Choice
-
-    from ..survey import Survey
+    from orbits.machines.varying import Varying
 
 LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
-WORST = ("worst-case", "worst", "robust")
+FILLING = ("worst-case", "worst", "robust", "%", "quantile", "of")  # words that say nothing more
+NUMBER = re.compile(r"\d+(\.\d+)?")
 PEAKS = ("peak", "lower_peak")  # outcomes that the oscillator alone, and a tuned absorber, have too
 ALONE = ("bare", "tuned")  # what is told beside them
+BESIDE = {
+    "peak": ("peak_at",),
+    "lower_peak": ("lower_peak_at",),
+    "activation": ("activation_from_below", "activation_from_above"),
+    "dissipation": ("impact_power", "friction_power"),
+    "pumping": ("pumping_time", "pumped_share"),
+}
+"""Outcome -> the columns that it has beside, or instead of, its own."""
 FORM = 'for example "lowest worst-case peak", "largest stable_LR" or "lowest 95 % peak"'
 
 
-def read_wish(text: str) -> tuple[bool, float | None, str]:
-    """Whether the largest is wanted, which quantile over the samples (None: the worst), and of which outcome.
+class Wish(NamedTuple):
+    """Whether the largest is wanted, which quantile over the samples (None: the worst), and of which outcome."""
+
+    largest: bool
+    quantile: float | None
+    outcome: str
+
+    @property
+    def over(self) -> str:
+        """What counts of the samples, in words."""
+        return "at worst" if self.quantile is None else f"{100.0 * self.quantile:g} %"
+
+
+def read_wish(text: str) -> Wish:
+    """What ``--best`` says.
 
     Raises
     ------
@@ -40,10 +74,8 @@ def read_wish(text: str) -> tuple[bool, float | None, str]:
     if len(words) < 2 or words[0] not in LOW + HIGH:
         raise ValueError(f"--best {text!r} cannot be read; {FORM}.")
     rest, quantile = words[1:], None
-    while (rest and rest[0] in (*WORST, "%", "quantile", "of")) or (
-        rest and re.fullmatch(r"\d+(\.\d+)?", rest[0])
-    ):
-        if re.fullmatch(r"\d+(\.\d+)?", rest[0]):
+    while rest and ((number := NUMBER.fullmatch(rest[0])) or rest[0] in FILLING):
+        if number:
             quantile = float(rest[0]) / 100.0
             if not 0.0 < quantile <= 1.0:
                 raise ValueError(
@@ -52,56 +84,61 @@ def read_wish(text: str) -> tuple[bool, float | None, str]:
         rest = rest[1:]
     if len(rest) != 1:
         raise ValueError(f"--best {text!r} names {'no' if not rest else 'more than one'} outcome; {FORM}.")
-    return words[0] in HIGH, quantile, rest[0]
+    return Wish(words[0] in HIGH, quantile, rest[0])
 
 
-def choose(
-    study: Study,
-    text: str,
-    over: list[str],
-    covered: float | None,
-    target: Path,
-    workers: int | None,
-    cluster: str | None,
-    plot: Path | None,
-    json_: bool,
-    fresh: bool,
-    quiet: bool,
-) -> None:
-    """Survey, choose, refine, and print the other outcomes."""
-    import dataclasses
+def check_over(study: Study, over: list[str]) -> None:
+    """Refuse parameters to choose that are not those on a grid, or too many.
 
-    from contvines.command.compare import compared_text, peaks_compared
-    from contvines.command.survey_study import (
-        family_of,
-        options_of,
-        outcomes_of,
-        plan_and_machine,
-        units_of,
-        ways_of,
-    )
-    from contvines.command.surveying import surveyed
-    from contvines.survey.outcomes import KNOWN, OF_ALL
+    Raises
+    ------
+    ValueError
+    """
+    axes = list(plan_and_machine(study)[0].axes)
+    if over and sorted(over) != sorted(axes):
+        raise ValueError(
+            f"--over {' '.join(over)}: [survey] vary has {', '.join(axes) or 'nothing'} on a grid, and each of it is chosen; "
+            "what is uncertain is sampled (uniform, normal)."
+        )
+    if len(axes) > 2:
+        raise ValueError(f"--over {' '.join(axes)}: one or two parameters can be chosen at a time.")
+
+
+def asking(study: Study, outcome: str) -> Study:
+    """The study, with the outcome among those that its survey has."""
+    said = study.survey.outcomes
+    if outcome.partition(":")[0] in ("stable", "first", "share") or outcome in said:
+        return study
+    prefixes = tuple(one.replace(":", "_") for one in said if ":" in one)
+    if outcome.startswith(prefixes) or any(outcome in BESIDE.get(one, ()) for one in said):
+        return study
+    return replace(study, survey=study.survey.model_copy(update={"outcomes": [*said, outcome]}))
+
+
+def choose(study: Study, text: str, least: float, found: Survey) -> tuple[Choice, Varying | FlowProblem]:
+    """The best point of a survey, refined, and the machine that it makes.
+
+    Parameters
+    ----------
+    study : Study
+    text : str
+        What ``--best`` says.
+    least : float
+        Share of the interval in which the response must be known.
+    found : Survey
+        That of the study.
+
+    Raises
+    ------
+    ValueError
+        If the outcome is not known of any machine.
+    """
+    from contvines.survey.outcomes import OF_ALL
     from contvines.survey.work import Job, work
     from orbits.design import best
 
-    largest, quantile, outcome = read_wish(text)
-    least = KNOWN if covered is None else covered
     plan, model = plan_and_machine(study)
-    over = over or list(plan.axes)
-    if sorted(over) != sorted(plan.axes):
-        raise ValueError(
-            f"--over {' '.join(over)}: [survey] vary has {', '.join(plan.axes) or 'nothing'} on a grid, and each of it is chosen; "
-            "what is uncertain is sampled (uniform, normal)."
-        )
-    if len(over) > 2:
-        raise ValueError(f"--over {' '.join(over)}: one or two parameters can be chosen at a time.")
-    if outcome.partition(":")[0] not in ("stable", "first", "share") and outcome not in study.survey.outcomes:
-        known = {"peak_at": "peak", "lower_peak_at": "lower_peak"}
-        if known.get(outcome, outcome) not in study.survey.outcomes and not _comes(outcome, study):
-            survey = study.survey.model_copy(update={"outcomes": [*study.survey.outcomes, outcome]})
-            study = dataclasses.replace(study, survey=survey)
-    found = surveyed(study, target, workers, cluster, fresh, quiet)
+    largest, quantile, outcome = wish = read_wish(text)
     if outcome not in found.columns:
         raise ValueError(
             f"--best {text!r}: the survey has no outcome {outcome}; it has {', '.join(found.columns) or 'none'}."
@@ -117,141 +154,101 @@ def choose(
         unknown = outcome in OF_ALL and not row.columns["covered"] >= least
         return {**row.columns, outcome: math.nan} if unknown else row.columns
 
-    drawn = [{}]
-    if plan.samples:
-        drawn = [{name: float(v[i]) for name, v in plan.samples.items()} for i in range(plan.shape[-1])]
-    known = _known(found, outcome, largest, quantile, least)
-    if not any(math.isfinite(number) for _, number in known):
+    heights = found.judged(outcome, largest, quantile, least).ravel()
+    if not np.isfinite(heights).any():
         why = next((str(note) for note in found.notes.ravel() if note), "no machine has a number for it")
         raise ValueError(
             f"--best {text!r}: {outcome} is not known of any machine{' with all its samples' if plan.samples else ''} ({why}); "
-            f"more depth in [continue], or atlas = true in [survey], finds more motions{_in_part(found, outcome, largest, quantile)}."
+            f"more depth in [continue], or atlas = true in [survey], finds more motions{_in_part(found, wish)}."
         )
-    limits = {name: (float(plan.axes[name][0]), float(plan.axes[name][-1])) for name in plan.axes}
+    points = [dict(zip(plan.axes, map(float, point))) for point in itertools.product(*plan.axes.values())]
+    drawn = [dict(zip(plan.samples, map(float, row))) for row in zip(*plan.samples.values())] or [{}]
     choice = best(
-        evaluate, outcome, limits, largest=largest, tolerances=drawn, quantile=quantile, known=known
-    )
+        evaluate, outcome, {name: (float(values[0]), float(values[-1])) for name, values in plan.axes.items()},
+        largest=largest, tolerances=drawn, quantile=quantile, known=list(zip(points, map(float, heights))),
+    )  # fmt: skip
+    return choice, model
+
+
+def tell_choice(
+    study: Study, text: str, least: float, found: Survey, json_: bool, quiet: bool, plot: Path | None
+) -> None:
+    """Print and draw the choice beside its other outcomes."""
+    from contvines.command.compare import compared_text, peaks_compared
+
+    wish = read_wish(text)
+    outcome = wish.outcome
+    choice, model = choose(study, text, least, found)
     units = units_of(study, model)
     alone = outcome in PEAKS and study.sort is Sort.PHYSICAL and "damping" in model.parameter_names
-    chosen = model.with_(**choice.values) if alone else model
+    asked = (model.with_(**choice.values) if alone else model, study.parameter, study.within, ALONE)
     if json_:
-        names = {*choice.values, *choice.others, outcome}
-        said = {name: unit for name, unit in units.items() if name in names}
-        about = {
-            "best": choice.values,
-            outcome: choice.outcome,
-            "others": choice.others,
-            **({"compared": peaks_compared(chosen, study.parameter, study.within, ALONE)} if alone else {}),
-            **({"units": said} if said else {}),
-        }
+        about = {"best": choice.values, outcome: choice.outcome, "others": choice.others}
+        if alone:
+            about["compared"] = peaks_compared(*asked)
+        named = {*choice.values, outcome, *choice.others}
+        if said := {name: unit for name, unit in units.items() if name in named}:
+            about["units"] = said
         tell(choice, about)
     elif not quiet:
-        typer.echo(
-            fitted(_choice_text(choice, outcome, found, units, _wish(largest, quantile, len(drawn)), least))
-        )
+        typer.echo(fitted(_choice_text(choice, wish, found, units, least)))
         if alone:
-            typer.echo(fitted(compared_text(chosen, study.parameter, study.within, ALONE)))
-    if plot is not None:
-        figure = found.plot(outcome)
-        _draw(figure, choice, list(plan.axes), "at worst" if quantile is None else f"{100.0 * quantile:g} %")
-        draw(plot, lambda: figure, quiet)
+            typer.echo(fitted(compared_text(*asked)))
+    draw(plot, lambda: _picture(found, choice, wish), quiet)
 
 
-def _comes(outcome: str, study: Study) -> bool:
-    """Whether an outcome of the study has this column beside its own name."""
-    belongs = {"activation": ("activation_from_below", "activation_from_above"), "dissipation": ("impact_power", "friction_power"), "pumping": ("pumping_time", "pumped_share")}  # fmt: skip
-    prefix = [said.replace(":", "_") for said in study.survey.outcomes if ":" in said]
-    return any(outcome in belongs.get(said, ()) for said in study.survey.outcomes) or any(
-        outcome.startswith(start) for start in prefix
-    )
-
-
-def _known(
-    found: Survey, outcome: str, largest: bool, quantile: float | None, covered: float
-) -> list[tuple[dict[str, float], float]]:
-    """The survey's points and their outcomes over the samples; no number where one of these is not known."""
-    import itertools
-
-    import numpy as np
-
-    value = found.known(outcome, covered) * (-1.0 if largest else 1.0)
-    if found.plan.samples:
-        value = value.max(axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)
-    points = itertools.product(*found.plan.axes.values())
-    flat = value.ravel() * (-1.0 if largest else 1.0)
-    return [(dict(zip(found.plan.axes, map(float, point))), float(v)) for point, v in zip(points, flat)]
-
-
-def _in_part(found: Survey, outcome: str, largest: bool, quantile: float | None) -> str:
+def _in_part(found: Survey, wish: Wish) -> str:
     """What would be chosen if the machines that are known best counted as known; empty where nothing is known."""
-    import numpy as np
-
     share = found["covered"].min(axis=-1) if found.plan.samples else found["covered"]
     if not np.isfinite(share).any():
         return ""
     least = math.floor(1000.0 * float(np.nanmedian(share))) / 1000.0
     try:
-        point, number = found.best(outcome, largest, quantile, least)
+        point, number = found.best(wish.outcome, wish.largest, wish.quantile, least)
     except ValueError:
         return ""
     place = ", ".join(f"{name} = {figures(value)}" for name, value in point.items())
     return f"; with --covered {least:g}, which takes what is known of the better half, it is {figures(number)} at {place}"
 
 
-def _wish(largest: bool, quantile: float | None, samples: int) -> str:
-    """What was looked for, in words."""
-    which = "largest" if largest else "lowest"
-    if samples == 1:
-        return f"the {which} that was found"
-    over = "at worst" if quantile is None else f"in {100.0 * quantile:g} % of the cases"
-    return f"{over} over {samples} samples, the {which} that was found"
-
-
-def _draw(figure: Figure, choice: Choice, names: list[str], over: str) -> None:
-    """Mark the choice in the survey's picture, and what was tried on the way to it."""
-    axes = figure.axes[0]
-    red = "#b5121b"
-    if len(names) == 1:
-        tried = sorted((values[names[0]], outcome) for values, outcome in choice.tried)
-        axes.plot(*zip(*tried), ".", color=red, label=f"tried, {over}")
-    else:
-        axes.plot(*zip(*([values[name] for name in names] for values, _ in choice.tried)), ".", color=red, label="tried")  # fmt: skip
-    place = [choice.values[name] for name in names]
-    axes.plot(
-        place[0],
-        place[1] if len(place) == 2 else choice.outcome,
-        "*",
-        color=red,
-        markersize=14,
-        markeredgecolor="white",
-        label="chosen",
-    )
+def _picture(found: Survey, choice: Choice, wish: Wish) -> Figure:
+    """The survey with the choice marked in it, and what was tried on the way to it."""
+    figure, names = found.plot(wish.outcome), list(found.plan.axes)
+    axes, red = figure.axes[0], "#b5121b"
+    places = [(*(values[name] for name in names), outcome)[:2] for values, outcome in choice.tried]
+    label = f"tried, {wish.over}" if len(names) == 1 else "tried"
+    axes.plot(*zip(*sorted(places)), ".", color=red, label=label)
+    x, y, *_ = *(choice.values[name] for name in names), choice.outcome
+    axes.plot(x, y, "*", color=red, markersize=14, markeredgecolor="white", label="chosen")
     if axes.get_legend() is not None:
         axes.legend()
+    return figure
 
 
-def _choice_text(
-    choice: Choice, outcome: str, found: Survey, units: dict[str, str], wish: str, covered: float
-) -> str:
+def _choice_text(choice: Choice, wish: Wish, found: Survey, units: dict[str, str], least: float) -> str:
     """The choice, and what it costs: the other outcomes beside the best that each could be on the grid."""
-    import numpy as np
 
     def shown(name: str, value: float) -> str:
         return f"{figures(value)} {units.get(name, '')}".rstrip() if np.isfinite(value) else "-"
 
     lines = [f"{name} = {shown(name, value)}" for name, value in choice.values.items()]
-    lines.append(f"{outcome} = {shown(outcome, choice.outcome)}, {wish}")
-    unknown = np.count_nonzero(~np.isfinite(found.known(outcome, covered)))
+    which = f"the {'largest' if wish.largest else 'lowest'} that was found"
+    samples = found.plan.shape[-1] if found.plan.samples else 1
+    if samples > 1:
+        over = wish.over if wish.quantile is None else f"in {wish.over} of the cases"
+        which = f"{over} over {samples} samples, {which}"
+    lines.append(f"{wish.outcome} = {shown(wish.outcome, choice.outcome)}, {which}")
+    unknown = np.count_nonzero(~np.isfinite(found.known(wish.outcome, least)))
     if unknown:
         lines.append(
-            f"left out: {unknown} of {len(found.plan)} machines of which {outcome} is not known; the column note says why"
+            f"left out: {unknown} of {len(found.plan)} machines of which {wish.outcome} is not known; the column note says why"
         )
     if choice.others:
         middle = ", medians of the samples" if found.plan.samples else ""
         lines += ["", f"there, beside it{middle} (and from ... to ... over the survey):"]
         for name, value in choice.others.items():
-            column = found.columns.get(name)
-            known = column[np.isfinite(column)] if column is not None else np.array([])
+            column = found.columns.get(name, np.array([]))
+            known = column[np.isfinite(column)]
             span = f"  ({figures(known.min())} to {figures(known.max())})" if known.size else ""
             lines.append(f"  {name} = {shown(name, value)}{span}")
     return "\n".join(lines)

@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
-from contvines.command.frame import JsonOption, PlotOption, SizeOption, check_plot, draw, tell
+from contvines.command.frame import draw, tell
+from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option
 from contvines.command.study_data import Sort, Study
 from contvines.shared.number_text import figures
 from contvines.text_table import fitted
@@ -23,52 +22,35 @@ CLOSE = 0.95  # correlation of two estimates from which on it is told
 
 
 def calibrate(
-    study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="A study; the search begins at its values.")
-    ],
+    study: Annotated[Path, argument("STUDY.toml", "A study; the search begins at its values.")],
     impacts: Annotated[
         Path | None,
-        typer.Option("--impacts", metavar="FILE.csv", help="Times of successive impacts, in one column."),
+        option("--impacts FILE.csv", "Times of successive impacts, in one column."),
     ] = None,
     sweep: Annotated[
         Path | None,
-        typer.Option(
-            "--sweep",
-            metavar="FILE.csv",
-            help="Steady responses: one column for the parameter, one for the response.",
-        ),
+        option("--sweep FILE.csv", "Steady responses: one column for the parameter, one for the response."),
     ] = None,
     unknown: Annotated[
         list[str] | None,
-        typer.Option(
-            "--unknown", metavar="NAME", help="Parameter to estimate (repeatable); by default restitution."
-        ),
+        option("--unknown NAME", "Parameter to estimate (repeatable); by default restitution."),
     ] = None,
     release: Annotated[
         str | None,
-        typer.Option(
-            "--release",
-            metavar="LENGTH",
-            help='The impacts are those of a free decay, released at this displacement: "5 mm".',
+        option(
+            "--release LENGTH",
+            'The impacts are those of a free decay, released at this displacement: "5 mm".',
         ),
     ] = None,
     measure: Annotated[
         str | None,
-        typer.Option(
-            "--measure", metavar="NAME", help="Measure that the sweep holds; by default max_abs_q1."
-        ),
+        option("--measure NAME", "Measure that the sweep holds; by default max_abs_q1."),
     ] = None,
     limits: Annotated[
         list[str] | None,
-        typer.Option(
-            "--limits",
-            metavar="NAME=LOW,HIGH",
-            help="Bounds of an estimate: restitution=0.3,0.9 (repeatable).",
-        ),
+        option("--limits NAME=LOW,HIGH", "Bounds of an estimate: restitution=0.3,0.9 (repeatable)."),
     ] = None,
-    confidence: Annotated[
-        float, typer.Option("--confidence", help="Confidence level of the intervals.")
-    ] = 0.95,
+    confidence: Annotated[float, option("--confidence", "Confidence level of the intervals.")] = 0.95,
     plot: PlotOption = None,
     size: SizeOption = None,
     json_: JsonOption = False,
@@ -87,7 +69,6 @@ def calibrate(
         raise ValueError(
             f"--impacts and --sweep: {both} given; give one of them: --impacts times.csv or --sweep responses.csv."
         )
-    check_plot(plot, size)
     if release is not None and impacts is None:
         raise ValueError(f"--release {release}: this goes with --impacts.")
     if measure is not None and sweep is None:
@@ -247,15 +228,15 @@ def _from_impacts(
     release: str | None,
     confidence: float,
 ) -> tuple[Calibration, tuple[Any, ...]]:
-    from contvines.command.measured import Column, length_on_line, measured, scales
+    from contvines.command.measured import Column, Scales, length_on_line, measured
     from orbits.design.calibration import from_impacts
 
-    params = model.vector(study.loose)
-    length, unit, _, second = scales(model, params)
+    scales = Scales(model, model.vector(study.loose))
+    unit, second = scales.unit("length"), scales.unit("time")
     (times,) = measured(path, (Column("time", second),))
     start = study.named_state
     if release is not None:
-        displacement = length_on_line(release, "--release", unit) / length
+        displacement = length_on_line(release, "--release", unit) / scales.factor("length")
         if "damping" not in model.parameter_names:
             raise ValueError(
                 f"--release {release}: the machine {model.name!r} has no oscillator to be let go."

@@ -4,19 +4,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from contvines.command.amounts import interval
 from contvines.command.frame import (
-    DetailsOption,
-    FileArgument,
-    FreshOption,
-    LabelArgument,
-    PlotOption,
-    QuietOption,
-    TrustOption,
-    VirtualOption,
-    check_plot,
     check_special,
     draw,
     finished_of,
@@ -29,6 +18,18 @@ from contvines.command.frame import (
     tell_result,
     working,
 )
+from contvines.command.options import (
+    DetailsOption,
+    FileArgument,
+    FreshOption,
+    LabelArgument,
+    PlotOption,
+    QuietOption,
+    TrustOption,
+    VirtualOption,
+    argument,
+    option,
+)
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
@@ -36,11 +37,9 @@ if TYPE_CHECKING:
 
 OutputOption = Annotated[
     Path | None,
-    typer.Option(
-        "-o",
-        "--output",
-        metavar="FILE.vines",
-        help="Result file; by default FILE-LABEL.vines (locus) or FILE-chart.vines in this folder.",
+    option(
+        "-o, --output FILE.vines",
+        "Result file; by default FILE-LABEL.vines (locus) or FILE-chart.vines in this folder.",
     ),
 ]
 
@@ -48,12 +47,10 @@ OutputOption = Annotated[
 def locus(
     file: FileArgument,
     label: LabelArgument,
-    over: Annotated[str, typer.Option("--over", metavar="NAME", help="The second parameter.")],
+    over: Annotated[str, option("--over NAME", "The second parameter.")],
     within: Annotated[
         tuple[str, str],
-        typer.Option(
-            "--within", metavar="LOW HIGH", help="Its interval: numbers, or quantities as '0.1 mm' '0.6 mm'."
-        ),
+        option("--within LOW HIGH", "Its interval: numbers, or quantities as '0.1 mm' '0.6 mm'."),
     ],
     output: OutputOption = None,
     plot: PlotOption = None,
@@ -69,7 +66,6 @@ def locus(
     from contvines.loci.charting import chart_of_one
 
     target = place_of(output, file, f"-{label}.vines")
-    check_plot(plot)
     graph = load_file(file, trust)
     check_special(graph, file, label)
     refuse_detached(graph, label)
@@ -84,18 +80,17 @@ def locus(
 def chart(
     file: Annotated[
         Path,
-        typer.Argument(metavar="STUDY.toml|FILE.vines", help="A study, or a result of diagram."),
+        argument("STUDY.toml|FILE.vines", "A study, or a result of diagram."),
     ],
     over: Annotated[
         str | None,
-        typer.Option("--over", metavar="NAME", help="The second parameter; by default [chart] parameter."),
+        option("--over NAME", "The second parameter; by default [chart] parameter."),
     ] = None,
     within: Annotated[
         tuple[str, str] | None,
-        typer.Option(
-            "--within",
-            metavar="LOW HIGH",
-            help="Its interval, numbers or quantities as '0.1 mm' '0.6 mm'; by default [chart] within.",
+        option(
+            "--within LOW HIGH",
+            "Its interval, numbers or quantities as '0.1 mm' '0.6 mm'; by default [chart] within.",
         ),
     ] = None,
     output: OutputOption = None,
@@ -108,7 +103,6 @@ def chart(
 ) -> None:
     """Chart of two parameters: loci of special points, codimension-two points, regions; an interrupted run goes on."""
     target = place_of(output, file, "-chart.vines")
-    check_plot(plot)
     graph, diagram, over, ends = _diagram(file, over, within, trust, fresh)
     refuse_detached(
         graph, *(label for label, point in graph.special.items() if point.kind not in ("end", "user"))

@@ -2,32 +2,27 @@
 
 from typing import Annotated
 
-import typer
-
 from contvines.command.amounts import amount
-from contvines.command.frame import (
+from contvines.command.frame import draw, load_file, refuse_detached, tell
+from contvines.command.options import (
     FileArgument,
     JsonOption,
     PlotOption,
     SizeOption,
     TrustOption,
-    check_plot,
-    draw,
-    load_file,
-    refuse_detached,
-    tell,
+    argument,
+    option,
 )
 
 
 def circle(
     file: FileArgument,
-    label: Annotated[str, typer.Argument(metavar="LABEL", help="A Neimark-Sacker point, for example NS1.")],
+    label: Annotated[str, argument("LABEL", "A Neimark-Sacker point, for example NS1.")],
     to: Annotated[
         str | None,
-        typer.Option(
-            "--to",
-            metavar="VALUE",
-            help="Last value of the parameter; by default where the circle is half as large as the motion.",
+        option(
+            "--to VALUE",
+            "Last value of the parameter; by default where the circle is half as large as the motion.",
         ),
     ] = None,
     plot: PlotOption = None,
@@ -36,7 +31,6 @@ def circle(
     trust: TrustOption = False,
 ) -> None:
     """Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up."""
-    check_plot(plot, size)
     graph = load_file(file, trust)
     special = graph.special
     if label not in special:

@@ -14,6 +14,7 @@ from typing import Annotated
 import typer
 
 from contvines.command.commands import register
+from contvines.command.options import option
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 QUOTES = "'\""
@@ -46,7 +47,7 @@ def _options(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
     debug: Annotated[
-        bool, typer.Option("--debug", help="Show the traceback of an error (anywhere on the line).")
+        bool, option("--debug", "Show the traceback of an error (anywhere on the line).")
     ] = False,
 ) -> None:
     pass

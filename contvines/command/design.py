@@ -3,20 +3,19 @@ a picture."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-import typer
-
-from contvines.command.frame import JsonOption, StudyArgument, check_plot, tell
 from contvines.command.frame import draw as draw_in
+from contvines.command.frame import tell
+from contvines.command.options import JsonOption, StudyArgument, inches, option, picture
+from contvines.command.study import StudyError, read_study
 from contvines.command.study_data import Sort, Study
 from contvines.shared.number_text import figures
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -29,6 +28,7 @@ HALF_WIDTH = 0.02  # metres, of a dimensionless machine without a scale
 LEVELS = 10  # contours of a map, about
 DECADES = 8.0  # how many times the largest number is the smallest where contours go by decades
 MM = 1000.0  # of a metre
+BLUE, RED = "#0b3c6f", "#b5121b"
 
 
 def machine(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
@@ -44,36 +44,36 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     """
     from orbits.design.figures import SCALE, Design
 
-    from .study import StudyError
-
-    if study.sort not in (Sort.CATALOGUE, Sort.PHYSICAL):
+    model, physical = study.model, study.sort is Sort.PHYSICAL
+    if not physical and study.sort is not Sort.CATALOGUE:
         raise StudyError(
             f"{study.path}: [model] name = {study.name!r}: design figures are closed forms of the built-in absorbers; "
             "contvines survey asks many machines of a declared machine."
         )
-    slope = (
-        float(study.model.column(study.model.vector(study.loose), "slope"))
-        if "slope" in study.model.parameter_names
-        else 0.0
-    )
+    params = model.vector(study.loose)
+    slope = float(model.column(params, "slope")) if "slope" in model.parameter_names else 0.0
     if slope:
         raise StudyError(
             f"{study.path}: slope = {slope:g} rad: design figures are closed forms of level cavities; use slope = 0, and contvines survey "
             "or transient for the inclined one."
         )
-    if study.sort is Sort.PHYSICAL:
-        return _physical(study, cavity, natural_frequency)
-    values = study.parameters
-    fields: dict[str, Any] = {name: values[name] for name in ("restitution", "friction", "mass_ratio")}
-    fields["damping"] = values.get("damping", DAMPING)
     asked = (("cavity", cavity, "m", HALF_WIDTH), ("natural-frequency", natural_frequency, "Hz", 7.666))
     for name, value, unit, usual in asked:
+        if value is not None and physical:
+            raise StudyError(f"--{name} = {value!r}: the study says it already; leave --{name} out.")
         if value is not None and not SCALE[0] <= value <= SCALE[1]:
             raise StudyError(
                 f"--{name} = {value!r} is out of range; expected a number from {SCALE[0]:g} to {SCALE[1]:g} {unit}, "
                 f"for example {usual}."
             )
-    if values["gravity"] == 0:
+    numbers = dict(zip(model.parameter_names, params.tolist())) if physical else study.parameters
+    fields: dict[str, Any] = {name: numbers[name] for name in ("restitution", "friction", "mass_ratio")}
+    fields["damping"], gravity = numbers.get("damping", DAMPING), numbers["gravity"]
+    if physical:
+        b, rate = numbers["half_width"], numbers["natural_rate"]
+        hertz, acceleration = rate / (2.0 * math.pi), gravity * b * rate**2
+        return Design(half_width=b, natural_frequency=hertz, acceleration=acceleration, **fields)
+    if gravity == 0:
         if cavity is None or natural_frequency is None:
             raise StudyError(
                 "[model] gravity = 0 fixes no scale; give both --cavity and --natural-frequency."
@@ -81,43 +81,15 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
         return Design(half_width=cavity, natural_frequency=natural_frequency, acceleration=0.0, **fields)
     if cavity is not None and natural_frequency is not None:
         raise StudyError(
-            f"--cavity and --natural-frequency were both given, but [model] gravity = {values['gravity']!r} "
+            f"--cavity and --natural-frequency were both given, but [model] gravity = {gravity!r} "
             "already ties one to the other; give one of them."
         )
-    if cavity is None and natural_frequency is None:
-        cavity = HALF_WIDTH
+    if natural_frequency is None:
+        fields["cavity"] = HALF_WIDTH if cavity is None else cavity
     try:
-        return Design.from_dimensionless(
-            gravity=values["gravity"], cavity=cavity, natural_frequency=natural_frequency, **fields
-        )
+        return Design.from_dimensionless(gravity=gravity, natural_frequency=natural_frequency, **fields)
     except ValueError as error:
         raise StudyError(f"{study.path}: [model] {error}") from None
-
-
-def _physical(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
-    """The design of a study in physical units, which says its scale itself."""
-    from math import pi
-
-    from orbits.design import Design
-
-    from .study import StudyError
-
-    for name, value in (("cavity", cavity), ("natural-frequency", natural_frequency)):
-        if value is not None:
-            raise StudyError(f"--{name} = {value!r}: the study says it already; leave --{name} out.")
-    model = study.model
-    params = model.vector()
-    number = {name: float(value) for name, value in zip(model.parameter_names, params)}
-    b, rate = number["half_width"], number["natural_rate"]
-    return Design(
-        half_width=b,
-        natural_frequency=rate / (2.0 * pi),
-        restitution=number["restitution"],
-        friction=number["friction"],
-        mass_ratio=number["mass_ratio"],
-        damping=number.get("damping", DAMPING),
-        acceleration=number["gravity"] * b * rate**2,
-    )
 
 
 def assumptions(study: Study, cavity: float | None, natural_frequency: float | None) -> dict[str, str]:
@@ -139,32 +111,18 @@ def assumptions(study: Study, cavity: float | None, natural_frequency: float | N
 
 def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, str, str, str]]:
     """The table's lines: name, symbol, value, unit, meaning; lengths in millimetres; `assumed` are names of `assumptions`."""
+    half, damped = "half_width" in assumed, "damping" in assumed
     given = [
-        (
-            "half-width of cavity",
-            "b",
-            MM * design.cavity,
-            "mm",
-            "assumed; wall to wall is 2 b" if "half_width" in assumed else "wall to wall is 2 b",
-        ),
-        (
-            "natural frequency",
-            "f_0",
-            design.natural_frequency,
-            "Hz",
-            "oscillator alone; follows from b" if "half_width" in assumed else "oscillator alone",
-        ),
+        ("half-width of cavity", "b", MM * design.cavity, "mm", f"{'assumed; ' if half else ''}wall to wall is 2 b"),
+        ("natural frequency", "f_0", design.natural_frequency, "Hz", f"oscillator alone{'; follows from b' if half else ''}"),
         ("restitution", "r", design.restitution, "", "study"),
         ("friction", "mu", design.friction, "", "study"),
         ("mass ratio", "eps", design.mass_ratio, "", "study"),
-        ("damping", "lambda", design.damping, "", "assumed" if "damping" in assumed else "study"),
-    ]
+        ("damping", "lambda", design.damping, "", "assumed" if damped else "study"),
+    ]  # fmt: skip
     for line in design.figures():
-        length = line.unit == "m"
-        value = float(line.value) * (MM if length else 1.0)
-        given.append(
-            (line.name, line.symbol, value, "mm" if length else line.unit.replace("1", ""), line.meaning)
-        )
+        factor, unit = (MM, "mm") if line.unit == "m" else (1.0, line.unit.replace("1", ""))
+        given.append((line.name, line.symbol, factor * float(line.value), unit, line.meaning))
     return [(name, symbol, figures(value), unit, meaning) for name, symbol, value, unit, meaning in given]
 
 
@@ -208,59 +166,70 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     mu = np.linspace(0.0, max(2.0 * mu0, 0.3), 201)
     b = np.linspace(0.35, 2.0, 201) * b0
     columns = (
-        (mu, "friction", mu0, r"friction $\mu$", 1.0),
-        (b, "cavity", b0, "half-width $b$ [mm]", MM),
+        Over(mu, "friction", mu0, r"friction $\mu$", 1.0),
+        Over(b, "cavity", b0, "half-width $b$ [mm]", MM),
     )
+    size = size or (10.5, 6.6)
+    small = size[0] < 6.0 or size[1] < 4.0
     with styled():
-        size = size or (10.5, 6.6)
         figure = new_figure(figsize=size)
         if "half_width" in assumed:
             figure.suptitle(f"lengths for an assumed half-width $b$ = {MM * b0:g} mm", fontsize="small")
-        if min(size[0] / 6.0, size[1] / 4.0) < 1.0:
+        if small:
             axes = figure.add_subplot()
             _bounds(axes, design, columns[0], 1.9)
-            axes.set_xlabel(columns[0][3])
+            axes.set_xlabel(columns[0].label)
             axes.legend(loc="upper left")
             settle(figure)
             thin_ticks(axes)
             return figure
         top, bottom = figure.subplots(2, 3, width_ratios=(1, 1, 1.15))
-        for column, (axis, name, here, label, unit) in enumerate(columns):
-            axes = top[column]
-            _bounds(axes, design, columns[column], 1.0 if column == 0 else 1.45)
-            if column == 1:
-                axes.set_ylabel("")
-                axes.legend(loc="upper left")
-            ratio = design.with_(**{name: axis}).operating_ratio
-            bottom[column].plot(axis * unit, ratio, color="#0b3c6f")
-            bottom[column].set(
-                xlabel=label, ylabel=r"operating ratio $\xi$" if column == 0 else "", ylim=(1, None)
-            )
-            bottom[column].axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
+        for upper, lower, over, room in zip(top, bottom, columns, (1.0, 1.45)):
+            _bounds(upper, design, over, room)
+            ratio = design.with_(**{over.name: over.values}).operating_ratio
+            lower.plot(over.values * over.unit, ratio, color=BLUE)
+            lower.set(xlabel=over.label, ylim=(1, None))
+            _mark_own(lower, over)
+        bottom[0].set_ylabel(r"operating ratio $\xi$")
+        top[1].set_ylabel("")
+        top[1].legend(loc="upper left")
         over = design.with_(friction=mu[None, :], cavity=b[:, None])
         _map(top[2], mu, b, over.upper_bound * MM, (mu0, b0), r"upper bound $q_{1,\max}$ [mm]")
         _map(bottom[2], mu, b, over.operating_ratio, (mu0, b0), r"operating ratio $\xi$")
-        bottom[2].set_xlabel(r"friction $\mu$")
+        bottom[2].set_xlabel(columns[0].label)
     return figure
 
 
-def _bounds(axes: Axes, design: Design, over: tuple[Any, str, float, str, float], room: float) -> None:
+class Over(NamedTuple):
+    """A quantity that varies: values, its field of `Design`, the design's own value, a label, and how many of the label's unit are one."""
+
+    values: np.ndarray
+    name: str
+    here: float
+    label: str
+    unit: float
+
+
+def _bounds(axes: Axes, design: Design, over: Over, room: float) -> None:
     """Between which amplitudes of the oscillator two symmetric impacts are, and where the absorber sticks; `room` for a legend."""
     import numpy as np
 
-    axis, name, here, _, unit = over
-    line = design.with_(**{name: axis})
-    low, high = np.broadcast_to(line.activation_threshold, axis.shape), line.upper_bound
-    stick = np.broadcast_to(line.sticking_limit(), axis.shape)
-    axes.fill_between(axis * unit, MM * low, MM * high, color="#dbe6f1", lw=0, label="two symmetric impacts")
+    across, line = over.values * over.unit, design.with_(**{over.name: over.values})
+    limits = line.activation_threshold, line.upper_bound, line.sticking_limit()
+    low, high, stick = (MM * np.broadcast_to(limit, across.shape) for limit in limits)
+    axes.fill_between(across, low, high, color="#dbe6f1", lw=0, label="two symmetric impacts")
     for values, color, style, label in (
-        (low, "#0b3c6f", "-", r"activation threshold $q_{1,\min}$"),
-        (high, "#0b3c6f", (0, (5, 2.2)), r"upper bound $q_{1,\max}$"),
-        (stick, "#b5121b", (0, (1, 1.6)), r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$"),
+        (low, BLUE, "-", r"activation threshold $q_{1,\min}$"),
+        (high, BLUE, (0, (5, 2.2)), r"upper bound $q_{1,\max}$"),
+        (stick, RED, (0, (1, 1.6)), r"sticking limit $q_{1,\mathrm{cr}}$ at $f_0$"),
     ):
-        axes.plot(axis * unit, MM * values, color=color, ls=style, label=label)
-    axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05 * MM * room * max(np.max(high), np.max(stick))))
-    axes.axvline(here * unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
+        axes.plot(across, values, color=color, ls=style, label=label)
+    axes.set(ylabel="oscillator $q_1$ [mm]", ylim=(0, 1.05 * room * max(np.max(high), np.max(stick))))
+    _mark_own(axes, over)
+
+
+def _mark_own(axes: Axes, over: Over) -> None:
+    axes.axvline(over.here * over.unit, color="#5e5e5e", lw=0.8, ls=(0, (3, 3)))
 
 
 def _round_levels(low: float, high: float) -> Sequence[float]:
@@ -284,47 +253,48 @@ def _map(
         levels = _round_levels(float(known.min()), float(known.max()))
         shown = np.ma.masked_invalid(values)
         panel.contourf(mu, MM * b, shown, levels=levels, cmap="Greys", alpha=0.55, norm="log")
-        lines = panel.contour(mu, MM * b, shown, levels=levels, colors="#0b3c6f", linewidths=0.9)
+        lines = panel.contour(mu, MM * b, shown, levels=levels, colors=BLUE, linewidths=0.9)
         panel.clabel(lines, fmt="%.3g", fontsize=7.5)
-    panel.plot(here[0], MM * here[1], "o", color="#b5121b")
+    panel.plot(here[0], MM * here[1], "o", color=RED)
     panel.set(ylabel="half-width $b$ [mm]", title=title)
     panel.grid(False)
 
 
 def design(
     study: StudyArgument,
-    cavity: float | None = typer.Option(
-        None,
-        "--half-width",
-        "--cavity",
-        help="Half-width b of the cavity [m]; by default 0.02.",
-    ),
-    natural_frequency: float | None = typer.Option(
-        None, help="Natural frequency f_0 of the oscillator [Hz], in place of --half-width."
-    ),
-    plot: Path | None = typer.Option(
-        None, metavar="FILE.png", help="Picture; by default STUDY-design.png in this folder."
-    ),
-    size: tuple[float, float] | None = typer.Option(
-        None,
-        "--size",
-        metavar="WIDTH HEIGHT",
-        help="Size of the picture in inches; a small one shows only the bounds over friction.",
-    ),
-    no_plot: bool = typer.Option(False, "--no-plot", help="No picture."),
+    cavity: Annotated[
+        float | None, option("--half-width, --cavity", "Half-width b of the cavity [m]; by default 0.02.")
+    ] = None,
+    natural_frequency: Annotated[
+        float | None,
+        option(
+            "--natural-frequency",
+            "Natural frequency f_0 of the oscillator [Hz], in place of --half-width.",
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        option("--plot FILE.png", "Picture; by default STUDY-design.png in this folder.", callback=picture),
+    ] = None,
+    size: Annotated[
+        tuple[float, float] | None,
+        option(
+            "--size WIDTH HEIGHT",
+            "Size of the picture in inches; a small one shows only the bounds over friction.",
+            callback=inches,
+        ),
+    ] = None,
+    no_plot: Annotated[bool, option("--no-plot", "No picture.")] = False,
     json_: JsonOption = False,
 ) -> None:
     """Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and
     sliding limits."""
-    from contvines.command.study import read_study
-
     if no_plot and plot is not None:
         raise ValueError(f"--plot {plot} and --no-plot exclude each other; leave one of them out.")
-    plot = None if no_plot else plot or Path(f"{study.stem}-design.png")
-    check_plot(plot, size)
     asked = read_study(study)
     figures = machine(asked, cavity, natural_frequency)
     assumed = assumptions(asked, cavity, natural_frequency)
     told = table(f"Design figures of {study.name}", rows(figures, assumed), assumed.values())
     tell(told, as_json(figures, assumed) if json_ else None)
-    draw_in(plot, lambda: draw(figures, size, assumed))
+    if not no_plot:
+        draw_in(plot or Path(f"{study.stem}-design.png"), lambda: draw(figures, size, assumed))

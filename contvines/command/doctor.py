@@ -8,7 +8,8 @@ from typing import Any
 
 import typer
 
-from contvines.command.frame import JsonOption, tell
+from contvines.command.frame import tell
+from contvines.command.options import JsonOption
 from contvines.continuation.settings import Settings
 from contvines.shared.extras import pip_install
 

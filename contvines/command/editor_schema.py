@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from contvines.command.options import option
+
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
@@ -14,9 +16,7 @@ DIALECT = "http://json-schema.org/draft-07/schema#"  # what the TOML plugins of 
 def schema(
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--output", metavar="FILE.json", help="Where to write it; by default it is printed."
-        ),
+        option("-o, --output FILE.json", "Where to write it; by default it is printed."),
     ] = None,
 ) -> None:
     """Print the JSON Schema of studies, for editors that complete and check TOML.

@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from contvines.command.frame import FileArgument, TrustOption, beside, load_file, say_state
+from contvines.command.frame import beside, load_file, say_state
+from contvines.command.options import FileArgument, TrustOption, option
 
 
 class Format(StrEnum):
@@ -23,12 +24,10 @@ class Format(StrEnum):
 
 def export(
     file: FileArgument,
-    to: Annotated[
-        Format | None, typer.Option("--to", help="The format; by default that of the output's name.")
-    ] = None,
+    to: Annotated[Format | None, option("--to", "The format; by default that of the output's name.")] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="PATH", help="Where to; by default FILE.FORMAT here."),
+        option("-o, --output PATH", "Where to; by default FILE.FORMAT here."),
     ] = None,
     trust: TrustOption = False,
 ) -> None:

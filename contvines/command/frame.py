@@ -4,68 +4,16 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 import typer
 
+from contvines.command.options import MANY
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
     from ..loci.chart import Chart
-
-StudyArgument = Annotated[
-    Path, typer.Argument(metavar="STUDY.toml", help="A study: model, start, what to continue.")
-]
-FileArgument = Annotated[
-    Path, typer.Argument(metavar="FILE.vines", help="A file that diagram or trace has made.")
-]
-LabelArgument = Annotated[str, typer.Argument(metavar="LABEL", help="A special point, for example SB1.")]
-PlotOption = Annotated[
-    Path | None, typer.Option("--plot", metavar="FILE.png", help="Draw the result (png, pdf or svg).")
-]
-SizeOption = Annotated[
-    tuple[float, float] | None,
-    typer.Option(
-        "--size",
-        metavar="WIDTH HEIGHT",
-        help="Size of the picture in inches; 3.4 2.4 fits one column of a journal.",
-    ),
-]
-QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress, no table.")]
-JsonOption = Annotated[bool, typer.Option("--json", help="Print one JSON object with all digits.")]
-FreshOption = Annotated[
-    bool,
-    typer.Option("--fresh", help="Begin again; an existing file is renamed, FILE.vines to FILE.old.vines."),
-]
-MANY = 30  # branches or loci; of a larger result a summary is printed alone
-DetailsOption = Annotated[
-    bool,
-    typer.Option(
-        "--details", help=f"Print the whole tables, even if there are more than {MANY} branches (or loci)."
-    ),
-]
-TrustOption = Annotated[
-    bool,
-    typer.Option(
-        "--trust",
-        help="Run the Python code that the file names; only for files from people you trust.",
-    ),
-]
-VirtualOption = Annotated[
-    bool,
-    typer.Option(
-        "--virtual", help="Also continue virtual motions, which no real machine follows; drawn dotted."
-    ),
-]
-CompareOption = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--compare",
-        metavar="KIND",
-        help="Draw another response beside: bare (no absorber), tuned (mass damper) or friction (damper); repeatable.",
-    ),
-]
 
 
 class Interrupted(Exception):
@@ -315,15 +263,6 @@ def tell_result(found: "Graph | Chart", file: Path, details: bool) -> None:
             typer.echo(fitted(found.message))
         return
     typer.echo(str(found))
-
-
-def check_plot(plot: Path | None, size: tuple[float, float] | None = None) -> None:
-    """Refuse, before any work, a picture that could not be written. Kept apart from matplotlib."""
-    if plot is not None:
-        from contvines.plots.figures import check_picture, check_size
-
-        check_picture(plot)
-        check_size(size)
 
 
 def draw(plot: Path | None, figure: Callable[[], Any], quiet: bool = False) -> None:

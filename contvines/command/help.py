@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from contvines.command.commands import COMMANDS, command
+from contvines.command.options import argument
 
 TASKS = {
     "Begin": ("help", "new", "doctor", "schema"),
@@ -38,10 +39,7 @@ FILE.vines LABEL` lists the events of an orbit with their times."""
 def help(
     name: Annotated[
         str | None,
-        typer.Argument(
-            metavar="[COMMAND|TOPIC]",
-            help=f"A command, or a topic: {', '.join(TOPICS)}. Without: all commands.",
-        ),
+        argument("[COMMAND|TOPIC]", f"A command, or a topic: {', '.join(TOPICS)}. Without: all commands."),
     ] = None,
 ) -> None:
     """List the commands by task, or explain one command or topic.

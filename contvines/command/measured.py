@@ -107,18 +107,55 @@ def length_on_line(text: str, option: str, unit: str) -> float:
     return number * factor
 
 
-def scales(model: Varying, params: np.ndarray) -> tuple[float, str, float, str]:
-    """What a dimensionless length and time are in the units that a study shows, and these units ("" for plain numbers)."""
-    from orbits.machines.physical import units
-    from orbits.machines.physical.machine import Physical
+Rows = list[tuple[str, float, str, str]]
+"""Name, value, unit (or kind of measure) and words of each figure."""
+Series = list[tuple[str, str, "np.ndarray"]]
+"""Name, unit (or kind of measure) and values of each column."""
 
-    if not isinstance(model, Physical):
-        return 1.0, "", 1.0, model.units.get("time", "")
-    gauges = model.tables.GAUGES
 
-    return (
-        float(model.gauge("length", params)),
-        units.unit_of(gauges["length"]),
-        float(model.gauge("time", params)),
-        units.unit_of(gauges["time"]),
-    )
+@dataclass(frozen=True)
+class Scales:
+    """What the dimensionless numbers of a machine are in the units that its study shows.
+
+    Attributes
+    ----------
+    model : Varying
+    params : float array (P,)
+    """
+
+    model: Varying
+    params: np.ndarray
+
+    def factor(self, kind: str) -> float:
+        """One dimensionless unit of a kind of measure; kinds are those of `orbits.machines.varying.Varying.gauge`."""
+        per = self.model.column(self.params, "mass_ratio") if kind in ("energy", "power") else 1.0
+        return float(self.model.gauge(kind, self.params)) / float(per)
+
+    def unit(self, kind: str) -> str:
+        """The unit of a kind of measure; "" for a plain number."""
+        from orbits.machines.physical import units
+        from orbits.machines.physical.machine import Physical
+
+        if not isinstance(self.model, Physical):
+            return self.model.units.get(kind, "") if kind == "time" else ""
+        quantity = self.model.tables.GAUGES.get(kind)
+        return units.unit_of(quantity) if quantity else ""
+
+    def rows(self, rows: Rows) -> Rows:
+        """Figures with their values and units, from dimensionless ones with the kind of measure that each is."""
+        return [
+            (name, float(value) * self.factor(kind), self.unit(kind), words)
+            for name, value, kind, words in rows
+        ]
+
+    def columns(self, series: Series) -> Series:
+        """The same of columns."""
+        return [(name, self.unit(kind), values * self.factor(kind)) for name, kind, values in series]
+
+    @property
+    def metre(self) -> float:
+        """Metres in one dimensionless length; 1 where there are no units."""
+        from orbits.machines.physical import units
+
+        unit = self.unit("length")
+        return self.factor("length") * ((units.size(unit, "m") or 1.0) if unit else 1.0)

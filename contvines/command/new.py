@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from contvines.command.options import argument, option
+
 
 class Kind(StrEnum):
     """What `new` writes."""
@@ -28,14 +30,14 @@ BESIDE = {Kind.machine: "machine.py", Kind.flow: "flow.py"}
 def new(
     kind: Annotated[
         Kind,
-        typer.Argument(
-            metavar="KIND",
-            help="absorber, coupled, cavity, si (kilograms and hertz), machine (your own, a Python file) or flow (your own equations).",
+        argument(
+            "KIND",
+            "absorber, coupled, cavity, si (kilograms and hertz), machine (your own, a Python file) or flow (your own equations).",
         ),
     ],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE.toml", help="Where to; by default KIND.toml here."),
+        option("-o, --output FILE.toml", "Where to; by default KIND.toml here."),
     ] = None,
 ) -> None:
     """Write a commented study to begin with: every field with its meaning.

@@ -4,18 +4,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
-from contvines.command.frame import (
-    JsonOption,
-    PlotOption,
-    TrustOption,
-    check_plot,
-    draw,
-    load_file,
-    say,
-    tell,
-)
+from contvines.command.frame import draw, load_file, say, tell
+from contvines.command.options import JsonOption, PlotOption, TrustOption, argument, option
 from contvines.shared.number_text import complex_figures, figures
 from contvines.text_table import fitted
 
@@ -29,23 +19,17 @@ if TYPE_CHECKING:
 def orbit(
     file: Annotated[
         Path,
-        typer.Argument(
-            metavar="FILE.vines|STUDY.toml", help="A result, or a study, whose first orbit is shown."
-        ),
+        argument("FILE.vines|STUDY.toml", "A result, or a study, whose first orbit is shown."),
     ],
     label: Annotated[
         str | None,
-        typer.Argument(
-            metavar="[LABEL]", help="With FILE.vines: a special point (SB1), or a point of a branch (B1:12)."
-        ),
+        argument("[LABEL]", "With FILE.vines: a special point (SB1), or a point of a branch (B1:12)."),
     ] = None,
     json: JsonOption = False,
     plot: PlotOption = None,
     animate: Annotated[
         Path | None,
-        typer.Option(
-            "--animate", metavar="FILE.gif", help="Write an animation (gif, html; mp4 needs ffmpeg)."
-        ),
+        option("--animate FILE.gif", "Write an animation (gif, html; mp4 needs ffmpeg)."),
     ] = None,
     trust: TrustOption = False,
 ) -> None:
@@ -57,7 +41,6 @@ def orbit(
 
         check_animation(animate)
 
-    check_plot(plot)
     found = _orbit(file, label, trust)
     tell(fitted(_describe(found)), _plain(found) if json else None)
     draw(plot, lambda: plot_portrait(found))

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from contvines.command.measured import Rows, length_on_line
+from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import Told, loads_rows
 from contvines.shared.number_text import figures
+from orbits.machines.physical import units
 
 
 def frequency_on_line(study: Study, text: str) -> float:
     """`--from`, counted as the study counts its frequency."""
-    from orbits.machines.physical import units
-
     name = study.model.default_parameter if study.sort is not Sort.PAGE else study.model.phase_rate
     if name is None:
         raise ValueError(
@@ -28,8 +31,6 @@ def frequency_on_line(study: Study, text: str) -> float:
 
 def time_on_line(text: str, second: str) -> float:
     """`--over`, in the study's unit of time."""
-    from contvines.command.measured import length_on_line
-
     time = length_on_line(text, "--over", second)
     if not time > 0.0:
         raise ValueError(f"--over {text}: give a time above 0.")
@@ -40,9 +41,6 @@ def of_page(
     study: Study, release: str | None, begin: str | None, over: str | None, within: str | None
 ) -> Told:
     """A transient of a declared machine: its states, its impacts and what these and friction take."""
-    import numpy as np
-
-    from contvines.command.measured import length_on_line
     from orbits.design.page_transients import page_transient
     from orbits.machines.page.energies import CONTACT
 
@@ -53,35 +51,25 @@ def of_page(
     rising = {} if begin is None or over is None else {
         "run_up_from": frequency_on_line(study, begin), "run_up_time": time_on_line(over, second)
     }  # fmt: skip
-    try:
+    with refused(str(study.path)):
         lasts = None if within is None else length_on_line(within, "--time", second)
         seen = page_transient(machine, params, start, time=lasts, **rising)
-    except ValueError as error:
-        raise ValueError(f"{study.path}: {str(error).rstrip('.')}.") from None
-    rows = []
+    rows: Rows = []
     for name, values in seen.states.items():
         unit = shown.get(name, "")
         rows.append((f"largest_{name}", float(np.abs(values).max()), unit, f"largest size of {name}"))
         if release is None:
-            rows.append(
-                (
-                    f"settled_{name}",
-                    seen.settled[name],
-                    second,
-                    "time to settle to 5 % (no number: it does not)",
-                )
-            )
+            words = "time to settle to 5 % (no number: it does not)"
+            rows.append((f"settled_{name}", seen.settled[name], second, words))
     count = seen.impact_times.size
     speed = shown.get("approach_speed", "")
     rows += [("impacts", float(count), "", "how many")] if machine.equations.gap else []
     if count:
         rows.append(("fastest_impact", float(seen.impact_speeds.max()), speed, "largest impact speed"))
     if seen.energy is not None:
-        held = (
-            machine.equations.factors.get(CONTACT, 1.0) * study.parameters[CONTACT]
-            if CONTACT in study.parameters
-            else None
-        )
+        held = study.parameters.get(CONTACT)
+        if held is not None:
+            held *= machine.equations.factors.get(CONTACT, 1.0)
         loads = {**shown, "contact_time": second} if shown else {}
         rows += loads_rows(float(seen.impulses.max(initial=0.0)), count, held, loads)
         joule = shown.get("impact_loss", "")
@@ -89,14 +77,8 @@ def of_page(
         rows.append(("friction_energy", float(seen.friction[-1]), joule, "by friction"))
         if release is not None:
             end = float(seen.times[-1])
-            rows.append(
-                (
-                    "taken_share",
-                    seen.share(end),
-                    "",
-                    f"of the initial energy: taken by both in {figures(end)} {second}".rstrip(),
-                )
-            )
+            words = f"of the initial energy: taken by both in {figures(end)} {second}".rstrip()
+            rows.append(("taken_share", seen.share(end), "", words))
     series = [
         ("time", second, seen.times),
         *((name, shown.get(name, ""), values) for name, values in seen.states.items()),
@@ -109,7 +91,6 @@ def of_page(
 def _states(study: Study, text: str) -> dict[str, float]:
     """`--release` of a declared machine: states by name."""
     from contvines.shared.near_names import did_you_mean
-    from orbits.machines.physical import units
 
     machine, found = study.model, {}
     example = f"{machine.states[0]} = 1 {machine.units.get(machine.states[0], '')}".rstrip()
@@ -121,8 +102,6 @@ def _states(study: Study, text: str) -> dict[str, float]:
                 f"--release {text!r}: {name!r} is no state with a value{did_you_mean(name, machine.states)}; of a declared machine it is a list such as "
                 f'"{example}", and the states are {known}.'
             )
-        try:
+        with refused(f"--release {text!r}"):
             found[name] = units.counted(name, value, machine.units.get(name, ""))
-        except ValueError as error:
-            raise ValueError(f"--release {text!r}: {error}.") from None
     return found

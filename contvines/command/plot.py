@@ -8,16 +8,8 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.compare import check_compared, compared
-from contvines.command.frame import (
-    CompareOption,
-    FileArgument,
-    SizeOption,
-    TrustOption,
-    beside,
-    check_plot,
-    load_file,
-    say_state,
-)
+from contvines.command.frame import beside, load_file, say_state
+from contvines.command.options import CompareOption, FileArgument, SizeOption, TrustOption, option, picture
 
 
 class Picture(StrEnum):
@@ -38,55 +30,43 @@ class Colors(StrEnum):
 
 def plot(
     file: FileArgument,
-    x: Annotated[
-        str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")
-    ] = None,
+    x: Annotated[str | None, option("-x", "Measure on the x axis; by default the parameter.")] = None,
     y: Annotated[
         str | None,
-        typer.Option(
+        option(
             "-y",
-            help="Measure on the y axis; by default B (velocity at the first impact) "
+            "Measure on the y axis; by default B (velocity at the first impact) "
             "of the absorber, max_abs_q1 of the coupled machine, else the first measure of the problem.",
         ),
     ] = None,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="Picture: png, pdf or svg.")
-    ] = None,
-    kind: Annotated[Picture, typer.Option("--kind", help="What to draw.")] = Picture.diagram,
+    output: Annotated[Path | None, option("-o, --output FILE.png", "Picture: png, pdf or svg.")] = None,
+    kind: Annotated[Picture, option("--kind", "What to draw.")] = Picture.diagram,
     compare: CompareOption = None,
     branch: Annotated[
-        str | None, typer.Option("--branch", help="With --kind multipliers: the branch; by default B1.")
+        str | None, option("--branch", "With --kind multipliers: the branch; by default B1.")
     ] = None,
-    xlim: Annotated[
-        tuple[float, float] | None, typer.Option("--xlim", metavar="LOW HIGH", help="Limits of the x axis.")
-    ] = None,
-    ylim: Annotated[
-        tuple[float, float] | None, typer.Option("--ylim", metavar="LOW HIGH", help="Limits of the y axis.")
-    ] = None,
+    xlim: Annotated[tuple[float, float] | None, option("--xlim LOW HIGH", "Limits of the x axis.")] = None,
+    ylim: Annotated[tuple[float, float] | None, option("--ylim LOW HIGH", "Limits of the y axis.")] = None,
     size: SizeOption = None,
-    color: Annotated[Colors | None, typer.Option("--color", help="What the colours show.")] = None,
+    color: Annotated[Colors | None, option("--color", "What the colours show.")] = None,
     marks: Annotated[
         str | None,
-        typer.Option(
-            "--marks",
-            metavar="LP,SB,...",
-            help="Kinds of special points to mark, or none; by default all.",
-        ),
+        option("--marks LP,SB,...", "Kinds of special points to mark, or none; by default all."),
     ] = None,
-    words: Annotated[bool, typer.Option("--words", help="Write the words beside the branches.")] = False,
-    legend: Annotated[bool, typer.Option("--legend/--no-legend", help="Legend of lines and marks.")] = True,
+    words: Annotated[bool, option("--words", "Write the words beside the branches.")] = False,
+    legend: Annotated[bool, option("--legend/--no-legend", "Legend of lines and marks.")] = True,
     inset: Annotated[
         bool | None,
-        typer.Option(
+        option(
             "--inset/--no-inset",
-            help="Enlarge the most crowded part in an inset; by default only where marks overlap.",
+            "Enlarge the most crowded part in an inset; by default only where marks overlap.",
         ),
     ] = None,
     style: Annotated[
         str | None,
-        typer.Option(
+        option(
             "--style",
-            help="aps, elsevier, springer (one column), grey, slides, or a style of matplotlib; several as aps,grey.",
+            "aps, elsevier, springer (one column), grey, slides, or a style of matplotlib; several as aps,grey.",
         ),
     ] = None,
     trust: TrustOption = False,
@@ -109,7 +89,7 @@ def plot(
     asked |= {"--no-legend": None if legend else "", "--branch": branch}
     _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
-    check_plot(target, size)
+    picture(target)
     check_style(style)
     for name, pair in (("--xlim", xlim), ("--ylim", ylim)):
         if pair is not None and not (math.isfinite(sum(pair)) and pair[0] < pair[1]):

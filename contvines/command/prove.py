@@ -7,7 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from contvines.command.amounts import interval
-from contvines.command.frame import JsonOption, TrustOption, held, interruptible, load_file
+from contvines.command.frame import held, interruptible, load_file
+from contvines.command.options import JsonOption, TrustOption, argument, option
 from contvines.shared.extras import pip_install
 from contvines.text_table import fitted
 
@@ -17,37 +18,31 @@ MANY = 2000  # boxes: checking more of them is announced
 def prove(
     file: Annotated[
         Path,
-        typer.Argument(
-            metavar="FILE.vines|STUDY.toml", help="A result, or a study, whose first orbit is proved."
-        ),
+        argument("FILE.vines|STUDY.toml", "A result, or a study, whose first orbit is proved."),
     ],
     labels: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[LABEL]...",
-            help="With FILE.vines: special points (PD1), orbits (B1:12), branches (B1); by default all special points.",
+        argument(
+            "[LABEL]...",
+            "With FILE.vines: special points (PD1), orbits (B1:12), branches (B1); by default all special points.",
         ),
     ] = None,
     json: JsonOption = False,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Check the certificates in the file with an independent program."),
+        option("--check", "Check the certificates in the file with an independent program."),
     ] = False,
     bits: Annotated[
         int | None,
-        typer.Option(
-            "--bits", min=64, max=4096, help="Precision in bits at the beginning; raised where that helps."
-        ),
+        option("--bits", "Precision in bits at the beginning; raised where that helps.", min=64, max=4096),
     ] = None,
     within: Annotated[
         tuple[str, str] | None,
-        typer.Option(
-            "--within", metavar="LOW HIGH", help="With branches: only this interval of the parameter."
-        ),
+        option("--within LOW HIGH", "With branches: only this interval of the parameter."),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE.json", help="Also write the certificates to a file."),
+        option("-o, --output FILE.json", "Also write the certificates to a file."),
     ] = None,
     trust: TrustOption = False,
 ) -> None:

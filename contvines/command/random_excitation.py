@@ -7,19 +7,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
+import numpy as np
 
-from contvines.command.frame import JsonOption, PlotOption, SizeOption, check_plot, draw, say, tell
+from contvines.command.frame import draw, say, tell
+from contvines.command.measured import Scales, Series
+from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option
 from contvines.command.study_data import Sort, Study
+from contvines.command.transient_table import written
 from contvines.continuation.settings import Settings
 from contvines.shared.number_text import figures
+from contvines.text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.figure import Figure
 
     from orbits.design.random_excitation import RandomResponse
-    from orbits.machines.varying import Varying
 
 WORDS = {
     "oscillator": "displacement of the oscillator from its base",
@@ -33,28 +35,22 @@ OWN = {
     "absorber_power": "power that impacts and friction take",
     "absorber_share": "of what is dissipated: by impacts and friction",
 }
+KINDS_OF_OWN = {"impact_rate": "rate", "absorber_power": "power", "absorber_share": ""}
 EXAMPLE = "[random] psd = [[2, 0.1], [20, 0.1]]"
 
 
 def random(
     study: Annotated[
         Path,
-        typer.Argument(
-            metavar="STUDY.toml",
-            help="A study with a section [random], of the coupled or a declared machine.",
-        ),
+        argument("STUDY.toml", "A study with a section [random], of the coupled or a declared machine."),
     ],
     seed: Annotated[
         int | None,
-        typer.Option(
-            "--seed", metavar="N", min=0, help="Seed of the random draws, in place of the one in the study."
-        ),
+        option("--seed N", "Seed of the random draws, in place of the one in the study.", min=0),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--output", metavar="FILE.csv", help="Result file: spectral densities of the responses."
-        ),
+        option("-o, --output FILE.csv", "Result file: spectral densities of the responses."),
     ] = None,
     plot: PlotOption = None,
     size: SizeOption = None,
@@ -71,13 +67,12 @@ def random(
 
     if output is not None:
         check_target(output, "csv")
-    check_plot(plot, size)
     read = read_study(study)
     machine(read)
     found = _computed(read, seed)
     tell(found, found.as_json() if json_ else None)
     if output is not None:
-        found.write(output)
+        written(output, found.series)
         say(f"kept in {output}", json_)
     draw(plot, lambda: found.draw(size), json_)
 
@@ -100,27 +95,15 @@ class Found:
         }
 
     def __str__(self) -> str:
-        from contvines.text_table import Table, fitted, terminal_width
-
         rows = [(name, *_rounded(value, error), unit, words) for name, value, error, unit, words in self.rows]
         table = Table(("figure", "value", "+-", "unit", "what it is"), rows)
         return "\n".join([fitted(self.title), "", *table.lines(terminal_width())])
 
-    def write(self, path: Path) -> None:
-        """The densities as a CSV."""
-        import csv
-
-        from contvines.graph.table import with_unit
-
-        heads = [
-            with_unit("frequency", self.unit),
-            *(with_unit(name, unit) for name, (_, unit) in self.densities.items()),
-        ]
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(heads)
-            columns = (self.frequencies, *(values for values, _ in self.densities.values()))
-            writer.writerows([repr(float(x)) for x in row] for row in zip(*columns))
+    @property
+    def series(self) -> Series:
+        """The densities over the frequency."""
+        columns = [(name, unit, values) for name, (values, unit) in self.densities.items()]
+        return [("frequency", self.unit, self.frequencies), *columns]
 
     def draw(self, size: tuple[float, float] | None) -> Figure:
         """The densities over the frequency."""
@@ -143,8 +126,6 @@ def _computed(study: Study, seed: int | None) -> Found:
     said = study.random
     if said is None:
         raise ValueError(f"{study.path}: the section [random] is missing; for example {EXAMPLE}.")
-    import numpy as np
-
     model, params = study.model, study.model.vector(study.loose)
     page = study.sort is Sort.PAGE
     if page != (said.parameter is not None):
@@ -167,7 +148,9 @@ def _computed(study: Study, seed: int | None) -> Found:
             psd = Density(frequencies * turn, values / turn)
             response = random_page(model, params, said.parameter, psd, start=study.named_state, **options)
         else:
-            rate, acceleration = _scales(model, params)
+            scales = Scales(model, params)
+            rate = 1.0 / scales.factor("time")
+            acceleration = scales.metre * rate**2
             psd = Density(frequencies * turn / rate, values * rate / turn / acceleration**2)
             response = random_base(model, params, psd, **options)
     except (ValueError, KeyError) as error:
@@ -175,48 +158,30 @@ def _computed(study: Study, seed: int | None) -> Found:
     return _in_units(study, params, response, hertz)
 
 
-def _scales(model: Varying, params: np.ndarray) -> tuple[float, float]:
-    """omega_0 in 1/s, and b omega_0^2 in m/s^2; 1 where there are no units."""
-    from contvines.command.measured import scales
-    from orbits.machines.physical import units
-
-    length, unit, seconds, _ = scales(model, params)
-    metre = units.size(unit, "m") if unit else 1.0
-    return 1.0 / seconds, (metre or 1.0) * length / seconds**2
-
-
 def _in_units(study: Study, params: np.ndarray, response: RandomResponse, hertz: bool) -> Found:
     model, page = study.model, study.sort is Sort.PAGE
-    shown, turn = model.units, 2.0 * math.pi if hertz else 1.0
-    kinds = {} if page else {"impact_rate": "rate", "absorber_power": "power", "absorber_share": ""}
-    gauges = {} if page or not shown else model.tables.GAUGES
-    from orbits.machines.physical import units
-
-    def unit_of(kind: str) -> str:
-        return units.unit_of(gauges[kind]) if kind in gauges else ""
-
+    shown, turn, scales = model.units, 2.0 * math.pi if hertz else 1.0, Scales(model, params)
     rows = []
     for name, (value, error) in response.numbers.items():
         sort, _, what = name.partition("_")
         if name in OWN:
-            factor = float(model.gauge(kinds[name], params)) if kinds.get(name) else 1.0
-            if name == "absorber_power" and not page:
-                factor /= float(model.column(params, "mass_ratio"))
-            unit, words = unit_of(kinds.get(name, "")) or ("Hz" if page and shown else ""), OWN[name]
+            kind = "" if page else KINDS_OF_OWN[name]
+            factor, unit = scales.factor(kind), scales.unit(kind) or ("Hz" if page and shown else "")
+            words = OWN[name]
         elif page:
             factor, unit, words = 1.0, shown.get(what, ""), f"{KINDS[sort]} of {what}"
         else:
             factor, unit, words = (
-                float(model.gauge("length", params)),
-                unit_of("length"),
+                scales.factor("length"),
+                scales.unit("length"),
                 f"{KINDS[sort]}: {WORDS[what]}",
             )
         rows.append((name, factor * value, factor * error, unit, words))
-    rate = 1.0 if page else _scales(model, params)[0]
+    rate = 1.0 if page else 1.0 / scales.factor("time")
     densities = {}
     for name, values in response.densities.items():
-        factor = 1.0 if page else float(model.gauge("length", params))
-        unit = shown.get(name, "") if page else unit_of("length")
+        factor = 1.0 if page else scales.factor("length")
+        unit = shown.get(name, "") if page else scales.unit("length")
         densities[name] = (values * factor**2 * turn / rate, f"{unit}^2/Hz" if unit else "")
     seconds = response.duration / rate
     title = f"{study.path.name} under random excitation: {response.records} records of {figures(seconds)} {'s' if hertz else 'units of time'}"

@@ -6,22 +6,15 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
-from contvines.command.frame import (
+from contvines.command.frame import beside, draw, held, interruptible, refuse_source, say, tell
+from contvines.command.options import (
     FreshOption,
     JsonOption,
     PlotOption,
     QuietOption,
     SizeOption,
-    beside,
-    check_plot,
-    draw,
-    held,
-    interruptible,
-    refuse_source,
-    say,
-    tell,
+    argument,
+    option,
 )
 from contvines.command.recommendation import Recommendation
 
@@ -32,43 +25,26 @@ if TYPE_CHECKING:
 def recommend(
     study: Annotated[
         Path,
-        typer.Argument(
-            metavar="STUDY.toml",
-            help="A study; its [survey] vary names the free and the uncertain parameters.",
-        ),
+        argument("STUDY.toml", "A study; its [survey] vary names the free and the uncertain parameters."),
     ],
     cost: Annotated[
         float,
-        typer.Option(
-            "--cost",
-            metavar="PERCENT",
-            min=0.1,
-            max=50.0,
-            help="Largest loss of performance within the tolerance.",
-        ),
+        option("--cost PERCENT", "Largest loss of performance within the tolerance.", min=0.1, max=50.0),
     ] = 5.0,
     target: Annotated[
         str | None,
-        typer.Option(
-            "--target",
-            metavar="LENGTH",
-            help='Response that is small enough, "30 mm"; by default 0.9 of that without absorber.',
+        option(
+            "--target LENGTH",
+            'Response that is small enough, "30 mm"; by default 0.9 of that without absorber.',
         ),
     ] = None,
     workers: Annotated[
         int | None,
-        typer.Option(
-            "--workers", min=1, help="Number of processes on this computer; by default one per core."
-        ),
+        option("--workers", "Number of processes on this computer; by default one per core.", min=1),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="FILE.json",
-            help="Result file; by default STUDY-recommend.json in this folder.",
-        ),
+        option("-o, --output FILE.json", "Result file; by default STUDY-recommend.json in this folder."),
     ] = None,
     plot: PlotOption = None,
     size: SizeOption = None,
@@ -87,7 +63,6 @@ def recommend(
     read = read_study(study)
     place = output or beside(study, "-recommend.json")
     refuse_source(place, study)
-    check_plot(plot, size)
     goal = None if target is None else _target(target, read)
     with held(place, quiet, fresh):
         found = recommended(read, place, cost / 100.0, goal, workers, quiet)

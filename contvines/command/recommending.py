@@ -7,6 +7,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -154,87 +155,70 @@ def recommend(
 
     if not isinstance(study, Study):
         study = read_study(study)
-    work = _Work(study, workers, journal, tell, progress)
-    places = work.first_look()
-    best = _best(places)
-    for count in LATER if best is not None else ():
-        assert best is not None
-        low, high = _neighbours(places, best.value)
-        values = map(_tidy, np.linspace(low, high, count))
-        places = _merged(places, work.later_look(values, best.value, cost))
-        best = _best([place for place in places if place.samples == work.samples])
-        if best is None:
-            break
+    work = _Work(study, cost, workers, journal, tell, progress)
+    best = work.first_look()
+    for count in LATER:
+        if best is not None:
+            best = work.between_neighbours(best, count)
+    rows, jumps = None, []
     if best is not None:
-        places, best = work.passed_over(places, best, cost)
-    jumps: list[Jump] = []
-    if best is not None:
-        places, best, jumps = work.away_from_jumps(places, best, cost)
-    rows = None
-    if best is not None:
-        places, best, rows = work.at_choice(places, best, cost)
-    return work.recommendation(places, best, rows, jumps, cost, target)
+        best, jumps = work.away_from_jumps(work.passed_over(best))
+        best, rows = work.at_choice(best)
+    return work.recommendation(best, rows, jumps, target)
 
 
+@dataclass
 class _Work:
     """The machines of a recommendation, and what is asked of them."""
 
-    def __init__(
-        self,
-        study: Study,
-        workers: int | None,
-        journal: Callable[[int], Path | None],
-        tell: Callable[[str], None],
-        progress: bool,
-    ) -> None:
+    study: Study
+    cost: float
+    workers: int | None
+    journal: Callable[[int], Path | None]
+    tell: Callable[[str], None]
+    progress: bool
+
+    def __post_init__(self) -> None:
         from contvines.coexistence.population import population_of
         from contvines.command.compose import check_shaken, machine
         from contvines.command.survey_study import machines_of, plan_and_machine, units_of
         from contvines.survey.plan import Plan
 
+        study = self.study
         if study.sort is Sort.FLOW:
             raise ValueError(
                 f"{study.path}: contvines recommend is for machines; contvines survey --best chooses of flows."
             )
         if "samples" not in study.survey.model_fields_set:
             survey = study.survey.model_copy(update={"samples": SAMPLES})
-            study = dataclasses.replace(study, survey=survey)
-        self.study, self.workers, self.journal, self.tell, self.progress = (
-            study,
-            workers,
-            journal,
-            tell,
-            progress,
-        )
+            self.study = study = dataclasses.replace(study, survey=survey)
         check_shaken(study, study.survey.vary)
         self.assumed: list[str] = []
         self.missed: list[str] = []  # what is not known as simulations missed it
         if study.survey.vary:
-            plan, model = plan_and_machine(study)
+            self.plan, model = plan_and_machine(study)
         else:
-            plan, model = Plan({}, {}), machine(study)
+            self.plan, model = Plan({}, {}), machine(study)
             self.assumed.append(
                 "nothing is uncertain, as [survey] vary names nothing: the choice is for the study's own numbers"
             )
-        if len(plan.axes) > 1:
+        axes = self.plan.axes
+        if len(axes) > 1:
             raise ValueError(
-                f"{study.path}: [survey] vary has {' and '.join(plan.axes)} on a grid: contvines recommend chooses one; "
+                f"{study.path}: [survey] vary has {' and '.join(axes)} on a grid: contvines recommend chooses one; "
                 "make the others uncertain (uniform = [from, to]), or leave them out. contvines survey --best chooses two."
             )
-        self.name = next(iter(plan.axes), "half_width")
+        self.name = next(iter(axes), "half_width")
         names = list(model.amount_names)
-        if not plan.axes:
+        if not axes:
             if study.sort is not Sort.PHYSICAL or self.name not in names:
                 raise ValueError(_what(study, names))
             model = model.given_by(self.name)
-        self.plan, self.model = plan, model
-        self.family, self.units = machines_of(study, model), units_of(study, model)
-        self.drawn = plan.samples
-        self.samples = plan.shape[-1] if plan.samples else 1
-        self.params = model.vector(study.loose)
+        self.model, self.family, self.units = model, machines_of(study, model), units_of(study, model)
+        self.drawn = self.plan.samples
+        self.samples = self.plan.shape[-1] if self.drawn else 1
         self.theory = self._theory()
-        population = population_of(self.model, study.parameter, **study.loose)
-        self.integrated = population.price > 1.0
+        self.integrated = population_of(model, study.parameter, **study.loose).price > 1.0
         if self.integrated:
             self.assumed.append(
                 f"responses elsewhere than at the choice are those of simulations up and down at {SWEPT} values and from drawn starts: "
@@ -243,13 +227,14 @@ class _Work:
         self.pace: float | None = None  # seconds a machine
         self.round = self.surveys = 0
         self.rows: dict[float, _Looked] = {}  # by value, of all samples
+        self.places: dict[float, Place] = {}  # ascending
 
     def _theory(self) -> FirstClearance | None:
         from orbits.design.first_clearance import first_clearance
 
         if self.name != "half_width" or "damping" not in self.model.parameter_names:
             return None
-        return first_clearance(self.model, self.params)
+        return first_clearance(self.model, self.model.vector(self.study.loose))
 
     def own(self) -> float | None:
         """The study's own value of what is chosen."""
@@ -280,19 +265,36 @@ class _Work:
             own = None
         return sorted({*map(_tidy, values), *([] if own is None else [own])})
 
-    def first_look(self) -> list[Place]:
-        """Diagrams of the study's own machine over the range."""
+    def best(self) -> Place | None:
+        """The place with the lowest worst response of all samples; None where none is known."""
+        return _best(place for place in self.places.values() if place.samples == self.samples)
+
+    def note(self, places: Iterable[Place]) -> None:
+        """Take up places, those of more samples instead of those of the first look."""
+        self.places = dict(sorted((self.places | {place.value: place for place in places}).items()))
+
+    def first_look(self) -> Place | None:
+        """Diagrams of the study's own machine over the range; the best place."""
         from contvines.survey.plan import Plan
 
         values = self.range()
         self._tell_round(len(values))
         found = self._looked(Plan({self.name: np.array(values)}, {}))
-        rows = [_Looked(*row) for row in zip(*(column.reshape(-1, 1) for column in found))]
+        rows = dict(zip(values, (_Looked(*row) for row in zip(*(c.reshape(-1, 1) for c in found)))))
         if not self.drawn:
-            self.rows |= dict(zip(values, rows))
-        return [_place(value, row, 1) for value, row in zip(values, rows)]
+            self.rows |= rows
+        self.note(_place(value, row, 1) for value, row in rows.items())
+        return _best(self.places.values())
 
-    def later_look(self, values: Iterable[float], near: float, cost: float) -> list[Place]:
+    def between_neighbours(self, best: Place, count: int) -> Place | None:
+        """Diagrams of the samples at so many values between the neighbours of the best; the best then."""
+        values = list(self.places)
+        at = values.index(best.value)
+        low, high = values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)]
+        self.later_look(map(_tidy, np.linspace(low, high, count)), best.value)
+        return self.best()
+
+    def later_look(self, values: Iterable[float], near: float) -> None:
         """Diagrams of the samples: all of them at the value nearest to the best; at others first of the sample that is worst there, and no more
         where that costs too much, for the worst of all samples is no better.
         """
@@ -307,29 +309,23 @@ class _Work:
         new = [v for v in new if v not in known]
         best = min(full, key=lambda v: known[v].known.max(), default=None)
         worst = every[:1] if best is None else every[[int(np.argmax(known[best].known))]]
-        limit = math.inf if best is None else (1.0 + cost) * float(known[best].known.max())
+        limit = math.inf if best is None else (1.0 + self.cost) * float(known[best].known.max())
         self._look(new, worst)
         self._look([v for v in new if known[v].known[worst[0]] <= limit], np.setdiff1d(every, worst))
-        return [_place(value, row, self.samples) for value, row in known.items()]
+        self.note(_place(value, row, self.samples) for value, row in known.items())
 
-    def passed_over(self, places: list[Place], best: Place, cost: float) -> tuple[list[Place], Place]:
-        """Places, and the best one: values at which the study's own machine has a much lower response than the best has in its worst sample
+    def passed_over(self, best: Place) -> Place:
+        """The best place: values at which the study's own machine has a much lower response than the best has in its worst sample
         are looked at in all samples, the lowest first, and then between their neighbours.
         """
         while True:
-            alone = _best([place for place in places if place.value not in self.rows])
-            if alone is None or alone.worst >= (1.0 - cost) * best.worst:
-                return places, best
-            places = _merged(places, self.later_look([alone.value], alone.value, cost))
-            found = _best([place for place in places if place.samples == self.samples and not place.left])
+            alone = _best(place for place in self.places.values() if place.value not in self.rows)
+            if alone is None or alone.worst >= (1.0 - self.cost) * best.worst:
+                return best
+            self.later_look([alone.value], alone.value)
+            found = self.best()
             if found is not None and found.worst < best.worst:
-                low, high = _neighbours(places, found.value)
-                values = map(_tidy, np.linspace(low, high, LATER[-1]))
-                places = _merged(places, self.later_look(values, found.value, cost))
-                best = (
-                    _best([place for place in places if place.samples == self.samples and not place.left])
-                    or found
-                )
+                best = self.between_neighbours(found, LATER[-1]) or found
 
     def _look(self, values: Sequence[float], samples: np.ndarray) -> None:
         """Diagrams at these values, of these samples."""
@@ -378,40 +374,45 @@ class _Work:
         return found
 
     # ------------------------------------------------------------------ at the choice
-    def away_from_jumps(
-        self, places: list[Place], best: Place, cost: float
-    ) -> tuple[list[Place], Place, list[Jump]]:
-        """Places, the best one, and where the response jumps beside the choice.
+    def away_from_jumps(self, best: Place) -> tuple[Place, list[Jump]]:
+        """The best place, and where the response jumps beside the choice.
 
         A rise next to the tolerance is looked at ever nearer, in the sample in which it rises most: a jump is what does not get smaller, or is near enough all the same. A choice within
         `MARGIN` of it gives way to the value that is as far, if that costs no more than the tolerance.
         """
         jumps, wanted = [], best.value
         for side in (-1, 1):
-            jump = self._jump(places, best, cost, side)
+            jump = self._jump(best, side)
             if jump is not None:
                 jumps.append(jump)
                 kept_off = jump.at * (1.0 - side * MARGIN)
                 wanted = max(wanted, kept_off) if side < 0 else min(wanted, kept_off)
-        low, high = _tolerance(places, best, cost)
+        low, high = self.tolerance(best)
         wanted = _tidy(min(max(wanted, low), high))
         if wanted == best.value:
-            return places, best, jumps
+            return best, jumps
         self._look([wanted], np.arange(self.samples))
         other = _place(wanted, self.rows[wanted], self.samples)
-        places = _merged(places, [other])
-        return places, other if other.worst <= (1.0 + cost) * best.worst else best, jumps
+        self.note([other])
+        return other if other.worst <= (1.0 + self.cost) * best.worst else best, jumps
 
-    def _jump(self, places: list[Place], best: Place, cost: float, side: int) -> Jump | None:
+    def tolerance(self, best: Place) -> tuple[float, float]:
+        """The farthest values about the best, without a gap, at which the worst response costs at most so much; of places with all samples, and
+        those with a sample that costs more.
+        """
+        places = [place for place in self.places.values() if place.samples == best.samples]
+        at = [place.value for place in places].index(best.value)
+        costly = [not p.worst <= (1.0 + self.cost) * best.worst for p in places]
+        low = max((i + 1 for i in range(at) if costly[i]), default=0)
+        high = next((i - 1 for i in range(at + 1, len(places)) if costly[i]), len(places) - 1)
+        return places[low].value, places[high].value
+
+    def _jump(self, best: Place, side: int) -> Jump | None:
         """The jump next to the tolerance below (-1) or above (1) the best, or a rise as large near by; None where there is neither."""
-        all_ = [place for place in places if place.samples == best.samples and math.isfinite(place.worst)]
-        end = next(
-            i for i, place in enumerate(all_) if place.value == _tolerance(places, best, cost)[side > 0]
-        )
-        if not 0 <= end + side < len(all_):
-            return None
-        good, bad = all_[end], all_[end + side]
-        if bad.worst < (1.0 + JUMP) * best.worst:
+        known = [p for p in self.places.values() if p.samples == best.samples and math.isfinite(p.worst)]
+        good = self.places[self.tolerance(best)[side > 0]]
+        end = known.index(good) + side
+        if not 0 <= end < len(known) or (bad := known[end]).worst < (1.0 + JUMP) * best.worst:
             return None
         sample = [int(np.nanargmax(self.rows[bad.value].known))]
         inner, outer = (float(self.rows[v].known[sample[0]]) for v in (good.value, bad.value))
@@ -434,10 +435,8 @@ class _Work:
         steep = abs(bad.value - best.value) <= STEEP * abs(best.value)
         return Jump(bad.value, bad.value, bad.worst) if steep else None
 
-    def at_choice(
-        self, places: list[Place], best: Place, cost: float
-    ) -> tuple[list[Place], Place | None, Survey | None]:
-        """Diagrams of all samples at the choice, with simulated starts: all places, the choice, its rows.
+    def at_choice(self, best: Place) -> tuple[Place | None, Survey | None]:
+        """Diagrams of all samples at the choice, with simulated starts: the choice, its rows.
 
         Where places were simulated alone and the diagrams know a larger response, another one may be the best, which is looked at in its turn.
         """
@@ -445,42 +444,35 @@ class _Work:
 
         seen: dict[float, Survey] = {}
         choice: Place | None = best
+        starts = FEW if self.integrated else STARTS
         while choice is not None and choice.value not in seen and len(seen) < TRIED:
             plan = Plan({self.name: np.array([choice.value])}, self.drawn)
             self.pace = self.pace if not self.integrated else None
             self._tell_round(len(plan))
-            starts = FEW if self.integrated else STARTS
-            rows = self.surveyed(
-                plan, ("peak", "lower_peak", "modulated", loads, met), values=VALUES, starts=starts
-            )
-            seen[choice.value] = rows
-            if self.integrated:
-                row = self.rows[choice.value] = _Looked(*(column.ravel() for column in _looked(rows)))
-                exact = _place(choice.value, row, self.samples)
-                places = _merged(places, [exact])
-                if exact.worst <= (1.0 + AGREES) * choice.worst:
-                    choice = exact
-                    break
-                if math.isfinite(exact.worst):
-                    self.missed.append(
-                        f"whether other values than {figures(choice.value)} have larger responses: there simulations up and down missed one "
-                        f"({figures(choice.worst)}, by diagrams {figures(exact.worst)})"
-                    )
-                choice = _best([place for place in places if place.samples == self.samples])
-                if choice is not None:
-                    places, choice = self.passed_over(places, choice, cost)
+            asked = ("peak", "lower_peak", "modulated", loads, met)
+            rows = seen[choice.value] = self.surveyed(plan, asked, values=VALUES, starts=starts)
+            if not self.integrated:
+                break
+            row = self.rows[choice.value] = _Looked(*(column.ravel() for column in _looked(rows)))
+            exact = _place(choice.value, row, self.samples)
+            self.note([exact])
+            if exact.worst <= (1.0 + AGREES) * choice.worst:
+                choice = exact
+                break
+            if math.isfinite(exact.worst):
+                self.missed.append(
+                    f"whether other values than {figures(choice.value)} have larger responses: there simulations up and down missed one "
+                    f"({figures(choice.worst)}, by diagrams {figures(exact.worst)})"
+                )
+            choice = self.best()
+            if choice is not None:
+                choice = self.passed_over(choice)
         if choice is not None and choice.value not in seen:
-            choice = _best([place for place in places if place.value in seen])
-        return places, choice, None if choice is None else seen[choice.value]
+            choice = _best(place for place in self.places.values() if place.value in seen)
+        return choice, None if choice is None else seen[choice.value]
 
     def recommendation(
-        self,
-        places: list[Place],
-        best: Place | None,
-        rows: Survey | None,
-        jumps: list[Jump],
-        cost: float,
-        target: float | None,
+        self, best: Place | None, rows: Survey | None, jumps: list[Jump], target: float | None
     ) -> Recommendation:
         """All that is printed of the choice."""
         from contvines.command.compare import peaks_compared
@@ -491,7 +483,7 @@ class _Work:
             f"the response at {self.name.replace('_', ' ')} = {figures(place.value)} {self.units.get(self.name, '')}".rstrip()
             + (f" of {place.unknown} of {place.samples} samples" if place.samples > 1 else "")
             + (f" ({place.why})" if place.why else "")
-            for place in places
+            for place in self.places.values()
             if place.unknown
         ]
         unknown += self.missed
@@ -507,8 +499,8 @@ class _Work:
         given = {
             "study": str(study.path), "title": study.path.stem, "name": self.name, "parameter": study.parameter,
             "within": study.within, "units": {**self.units, "time": "s" if self.model.units else ""},
-            "own": self.own(), "cost": cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
-            "machine": self._machine(), "places": places, "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
+            "own": self.own(), "cost": self.cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
+            "machine": self._machine(), "places": list(self.places.values()), "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
             "absorber": self.model.in_cavity,
         }  # fmt: skip
         if best is None or rows is None:
@@ -536,7 +528,7 @@ class _Work:
                 0, f"the largest response at the choice: {figures(checked[0])} by the diagram, {figures(checked[1])} by simulation"
             )  # fmt: skip
         return Recommendation(
-            **given, value=best.value, tolerance=_tolerance(places, best, cost), works=works, met=shares,
+            **given, value=best.value, tolerance=self.tolerance(best), works=works, met=shares,
             loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked, jumps=jumps,
             start_up=self._start_up(model, compared["bare"][1]) if has_bare else None, curves=curves + (self._lines(model) if has_bare else []),
         )  # fmt: skip
@@ -642,11 +634,12 @@ class _Work:
         ]
 
     def _start_up(self, model: Varying, at: float) -> Start:
-        from contvines.command.measured import scales
+        from contvines.command.measured import Scales
         from orbits.design.start_up import start_up
 
         params = model.vector_at(self.study.parameter, at, self.study.loose)
-        length, _, seconds, _ = scales(model, params)
+        scales = Scales(model, params)
+        length, seconds = scales.factor("length"), scales.factor("time")
         seen = start_up(model, params)
         self.assumed.append(
             f"start-up from rest at {self.study.parameter} = {figures(at)} {self.units.get(self.study.parameter, '')}".rstrip()
@@ -658,8 +651,7 @@ class _Work:
             bare_peak=float(np.abs(seen.bare).max()) * length,
             settled=seen.settled * seconds,
             bare_settled=seen.bare_settled * seconds,
-            fastest_impact=float(seen.impact_speeds.max(initial=0.0))
-            * float(model.gauge("velocity", params)),
+            fastest_impact=float(seen.impact_speeds.max(initial=0.0)) * scales.factor("velocity"),
             worst_relative=float(np.abs(seen.relative).max()) * length,
             series={
                 "time": (seen.times[thin] * seconds).tolist(),
@@ -708,36 +700,10 @@ def _place(value: float, row: _Looked, samples: int) -> Place:
     return Place(value, float(known.max()), median, float(row.engaged.max()), unknown, samples, why, not all_)
 
 
-def _best(places: Sequence[Place]) -> Place | None:
+def _best(places: Iterable[Place]) -> Place | None:
     """The place with the lowest worst response; None where none is known."""
-    known = [place for place in places if math.isfinite(place.worst)]
+    known = (place for place in places if math.isfinite(place.worst))
     return min(known, key=lambda place: place.worst, default=None)
-
-
-def _neighbours(places: Sequence[Place], value: float) -> tuple[float, float]:
-    values = sorted(place.value for place in places)
-    at = values.index(value)
-    return values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)]
-
-
-def _merged(places: Sequence[Place], more: Sequence[Place]) -> list[Place]:
-    """All places, those of more samples in place of those of the first look."""
-    by_value = {place.value: place for place in places} | {place.value: place for place in more}
-    return sorted(by_value.values(), key=lambda place: place.value)
-
-
-def _tolerance(places: Sequence[Place], best: Place, cost: float) -> tuple[float, float]:
-    """The farthest values about the best, without a gap, at which the worst response costs at most so much; of places with all samples, and
-    those with a sample that costs more.
-    """
-    all_ = [place for place in places if place.samples == best.samples]
-    at, limit = all_.index(best), (1.0 + cost) * best.worst
-    low = high = at
-    while low > 0 and all_[low - 1].worst <= limit:
-        low -= 1
-    while high < len(all_) - 1 and all_[high + 1].worst <= limit:
-        high += 1
-    return all_[low].value, all_[high].value
 
 
 def _tidy(value: float) -> float:

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from contvines.command.frame import TrustOption, beside, load_file, say
+from contvines.command.frame import beside, load_file, say
+from contvines.command.options import TrustOption, argument, option
 
 if TYPE_CHECKING:
     from contvines.graph.graph import Graph
@@ -17,23 +18,17 @@ if TYPE_CHECKING:
 def report(
     file: Annotated[
         Path,
-        typer.Argument(
-            metavar="FILE",
-            help="Result of diagram, atlas or chart (.vines), survey (.nc) or recommend (.json).",
-        ),
+        argument("FILE", "Result of diagram, atlas or chart (.vines), survey (.nc) or recommend (.json)."),
     ],
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o", "--output", metavar="PAGE.html", help="The page; by default FILE.html in this folder."
-        ),
+        option("-o, --output PAGE.html", "The page; by default FILE.html in this folder."),
     ] = None,
     pdf: Annotated[
         Path | None,
-        typer.Option(
-            "--pdf",
-            metavar="FILE.pdf",
-            help="Also a PDF, printed by the browser of this computer (a recommendation needs no browser).",
+        option(
+            "--pdf FILE.pdf",
+            "Also a PDF, printed by the browser of this computer (a recommendation needs no browser).",
         ),
     ] = None,
     trust: TrustOption = False,

@@ -6,18 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from contvines.command.chart import chart_of, fingerprint_of
-from contvines.command.frame import (
-    FileArgument,
-    FreshOption,
-    JsonOption,
-    QuietOption,
-    TrustOption,
-    held,
-    load_file,
-    place_of,
-    refuse_unfinished,
-    say,
-)
+from contvines.command.frame import held, load_file, place_of, refuse_unfinished, say
+from contvines.command.options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOption, option
 from contvines.command.run import graph_of
 from contvines.command.study_data import Study
 
@@ -27,12 +17,7 @@ if TYPE_CHECKING:
 
 OutputOption = Annotated[
     Path | None,
-    typer.Option(
-        "-o",
-        "--output",
-        metavar="FILE.vines",
-        help="Result file; by default FILE-rerun.vines in this folder.",
-    ),
+    option("-o, --output FILE.vines", "Result file; by default FILE-rerun.vines in this folder."),
 ]
 
 

@@ -2,50 +2,42 @@
 
 from typing import Annotated
 
-import typer
-
 from contvines.command.amounts import inside
-from contvines.command.frame import (
+from contvines.command.frame import draw, load_file, tell
+from contvines.command.options import (
     FileArgument,
     JsonOption,
     PlotOption,
     SizeOption,
     TrustOption,
-    check_plot,
-    draw,
-    load_file,
-    tell,
+    argument,
+    option,
 )
 
 
 def robustness(
     file: FileArgument,
-    label: Annotated[
-        str, typer.Argument(metavar="LABEL", help="A branch (B1), or one of its stable points (B1:12).")
-    ],
-    at: Annotated[
-        str | None, typer.Option("--at", metavar="VALUE", help="With a branch: the value of its parameter.")
-    ] = None,
+    label: Annotated[str, argument("LABEL", "A branch (B1), or one of its stable points (B1:12).")],
+    at: Annotated[str | None, option("--at VALUE", "With a branch: the value of its parameter.")] = None,
     values: Annotated[
-        int, typer.Option("--values", min=1, help="With a branch: number of values on its stable part.")
+        int, option("--values", "With a branch: number of values on its stable part.", min=1)
     ] = 16,
     vary: Annotated[
         list[str] | None,
-        typer.Option(
-            "--vary",
-            metavar="NAME",
-            help="Also find the interval of this parameter in which the motion is stable (repeatable).",
+        option(
+            "--vary NAME",
+            "Also find the interval of this parameter in which the motion is stable (repeatable).",
         ),
     ] = None,
     starts: Annotated[
         int | None,
-        typer.Option(
+        option(
             "--starts",
+            "Number of starts for the share of the basin; by default 1024, for declared machines 256.",
             min=1,
-            help="Number of starts for the share of the basin; by default 1024, for declared machines 256.",
         ),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the random starts.")] = 0,
+    seed: Annotated[int, option("--seed", "Seed of the random starts.", min=0)] = 0,
     plot: PlotOption = None,
     size: SizeOption = None,
     json: JsonOption = False,
@@ -58,7 +50,6 @@ def robustness(
     import contvines
     from contvines.problems.registry import without_problem
 
-    check_plot(plot, size)
     graph = load_file(file, trust)
     name, _, place = label.partition(":")
     branches = graph.branches

@@ -7,16 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from contvines.command.frame import (
-    CompareOption,
-    DetailsOption,
-    FileArgument,
-    FreshOption,
-    LabelArgument,
-    PlotOption,
-    QuietOption,
-    StudyArgument,
-    TrustOption,
-    check_plot,
     check_special,
     draw,
     finished_of,
@@ -29,6 +19,20 @@ from contvines.command.frame import (
     tell_result,
     working,
 )
+from contvines.command.options import (
+    CompareOption,
+    DetailsOption,
+    FileArgument,
+    FreshOption,
+    LabelArgument,
+    PlotOption,
+    QuietOption,
+    StudyArgument,
+    TrustOption,
+    XOption,
+    YOption,
+    option,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,19 +44,9 @@ if TYPE_CHECKING:
 SIMULATED = "#2f6f3e"
 OutputOption = Annotated[
     Path | None,
-    typer.Option(
-        "-o",
-        "--output",
-        metavar="FILE.vines",
-        help="Result file; by default STUDY.vines (diagram) or STUDY-COMMAND.vines in this folder.",
-    ),
-]
-XOption = Annotated[str | None, typer.Option("-x", help="Measure on the x axis; by default the parameter.")]
-YOption = Annotated[
-    str | None,
-    typer.Option(
-        "-y",
-        help="Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem (--help behind STUDY.toml names it).",
+    option(
+        "-o, --output FILE.vines",
+        "Result file; by default STUDY.vines (diagram) or STUDY-COMMAND.vines in this folder.",
     ),
 ]
 
@@ -67,9 +61,9 @@ def diagram(
     y: YOption = None,
     look: Annotated[
         bool,
-        typer.Option(
+        option(
             "--look/--no-look",
-            help="At the end, simulate a few starts and list the motions they reach that are on no branch.",
+            "At the end, simulate a few starts and list the motions they reach that are on no branch.",
         ),
     ] = True,
     compare: CompareOption = None,
@@ -90,11 +84,10 @@ def atlas(
     details: DetailsOption = False,
     budget: Annotated[
         int | None,
-        typer.Option(
-            "--budget",
+        option(
+            "--budget N",
+            "Work that it may take, in place of [atlas] budget. A larger one goes on from what was computed.",
             min=1,
-            metavar="N",
-            help="Work that it may take, in place of [atlas] budget. A larger one goes on from what was computed.",
         ),
     ] = None,
 ) -> None:
@@ -196,7 +189,6 @@ def _run(
 
         check_compared(compare, plot is not None)
     target = place_of(output, path, ".vines" if command == "diagram" else f"-{command}.vines")
-    check_plot(plot)
     with held(target, quiet, fresh):
         problems = plot is not None or (command == "diagram" and not quiet)  # measures need them
         graph = graph_of(study, command, target, quiet, problems=problems, look=look)

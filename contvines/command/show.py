@@ -2,7 +2,8 @@
 
 import typer
 
-from contvines.command.frame import FileArgument, JsonOption, load_file, say_state, tell
+from contvines.command.frame import load_file, say_state, tell
+from contvines.command.options import FileArgument, JsonOption
 
 
 def show(file: FileArgument, json: JsonOption = False) -> None:

@@ -3,67 +3,47 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
-from contvines.command.frame import (
-    FreshOption,
-    JsonOption,
-    PlotOption,
-    QuietOption,
-    beside,
-    check_plot,
-    draw,
-    refuse_source,
-    tell,
-)
+from contvines.command.frame import beside, draw, refuse_source, tell
+from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption, argument, option
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
 
 
 def survey(
-    study: Annotated[Path, typer.Argument(metavar="STUDY.toml", help="A study with a section [survey].")],
+    study: Annotated[Path, argument("STUDY.toml", "A study with a section [survey].")],
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="FILE.nc",
-            help="Result file; by default STUDY-survey.nc in this folder, with a CSV beside it.",
+        option(
+            "-o, --output FILE.nc",
+            "Result file; by default STUDY-survey.nc in this folder, with a CSV beside it.",
         ),
     ] = None,
     plot: PlotOption = None,
-    outcome: Annotated[
-        str | None, typer.Option("--outcome", help="Outcome to draw; by default the first.")
-    ] = None,
+    outcome: Annotated[str | None, option("--outcome", "Outcome to draw; by default the first.")] = None,
     workers: Annotated[
         int | None,
-        typer.Option(
-            "--workers", min=1, help="Number of processes on this computer; by default one per core."
-        ),
+        option("--workers", "Number of processes on this computer; by default one per core.", min=1),
     ] = None,
     cluster: Annotated[
         str | None,
-        typer.Option(
-            "--cluster", metavar="ADDRESS", help="Address of a dask cluster to use instead: tcp://host:port."
-        ),
+        option("--cluster ADDRESS", "Address of a dask cluster to use instead: tcp://host:port."),
     ] = None,
     best: Annotated[
         str | None,
-        typer.Option("--best", metavar="TEXT", help='The goal, for example "lowest worst-case peak".'),
+        option("--best TEXT", 'The goal, for example "lowest worst-case peak".'),
     ] = None,
     over: Annotated[
         list[str] | None,
-        typer.Option("--over", metavar="NAME", help="With --best: the parameter to choose (one or two)."),
+        option("--over NAME", "With --best: the parameter to choose (one or two)."),
     ] = None,
     covered: Annotated[
         float | None,
-        typer.Option(
-            "--covered",
-            metavar="SHARE",
+        option(
+            "--covered SHARE",
+            "With --best: least share of the interval in which the response must be known; by default 0.999.",
             min=0.0,
             max=1.0,
-            help="With --best: least share of the interval in which the response must be known; by default 0.999.",
         ),
     ] = None,
     fresh: FreshOption = False,
@@ -73,7 +53,9 @@ def survey(
     """Diagrams of many machines: grids, tolerances, samples; an interrupted run goes on."""
     from contvines.command.compose import check_shaken
     from contvines.command.study import read_study
+    from contvines.command.surveying import surveyed
     from contvines.export import check_target
+    from contvines.survey.outcomes import KNOWN
 
     read = read_study(study)
     check_shaken(read, read.survey.vary)
@@ -81,7 +63,6 @@ def survey(
     refuse_source(target, study)
     check_target(target, "nc")
     check_target(target.with_suffix(".csv"), "csv")
-    check_plot(plot)
     if over and best is None:
         raise ValueError(f"--over {' '.join(over)}: this goes with --best; say what is wanted.")
     if covered is not None and best is None:
@@ -91,13 +72,15 @@ def survey(
             f"--workers {workers} and --cluster {cluster} exclude each other; leave one of them out."
         )
     if best is not None:
-        from contvines.command.best import choose
+        from contvines.command.best import asking, check_over, read_wish, tell_choice
 
-        choose(read, best, over or [], covered, target, workers, cluster, plot, json_, fresh, quiet)
-        return
-    from contvines.command.surveying import surveyed
-
+        wish = read_wish(best)
+        check_over(read, over or [])
+        read = asking(read, wish.outcome)
     found = surveyed(read, target, workers, cluster, fresh, quiet)
+    if best is not None:
+        tell_choice(read, best, KNOWN if covered is None else covered, found, json_, quiet, plot)
+        return
     if json_ or not quiet:
         tell(found, as_json(found) if json_ else None)
     draw(plot, lambda: found.plot(outcome), quiet)

@@ -4,22 +4,15 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
-from contvines.command.frame import (
+from contvines.command.frame import Interrupted, beside, draw, held, refuse_source, say, tell
+from contvines.command.options import (
     FreshOption,
-    Interrupted,
     JsonOption,
     PlotOption,
     QuietOption,
     SizeOption,
-    beside,
-    check_plot,
-    draw,
-    held,
-    refuse_source,
-    say,
-    tell,
+    argument,
+    option,
 )
 from contvines.shared.modulation import BAND
 from contvines.shared.number_text import figures
@@ -34,26 +27,17 @@ if TYPE_CHECKING:
 
 
 def sweep(
-    study: Annotated[
-        Path, typer.Argument(metavar="STUDY.toml", help="A study; its section [sweep] is optional.")
-    ],
-    down: Annotated[
-        bool, typer.Option("--down", help="From the upper end of the interval to the lower.")
-    ] = False,
+    study: Annotated[Path, argument("STUDY.toml", "A study; its section [sweep] is optional.")],
+    down: Annotated[bool, option("--down", "From the upper end of the interval to the lower.")] = False,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="FILE.csv",
-            help="Result file; by default STUDY-sweep.csv in this folder.",
-        ),
+        option("-o, --output FILE.csv", "Result file; by default STUDY-sweep.csv in this folder."),
     ] = None,
     plot: PlotOption = None,
     size: SizeOption = None,
     over: Annotated[
         Path | None,
-        typer.Option("--over", metavar="FILE.vines", help="Draw the sweep over the branches of this file."),
+        option("--over FILE.vines", "Draw the sweep over the branches of this file."),
     ] = None,
     fresh: FreshOption = False,
     json_: JsonOption = False,
@@ -77,7 +61,6 @@ def sweep(
         graph = graph_beneath(over, read)
         if plot is None:
             raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
-    check_plot(plot, size)
     with held(target, quiet, fresh, (journal_of(target),)):
         refuse_another(target, header_of(read, down))
         rows = _simulate(read, down, target, quiet)

@@ -220,16 +220,21 @@ class Survey(Resumable):
         PlanError
             If no point has a number.
         """
-        value = self.known(outcome, covered) * (-1.0 if largest else 1.0)
+        value = self.judged(outcome, largest, quantile, covered)
+        if not np.isfinite(value).any():
+            raise PlanError(f"{outcome} is known of no system of the survey; the notes say why")
+        flat = int(np.nanargmax(value) if largest else np.nanargmin(value))
+        place = np.unravel_index(flat, value.shape)
+        point = {name: float(values[i]) for (name, values), i in zip(self.plan.axes.items(), place)}
+        return point, float(value[place])
+
+    def judged(self, outcome: str, largest: bool, quantile: float | None, covered: float) -> np.ndarray:
+        """An outcome over the axes alone, of the samples the worst or this quantile; options as of `best`."""
+        value = self.known(outcome, covered) * (sign := -1.0 if largest else 1.0)
         if self.plan.samples:
             with np.errstate(invalid="ignore"):
                 value = np.max(value, axis=-1) if quantile is None else np.quantile(value, quantile, axis=-1)
-        if not np.isfinite(value).any():
-            raise PlanError(f"{outcome} is known of no system of the survey; the notes say why")
-        place = np.unravel_index(int(np.nanargmin(value)), value.shape)
-        point = {name: float(values[i]) for (name, values), i in zip(self.plan.axes.items(), place)}
-        found = float(value[place])
-        return point, -found if largest else found
+        return sign * value
 
     def __repr__(self) -> str:
         counts = {"failed": self.failed, "not done yet": self.waiting}

@@ -108,30 +108,45 @@ def test_a_larger_response_by_simulation_is_the_one_that_counts():
     assert found.rows[0][:2] == ("recommended", "61 mm")
 
 
+def work_on(cost, samples):
+    """The work of a recommendation before its first look; nothing is computed."""
+    work = object.__new__(recommending._Work)
+    work.name, work.samples, work.drawn = "gap", samples, {"restitution": np.arange(float(samples))}
+    work.rows, work.places, work.pace, work.round, work.integrated = {}, {}, None, 0, False
+    work.cost, work.tell = cost, lambda _: None
+    return work
+
+
+def drawn_responses(monkeypatch, work, values, table):
+    """Responses of a table take the place of diagrams; how many were asked for each time."""
+    looked = []
+
+    def responses(plan):
+        looked.append(len(plan))
+        rows = table[np.searchsorted(values, plan.axes["gap"])][:, plan.samples["restitution"].astype(int)]
+        return recommending._Looked(rows, rows, np.where(np.isnan(rows), "not known", "").astype(object))
+
+    monkeypatch.setattr(work, "_looked", responses)
+    return looked
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_a_value_that_is_good_for_the_studys_own_machine_alone_does_not_hide_a_better_one(seed, monkeypatch):
     """Drawn responses: in the end no value that was looked at has a lower worst response, but for those whose own response costs as much."""
     generator, cost = np.random.default_rng(seed), 0.05
     values = np.round(np.linspace(10.0, 20.0, 81), 3)
     table = 1.0 + generator.random((81, 4))
-    work = object.__new__(recommending._Work)
-    work.name, work.samples, work.drawn = "gap", 4, {"restitution": np.arange(4.0)}
-    work.rows, work.pace, work.round, work.tell, work.integrated = {}, None, 0, lambda _: None, False
-
-    def surveyed(plan, outcomes, swept):
-        rows = table[np.searchsorted(values, plan.axes["gap"])][:, plan.samples["restitution"].astype(int)]
-        return recommending._Looked(rows, rows, np.full(rows.shape, "", object))
-
-    monkeypatch.setattr(work, "surveyed", surveyed)
-    monkeypatch.setattr(recommending, "_looked", lambda found: found)
+    work = work_on(cost, 4)
+    drawn_responses(monkeypatch, work, values, table)
     monkeypatch.setattr(recommending, "_tidy", lambda value: float(values[np.abs(values - value).argmin()]))
     own, worst = dict(zip(values, table[:, 0])), dict(zip(values, table.max(axis=1)))
-    places = [Place(v, own[v], own[v], own[v], 0, 1) for v in values[::10]]
-    best = min(places, key=lambda place: place.worst)
-    places = recommending._merged(places, work.later_look([best.value], best.value, cost))
-    places, best = work.passed_over(places, next(p for p in places if p.value == best.value), cost)
+    work.note(Place(v, own[v], own[v], own[v], 0, 1) for v in values[::10])
+    best = min(work.places.values(), key=lambda place: place.worst)
+    work.later_look([best.value], best.value)
+    best = work.passed_over(work.places[best.value])
     assert best.worst == worst[best.value]
-    assert all(worst[p.value] >= best.worst or own[p.value] >= (1.0 - cost) * best.worst for p in places)
+    looked = work.places.values()
+    assert all(worst[p.value] >= best.worst or own[p.value] >= (1.0 - cost) * best.worst for p in looked)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -143,19 +158,10 @@ def test_machines_that_are_left_out_change_neither_the_choice_nor_the_tolerance(
         1.0 + 0.01 * generator.uniform(0, 2) * (values[:, None] - 15.0) ** 2 + 0.1 * generator.random((7, 4))
     )
     table[generator.random(table.shape) < 0.02] = np.nan
-    work, looked = object.__new__(recommending._Work), []
-    work.name, work.samples, work.drawn = "gap", 4, {"restitution": np.arange(4.0)}
-    work.rows, work.pace, work.round, work.tell, work.integrated = {}, None, 0, lambda _: None, False
-
-    def surveyed(plan, outcomes, swept):
-        looked.append(len(plan))
-        rows = table[np.searchsorted(values, plan.axes["gap"])][:, plan.samples["restitution"].astype(int)]
-        return recommending._Looked(rows, rows, np.where(np.isnan(rows), "not known", "").astype(object))
-
-    monkeypatch.setattr(work, "surveyed", surveyed)
-    monkeypatch.setattr(recommending, "_looked", lambda found: found)
-    places = sorted(work.later_look(values, 15.0, cost), key=lambda place: place.value)
-    best, worst = recommending._best(places), table.max(axis=1)
+    work = work_on(cost, 4)
+    looked = drawn_responses(monkeypatch, work, values, table)
+    work.later_look(values, 15.0)
+    best, worst = work.best(), table.max(axis=1)
     assert best is not None and best.worst == np.nanmin(worst) and best.value == values[np.nanargmin(worst)]
     good = worst <= (1.0 + cost) * best.worst
     low = high = int(np.nanargmin(worst))
@@ -163,15 +169,14 @@ def test_machines_that_are_left_out_change_neither_the_choice_nor_the_tolerance(
         low -= 1
     while high < 6 and good[high + 1]:
         high += 1
-    assert recommending._tolerance(places, best, cost) == (values[low], values[high])
+    assert work.tolerance(best) == (values[low], values[high])
     assert sum(looked) <= table.size
 
 
 @pytest.mark.parametrize(("jump", "chosen"), [(15.0, 15.3), (14.0, 15.06), (math.pi, 15.06)])
 def test_a_choice_keeps_off_a_jump(jump, chosen, monkeypatch):
     """Of a response that grows from 15.06 on either way, and below a jump is twice as large; looked at every 0.02."""
-    work = object.__new__(recommending._Work)
-    work.name, work.samples, work.drawn, work.rows = "gap", 1, {}, {}
+    work = work_on(0.05, 1)
 
     def response(x):
         return 2.5 if x < jump else 1.0 + 0.05 * abs(x - 15.06)
@@ -184,9 +189,8 @@ def test_a_choice_keeps_off_a_jump(jump, chosen, monkeypatch):
     columns = [(response, float), (response, float), (lambda x: "", object)]
     monkeypatch.setattr(work, "_looked", looked)
     values = np.round(np.arange(13.06, 17.0, 0.5), 3).tolist()
-    work._look(values, np.array([0]))
-    places = [recommending._place(v, work.rows[v], 1) for v in values]
-    places, best, jumps = work.away_from_jumps(places, recommending._best(places), 0.05)
+    work.later_look(values, 15.06)
+    best, jumps = work.away_from_jumps(work.best())
     assert best.value == pytest.approx(chosen, abs=0.05)
     if jump < values[0]:
         assert not jumps

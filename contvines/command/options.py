@@ -1,0 +1,95 @@
+"""Arguments and options that several verbs share, and how one is written: as its line in the help."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+
+def option(usage: str, help: str, **further: Any) -> Any:
+    """An option of a verb.
+
+    Parameters
+    ----------
+    usage : str
+        Its names and what stands behind them, as in ``"-o, --output FILE.csv"``.
+    help : str
+    **further
+        As of `typer.Option`.
+    """
+    words = usage.split()
+    names = [word.rstrip(",") for word in words if word.startswith("-")]
+    return typer.Option(*names, metavar=" ".join(words[len(names) :]) or None, help=help, **further)
+
+
+def argument(metavar: str, help: str) -> Any:
+    """An argument of a verb, and its name in the help."""
+    return typer.Argument(metavar=metavar, help=help)
+
+
+def picture(path: Path | None) -> Path | None:
+    """Refuse, before any work, a picture that could not be written. Kept apart from matplotlib."""
+    if path is not None:
+        from contvines.plots.figures import check_picture
+
+        check_picture(path)
+    return path
+
+
+def inches(size: tuple[float, float] | None) -> tuple[float, float] | None:
+    """Refuse, before any work, a size that is no picture's."""
+    if size is not None:
+        from contvines.plots.figures import check_size
+
+        check_size(size)
+    return size
+
+
+StudyArgument = Annotated[Path, argument("STUDY.toml", "A study: model, start, what to continue.")]
+FileArgument = Annotated[Path, argument("FILE.vines", "A file that diagram or trace has made.")]
+LabelArgument = Annotated[str, argument("LABEL", "A special point, for example SB1.")]
+PlotOption = Annotated[
+    Path | None, option("--plot FILE.png", "Draw the result (png, pdf or svg).", callback=picture)
+]
+SizeOption = Annotated[
+    tuple[float, float] | None,
+    option(
+        "--size WIDTH HEIGHT",
+        "Size of the picture in inches; 3.4 2.4 fits one column of a journal.",
+        callback=inches,
+    ),
+]
+QuietOption = Annotated[bool, option("--quiet, -q", "No progress, no table.")]
+JsonOption = Annotated[bool, option("--json", "Print one JSON object with all digits.")]
+FreshOption = Annotated[
+    bool,
+    option("--fresh", "Begin again; an existing file is renamed, FILE.vines to FILE.old.vines."),
+]
+MANY = 30  # branches or loci; of a larger result a summary is printed alone
+DetailsOption = Annotated[
+    bool,
+    option("--details", f"Print the whole tables, even if there are more than {MANY} branches (or loci)."),
+]
+TrustOption = Annotated[
+    bool,
+    option("--trust", "Run the Python code that the file names; only for files from people you trust."),
+]
+VirtualOption = Annotated[
+    bool,
+    option("--virtual", "Also continue virtual motions, which no real machine follows; drawn dotted."),
+]
+CompareOption = Annotated[
+    list[str] | None,
+    option(
+        "--compare KIND",
+        "Draw another response beside: bare (no absorber), tuned (mass damper) or friction (damper); repeatable.",
+    ),
+]
+XOption = Annotated[str | None, option("-x", "Measure on the x axis; by default the parameter.")]
+YOption = Annotated[
+    str | None,
+    option(
+        "-y",
+        "Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem (--help behind STUDY.toml names it).",
+    ),
+]
