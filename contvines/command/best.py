@@ -28,10 +28,8 @@ from contvines.text_table import fitted
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from contvines.flows.problem import FlowProblem
     from contvines.survey import Survey
     from orbits.design import Choice
-    from orbits.machines.varying import Varying
 
 LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
 FILLING = ("worst-case", "worst", "robust", "%", "quantile", "of")  # words that say nothing more
@@ -115,8 +113,8 @@ def asking(study: Study, outcome: str) -> Study:
     return replace(study, survey=study.survey.model_copy(update={"outcomes": [*said, outcome]}))
 
 
-def choose(study: Study, text: str, least: float, found: Survey) -> tuple[Choice, Varying | FlowProblem]:
-    """The best point of a survey, refined, and the machine that it makes.
+def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
+    """The best point of a survey, refined.
 
     Parameters
     ----------
@@ -163,11 +161,10 @@ def choose(study: Study, text: str, least: float, found: Survey) -> tuple[Choice
         )
     points = [dict(zip(plan.axes, map(float, point))) for point in itertools.product(*plan.axes.values())]
     drawn = [dict(zip(plan.samples, map(float, row))) for row in zip(*plan.samples.values())] or [{}]
-    choice = best(
+    return best(
         evaluate, outcome, {name: (float(values[0]), float(values[-1])) for name, values in plan.axes.items()},
         largest=largest, tolerances=drawn, quantile=quantile, known=list(zip(points, map(float, heights))),
     )  # fmt: skip
-    return choice, model
 
 
 def tell_choice(
@@ -178,7 +175,7 @@ def tell_choice(
 
     wish = read_wish(text)
     outcome = wish.outcome
-    choice, model = choose(study, text, least, found)
+    choice, (_, model) = choose(study, text, least, found), plan_and_machine(study)
     units = units_of(study, model)
     alone = outcome in PEAKS and study.sort is Sort.PHYSICAL and "damping" in model.parameter_names
     asked = (model.with_(**choice.values) if alone else model, study.parameter, study.within, ALONE)

@@ -128,8 +128,10 @@ class Scales:
 
     def factor(self, kind: str) -> float:
         """One dimensionless unit of a kind of measure; kinds are those of `orbits.machines.varying.Varying.gauge`."""
-        per = self.model.column(self.params, "mass_ratio") if kind in ("energy", "power") else 1.0
-        return float(self.model.gauge(kind, self.params)) / float(per)
+        one = float(self.model.gauge(kind, self.params))
+        if kind in ("energy", "power"):  # those of the oscillator
+            one /= float(self.params[self.model.parameter_names.index("mass_ratio")])
+        return one
 
     def unit(self, kind: str) -> str:
         """The unit of a kind of measure; "" for a plain number."""

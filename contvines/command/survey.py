@@ -71,19 +71,19 @@ def survey(
         raise ValueError(
             f"--workers {workers} and --cluster {cluster} exclude each other; leave one of them out."
         )
-    if best is not None:
-        from contvines.command.best import asking, check_over, read_wish, tell_choice
-
-        wish = read_wish(best)
-        check_over(read, over or [])
-        read = asking(read, wish.outcome)
-    found = surveyed(read, target, workers, cluster, fresh, quiet)
-    if best is not None:
-        tell_choice(read, best, KNOWN if covered is None else covered, found, json_, quiet, plot)
+    if best is None:
+        found = surveyed(read, target, workers, cluster, fresh, quiet)
+        if json_ or not quiet:
+            tell(found, as_json(found) if json_ else None)
+        draw(plot, lambda: found.plot(outcome), quiet)
         return
-    if json_ or not quiet:
-        tell(found, as_json(found) if json_ else None)
-    draw(plot, lambda: found.plot(outcome), quiet)
+    from contvines.command.best import asking, check_over, read_wish, tell_choice
+
+    wish = read_wish(best)
+    check_over(read, over or [])
+    read = asking(read, wish.outcome)
+    found = surveyed(read, target, workers, cluster, fresh, quiet)
+    tell_choice(read, best, KNOWN if covered is None else covered, found, json_, quiet, plot)
 
 
 def as_json(found: "Survey") -> dict[str, Any]:
