@@ -4,24 +4,39 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import Generic, TypeVar
+from functools import cache
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
+from orbits.numbers import ROUNDOFF
 from orbits.settings import SOLVING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 FLAT = 2
 """Steps from a solution to itself after which its residual is roundoff."""
 
 
 Data = TypeVar("Data")
-Work = TypeVar("Work")
+Work = TypeVar("Work", bound=tuple)
+
+
+@cache
+def _gesv() -> Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray, int]]:
+    """LAPACK's solver with its factors: unlike getrs it does not wake other threads for a matrix of a few rows."""
+    from scipy.linalg import get_lapack_funcs
+
+    return get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))[0]
 
 
 class PlainKernels(ABC, Generic[Data, Work]):
     """The functions that a continuation calls, and two of this package's own; signatures as in `contvines.core.table.TableKernels`."""
 
     compiled = False
+    column: int
+    """Place of F_p among the arrays of a workspace; F is the first."""
     accepted = 0.0
     """Residual of a solution whose steps do not become any smaller."""
     patience = math.inf
@@ -32,10 +47,33 @@ class PlainKernels(ABC, Generic[Data, Work]):
         """Residual and derivatives into `work`; returns the largest residual, infinity where it cannot be evaluated."""
 
     @abstractmethod
+    def fill(self, data: Data, work: Work, matrix: np.ndarray) -> None:
+        """F_u of the linearisation in `work`, shape (N, N), into a matrix of zeros."""
+
     def bordered(
         self, data: Data, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
     ) -> float:
-        """Solve the bordered system with the linearisation in `work`; returns the determinant's sign."""
+        """Solve [[F_u, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`; returns the determinant's sign, 0 if it is singular."""
+        size = len(border) - 1
+        matrix, sides = np.zeros((size + 1, size + 1), order="F"), np.zeros((size + 1, 2), order="F")
+        self.fill(data, work, matrix[:size, :size])
+        matrix[:size, size], matrix[size] = work[self.column].ravel(), border
+        sides[:size, 0] = -work[0].ravel()
+        sides[size, 0], sides[size, 1] = target, 1.0
+        if not np.all(np.isfinite(matrix)):
+            step[:] = tangent[:] = math.nan
+            return 0.0
+        factors, pivots, solution, singular = _gesv()(matrix, sides)
+        flips = np.count_nonzero(pivots != np.arange(size + 1)) + np.count_nonzero(np.diagonal(factors) < 0.0)
+        sign = -1.0 if flips % 2 else 1.0
+        if singular:
+            sign = 0.0
+            nearby = matrix + ROUNDOFF * np.abs(matrix).max() * np.eye(size + 1)
+            _, _, solution, singular = _gesv()(nearby, sides)
+            if singular:
+                return 0.0
+        step[:], tangent[:] = solution[:, 0], solution[:, 1]
+        return sign
 
     @abstractmethod
     def inspect(self, data: Data, u: np.ndarray, p: float, work: Work, row: np.ndarray) -> None:

@@ -58,7 +58,6 @@ class Limits:
 POSITIVE = Limits(0.0, open=True)
 NOT_NEGATIVE = Limits(0.0)
 RESTITUTION = Limits(0.0, 1.0, open=True)
-ANY = Limits()
 SLOPE = Limits(-0.5 * math.pi, 0.5 * math.pi)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from contvines.core.library import native
 from contvines.core.table import TableKernels, native_table
-from orbits.elimination import rearranged
+from orbits.flows.native import rearranged
 from orbits.machines.base import Model
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ import numpy as np
 
 from contvines.core.multipliers.periodic_schur import reference as multipliers
 from orbits.arguments import CycleData, Workspace
-from orbits.elimination import rearranged
-from orbits.elimination.block_cyclic import bordered
+from orbits.flows.native import rearranged
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.machines import path
 from orbits.machines.reference.machine import Reference
@@ -44,17 +43,9 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
             except (ArithmeticError, ValueError):  # of functions in `math`, which have no infinity
                 return math.inf
 
-    def bordered(
-        self,
-        data: CycleData,
-        work: Workspace,
-        border: np.ndarray,
-        target: float,
-        step: np.ndarray,
-        tangent: np.ndarray,
-    ) -> float:
-        """Block-cyclic elimination; see `orbits.elimination.block_cyclic`."""
-        return bordered(data, work, border, target, step, tangent)
+    def fill(self, data: CycleData, work: Workspace, matrix: np.ndarray) -> None:
+        """The whole Jacobian."""
+        matrix[:] = rearranged.matrix(data, work)
 
     def flip(self, data: CycleData, work: Workspace, sign: float) -> None:
         """Turn the linearisation's closure round."""

@@ -105,23 +105,9 @@ class RestKernels(PlainKernels[RestEquations, RestWork]):
         Q[:] = ((ahead @ u - f_ahead) - (behind @ u - f_behind)) / (2.0 * h)
         return float(np.abs(F).max())
 
-    def bordered(
-        self,
-        data: RestEquations,
-        work: RestWork,
-        border: np.ndarray,
-        target: float,
-        step: np.ndarray,
-        tangent: np.ndarray,
-    ) -> float:
-        """Dense elimination."""
-        F, J, Q = work
-        matrix = np.vstack([np.column_stack([J, Q]), border])
-        sides = np.column_stack([np.r_[-F, target], np.r_[np.zeros_like(F), 1.0]])
-        sign = float(np.linalg.slogdet(matrix)[0])
-        solution = np.linalg.solve(matrix, sides) if sign else np.linalg.lstsq(matrix, sides, rcond=None)[0]
-        step[:], tangent[:] = solution[:, 0], solution[:, 1]
-        return sign
+    def fill(self, data: RestEquations, work: RestWork, matrix: np.ndarray) -> None:
+        """K."""
+        matrix[:] = work[1]
 
     def inspect(self, data: RestEquations, u: np.ndarray, p: float, work: RestWork, row: np.ndarray) -> None:
         """Multipliers of the forcing period, and the reserve of friction."""

@@ -15,32 +15,32 @@ from orbits.machines.stepping import Machine
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
 
-def flight(orbit: Motion[Model], segment: int, ahead: np.ndarray) -> np.ndarray:
+def flight(motion: Motion[Model], segment: int, ahead: np.ndarray) -> np.ndarray:
     """w, w', v, v' at phases `ahead` (radians, shape (m,)) after event `segment`, in the mode that follows it; shape (m, 4)."""
-    return _ahead(orbit, _begins(orbit, segment), np.ascontiguousarray(ahead, dtype=float))
+    return _ahead(motion, _begins(motion, segment), np.ascontiguousarray(ahead, dtype=float))
 
 
-def _begins(orbit: Motion[Model], segment: int) -> np.ndarray:
-    word = orbit.word
-    engine = stepper(orbit.model.name)
+def _begins(motion: Motion[Model], segment: int) -> np.ndarray:
+    word = motion.word
+    engine = stepper(motion.model.name)
     return state_of(
-        engine, orbit.params, int(word.codes[segment]), int(word.modes[segment]), orbit.nodes[segment]
+        engine, motion.params, int(word.codes[segment]), int(word.modes[segment]), motion.nodes[segment]
     )
 
 
-def _ahead(orbit: Motion[Model], state: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+def _ahead(motion: Motion[Model], state: np.ndarray, ahead: np.ndarray) -> np.ndarray:
     states, out = np.empty((len(ahead), len(state))), np.empty((len(ahead), 4))
     states[...] = state
-    stepper(orbit.model.name).sample(states, orbit.params, ahead, out)
+    stepper(motion.model.name).sample(states, motion.params, ahead, out)
     return out
 
 
-def sample(orbit: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
+def sample(motion: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
     """Positions and velocities over one period, events included with both their velocities.
 
     Parameters
     ----------
-    orbit : Motion[Model]
+    motion : Motion[Model]
     points : int
         About how many points; at least two per segment.
 
@@ -50,23 +50,23 @@ def sample(orbit: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
         ``tau`` (dimensionless time from the first event), ``phase``, ``w``, ``w_rate``, ``v``, ``v_rate``, the absolute
         positions in units of b ``cavity`` (q1) and ``absorber`` (q2), and ``segment`` (index of the event before).
     """
-    if not len(orbit.word):
-        return _at_rest(orbit, points)
-    durations = np.maximum(orbit.durations, 0.0)
-    counts = np.maximum(2, np.rint(points * durations / (2.0 * np.pi * orbit.periods))).astype(int)
+    if not len(motion.word):
+        return _at_rest(motion, points)
+    durations = np.maximum(motion.durations, 0.0)
+    counts = np.maximum(2, np.rint(points * durations / (2.0 * np.pi * motion.periods))).astype(int)
     ends = np.cumsum(counts)
     segment = np.repeat(np.arange(len(counts)), counts)
     ahead = (np.arange(ends[-1]) - (ends - counts)[segment]) * (durations / (counts - 1))[segment]
     ahead[ends - 1] = durations
-    engine = stepper(orbit.model.name)
-    states = states_of(engine, orbit.params, orbit.word.codes, orbit.word.mode_codes, orbit.nodes)
+    engine = stepper(motion.model.name)
+    states = states_of(engine, motion.params, motion.word.codes, motion.word.mode_codes, motion.nodes)
     out = np.empty((len(ahead), 4))
-    engine.sample(states[segment], orbit.params, ahead, out)
-    phase = orbit.nodes[segment, 0] + ahead
+    engine.sample(states[segment], motion.params, ahead, out)
+    phase = motion.nodes[segment, 0] + ahead
     w, w_rate, v, v_rate = out.T
-    cavity, absorber = orbit.model.bodies(w, v, orbit.params)
+    cavity, absorber = motion.model.bodies(w, v, motion.params)
     return {
-        "tau": (phase - phase[0]) / orbit.parameters["frequency"],
+        "tau": (phase - phase[0]) / motion.parameters["frequency"],
         "phase": phase,
         "w": w,
         "w_rate": w_rate,
@@ -78,14 +78,14 @@ def sample(orbit: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
     }
 
 
-def positions(orbit: Motion[Model], instants: int) -> np.ndarray:
+def positions(motion: Motion[Model], instants: int) -> np.ndarray:
     """w at so many equal phases of each forcing period, from phase zero on, shape (periods * instants,)."""
-    count = instants * orbit.periods
-    if not len(orbit.nodes):
+    count = instants * motion.periods
+    if not len(motion.nodes):
         return np.zeros(count)
-    length = 2.0 * np.pi * orbit.periods
+    length = 2.0 * np.pi * motion.periods
     return positions_of(
-        stepper(orbit.model.name), orbit.params, orbit.word.codes, orbit.word.mode_codes, orbit.nodes, length, count
+        stepper(motion.model.name), motion.params, motion.word.codes, motion.word.mode_codes, motion.nodes, length, count
     )  # fmt: skip
 
 
@@ -137,37 +137,41 @@ def reference_positions(
     return out[:, 0]
 
 
-def _at_rest(orbit: Motion[Model], points: int) -> dict[str, np.ndarray]:
+def _at_rest(motion: Motion[Model], points: int) -> dict[str, np.ndarray]:
     """The same of the absorber that rides with its cavity."""
     phase = np.linspace(0.0, 2.0 * np.pi, points)
-    omega, rest = orbit.parameters["frequency"], orbit.model.rest
-    v, v_rate = rest.cavity_motion(orbit.params, np.linalg.solve(*rest.equations(orbit.params)), phase)
+    omega, rest = motion.parameters["frequency"], motion.model.rest
+    v, v_rate = rest.cavity_motion(motion.params, np.linalg.solve(*rest.equations(motion.params)), phase)
     nothing = np.zeros_like(phase)
-    place, _ = orbit.model.bodies(nothing, v, orbit.params)
+    place, _ = motion.model.bodies(nothing, v, motion.params)
     return {
         "tau": phase / omega, "phase": phase, "w": nothing, "w_rate": nothing, "v": v, "v_rate": v_rate,
         "cavity": place, "absorber": place, "segment": np.zeros(points, int),
     }  # fmt: skip
 
 
-def points(orbit: Motion[Model]) -> np.ndarray:
+def points(motion: Motion[Model]) -> np.ndarray:
     """w, w' (, v, v') just after the events, shape (L, d)."""
-    engine, word = stepper(orbit.model.name), orbit.word
-    states = states_of(engine, orbit.params, word.codes, word.mode_codes, orbit.nodes)
+    engine, word = stepper(motion.model.name), motion.word
+    states = states_of(engine, motion.params, word.codes, word.mode_codes, motion.nodes)
     return states[:, list(engine.places)]
 
 
-def slowest(orbit: Motion[Model], segment: int) -> tuple[float, np.ndarray]:
+def slowest(motion: Motion[Model], segment: int) -> tuple[float, np.ndarray]:
     """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
-    length, mode, state = float(orbit.durations[segment]), orbit.word.modes[segment], _begins(orbit, segment)
+    length, mode, state = (
+        float(motion.durations[segment]),
+        motion.word.modes[segment],
+        _begins(motion, segment),
+    )
     ahead = np.linspace(0.0, length, 402)[1:-1]
-    speed = mode * _ahead(orbit, state, ahead)[:, 1]
+    speed = mode * _ahead(motion, state, ahead)[:, 1]
     inner = np.flatnonzero((speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])) + 1
     place = int(inner[speed[inner].argmin()] if inner.size else speed.argmin())
     low, high = float(ahead[max(place - 1, 0)]), float(ahead[min(place + 1, ahead.size - 1)])
     for _ in range(6):  # finer grids round the minimum: 1/20 of the bracket each time
         ahead = low + (high - low) / 40.0 * GRID
-        place = int((mode * _ahead(orbit, state, ahead)[:, 1]).argmin())
+        place = int((mode * _ahead(motion, state, ahead)[:, 1]).argmin())
         low, high = float(ahead[max(place - 1, 0)]), float(ahead[min(place + 1, 40)])
     where = 0.5 * (low + high)
-    return where, _ahead(orbit, state, np.array([where]))[0]
+    return where, _ahead(motion, state, np.array([where]))[0]

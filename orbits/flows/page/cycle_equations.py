@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contvines.core.library import native
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
-from orbits.flows.page import flights, loci, sampling
+from orbits.flows.page import flights, sampling
 from orbits.flows.page.margins import fill_margins, owned
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.flows.protocol import PLAIN, Approach
@@ -36,10 +37,6 @@ class PageKernels(PlainKernels["PageEquations", flights.Work]):
     column = 3
     accepted = SOLVING.residual
     patience = 0.5
-    assign = staticmethod(loci.assign)
-    flip = staticmethod(loci.flip)
-    transpose = staticmethod(loci.transpose)
-    matrix = staticmethod(loci.matrix)
 
     def linearise(self, data: PageEquations, u: np.ndarray, p: float, work: flights.Work) -> float:
         """See `orbits.flows.page.flights.linearise`."""
@@ -54,8 +51,38 @@ class PageKernels(PlainKernels["PageEquations", flights.Work]):
         step: np.ndarray,
         tangent: np.ndarray,
     ) -> float:
-        """See `orbits.flows.page.flights.bordered`."""
-        return flights.bordered(data, work, border, target, step, tangent)
+        """Of a long cycle by blocks."""
+        if data.dimension > flights.CYCLIC and not data.pinned and native():
+            return flights.by_blocks(data, work, border, target, step, tangent)
+        return super().bordered(data, work, border, target, step, tangent)
+
+    def fill(self, data: PageEquations, work: flights.Work, matrix: np.ndarray) -> None:
+        """See `orbits.flows.page.flights.fill`."""
+        flights.fill(data, work, matrix)
+
+    def assign(self, data: PageEquations, other: PageEquations, value: float) -> None:
+        """Give the parameter that varies in ``other`` a value in ``data``, in place."""
+        data.params[other.index] = value
+        data.base_numbers[:, other.index] = value
+
+    def flip(self, data: PageEquations, work: flights.Work, sign: float) -> None:
+        """Turn F_u to perturbations that change sign over the period (sign = -1), and back (sign = 1)."""
+        work.following[-1] *= -1.0
+
+    def transpose(
+        self, data: PageEquations, work: flights.Work, column: np.ndarray, other: flights.Work
+    ) -> None:
+        """The transposed F_u, with another last column, into another workspace."""
+        for name in ("own", "following", "drift", "still", "numbers"):
+            getattr(other, name)[:] = getattr(work, name)
+        other.derivative.reshape(-1)[:] = column
+        other.turned[0] = 1.0
+
+    def matrix(self, data: PageEquations, work: flights.Work) -> np.ndarray:
+        """F_u as it stands in a workspace, shape (N, N)."""
+        found = np.zeros((data.dimension, data.dimension))
+        flights.fill(data, work, found)
+        return found
 
     def inspect(
         self, data: PageEquations, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray

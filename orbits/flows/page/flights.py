@@ -16,13 +16,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
-from scipy.linalg import get_lapack_funcs
 
 from contvines.core.block_cyclic import eliminate
-from contvines.core.library import native
 from contvines.core.multipliers.periodic_schur import periodic_multipliers
 from orbits.integrators.engine import engine
-from orbits.numbers import ROUNDOFF
 from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
@@ -36,7 +33,6 @@ if TYPE_CHECKING:
     from orbits.numbers import Reals
     from orbits.words import Word
 
-(_gesv,) = get_lapack_funcs(("gesv",), (np.zeros((1, 1)),))
 CYCLIC = 120  # unknowns from which elimination by blocks is faster
 AHEAD = 2.0  # periods of a forced machine: in a flight that is longer Newton's method has lost its way
 TOGETHER = 4
@@ -223,37 +219,6 @@ def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, wo
     return True
 
 
-def bordered(
-    data: Pieces, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
-) -> float:
-    """Solve [[F_u, F_p], [border]] z = (-F, target) into `step` and = (0, 1) into `tangent`; returns the determinant's sign."""
-    size = data.dimension
-    sides = np.zeros((size + 1, 2), order="F")
-    sides[:size, 0] = -work.residual.ravel()
-    sides[size, 0], sides[size, 1] = target, 1.0
-    if size > CYCLIC and not data.pinned and native():
-        return _cyclic(data, work, border, sides, step, tangent)
-    matrix = np.zeros((size + 1, size + 1), order="F")
-    fill(data, work, matrix)
-    matrix[:size, size] = work.derivative.ravel()
-    matrix[size] = border
-    if not np.all(np.isfinite(matrix)):
-        return 0.0
-    # gesv: unlike getrs it does not wake other threads for a matrix of a few rows
-    factors, pivots, solution, singular = _gesv(matrix, sides)
-    diagonal = np.diagonal(factors)
-    flips = np.count_nonzero(pivots != np.arange(size + 1)) + np.count_nonzero(diagonal < 0.0)
-    sign = -1.0 if flips % 2 else 1.0
-    if singular:
-        sign = 0.0
-        nearby = matrix + ROUNDOFF * np.abs(matrix).max() * np.eye(size + 1)
-        _, _, solution, singular = _gesv(nearby, sides)
-        if singular:
-            return 0.0
-    step[:], tangent[:] = solution[:, 0], solution[:, 1]
-    return sign
-
-
 def fill(data: Pieces, work: Work, matrix: np.ndarray) -> None:
     """The blocks of F_u in a dense matrix."""
     d, length = data.size + 1, data.length
@@ -282,17 +247,17 @@ def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
     return own, following
 
 
-def _cyclic(
-    data: Pieces, work: Work, border: np.ndarray, sides: np.ndarray, step: np.ndarray, tangent: np.ndarray
+def by_blocks(
+    data: Pieces, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
-    """By blocks, as the cycle has them."""
+    """The bordered system by blocks, as the cycle has them; returns the determinant's sign."""
     length, d = data.length, data.size + 1
     blocks = np.empty((length, d, 2 * d))
     blocks[:-1, :, :d], blocks[:-1, :, d:] = work.own[:-1], work.following[:-1]
     blocks[-1, :, :d], blocks[-1, :, d:] = closing(data, work)
     columns = np.empty((length, d, 3))
-    columns[:, :, 0], columns[:, :, 1:] = work.derivative, sides[:-1].reshape(length, d, 2)
-    rows, foot = border[:-1].reshape(length, 1, d), np.array([[border[-1], *sides[-1]]])
+    columns[:, :, 0], columns[:, :, 1], columns[:, :, 2] = work.derivative, -work.residual, 0.0
+    rows, foot = border[:-1].reshape(length, 1, d), np.array([[border[-1], target, 1.0]])
     back = slice(None, None, -1) if work.turned[0] else slice(None)
     if work.turned[0]:  # each column of blocks becomes a row; backwards its neighbour follows again
         before = np.roll(blocks[:, :, d:], 1, axis=0)

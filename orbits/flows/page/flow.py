@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from contvines.shared.modulation import BAND, SILENT
-from orbits.contacts.changes import Change
 from orbits.contacts.wall import Wall
 from orbits.flows.page import measures, sampling, vanishing
 from orbits.flows.page.cycle_equations import PageEquations, loose_states
-from orbits.flows.protocol import Census, Motion, Vanishing
+from orbits.flows.protocol import Census, Motion
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
 from orbits.settings import EVENTS, SIMULATING
@@ -25,6 +23,10 @@ class PageFlow:
     """See `orbits.flows.protocol`; a node is the phase, or the duration of the flight that follows, and the states after the event."""
 
     angles = ("phase",)
+    sample = staticmethod(sampling.sample)
+    measure_names, default_measure = staticmethod(measures.names), staticmethod(measures.shown_first)
+    measures = staticmethod(measures.measure)
+    placed, vanishing = staticmethod(vanishing.placed), staticmethod(vanishing.vanishing)
     closed_form = False
     resolution = SIMULATING.same
 
@@ -66,10 +68,6 @@ class PageFlow:
         """States that no rate and no event of the word knows."""
         return tuple(1 + j for j in loose_states(model, word))
 
-    def sample(self, motion: Motion[Machine], points: int) -> dict[str, np.ndarray]:
-        """See `orbits.flows.page.sampling.sample`."""
-        return sampling.sample(motion, points)
-
     def positions(self, motion: Motion[Machine], instants: int) -> np.ndarray:
         """States that no wall pushes; see `orbits.flows.page.sampling.states_at`."""
         phases = np.linspace(0.0, 2.0 * np.pi * motion.periods, instants * motion.periods, endpoint=False)
@@ -86,26 +84,6 @@ class PageFlow:
         return sampling.strobed(motion.model, motion.word, motion.periods, motion.nodes[0], motion.params)[
             :, 1:
         ]
-
-    def measure_names(self, model: Machine) -> tuple[str, ...]:
-        """See `orbits.flows.page.measures.names`."""
-        return measures.names(model)
-
-    def default_measure(self, model: Machine) -> str:
-        """Impact speeds, or how far the first state goes."""
-        return measures.shown_first(model)
-
-    def measures(
-        self,
-        model: Machine,
-        word: Word,
-        periods: int,
-        nodes: np.ndarray,
-        params: np.ndarray,
-        wanted: Sequence[str],
-    ) -> dict[str, np.ndarray]:
-        """See `orbits.flows.page.measures.measure`."""
-        return measures.measure(model, word, periods, nodes, params, wanted)
 
     def simulated_names(self, model: Machine) -> tuple[str, ...]:
         """How far the first state goes, the fastest impact and how many there are; where it is forced a band, too."""
@@ -140,14 +118,6 @@ class PageFlow:
         table = sampling.sample(motion, 50)
         moves = any(np.ptp(table[name]) > EVENTS.still for name in motion.model.states)
         return "periodic" if moves else "stuck"
-
-    def vanishing(self, motion: Motion[Machine], index: int, unit: int) -> Vanishing:
-        """See `orbits.flows.page.vanishing`."""
-        return vanishing.vanishing(motion, index, unit)
-
-    def placed(self, motion: Motion[Machine], found: Vanishing, place: int, change: Change) -> np.ndarray:
-        """See `orbits.flows.page.vanishing`."""
-        return vanishing.placed(motion, found, place, change)
 
     def restitution(self, motion: Motion[Machine], place: int) -> float:
         """Of the wall that is hit, as its formula has it there."""

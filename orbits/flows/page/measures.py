@@ -20,32 +20,32 @@ if TYPE_CHECKING:
 OF_STATES = ("max", "min", "first", "strobe")
 
 
-def names(machine: Machine) -> tuple[str, ...]:
+def names(model: Machine) -> tuple[str, ...]:
     """max_x, min_x (over the period), first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
     event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact); forces and energies at the contacts
     (`orbits.machines.page.energies`), the energies per period of the orbit."""
-    what = OF_STATES if machine.forced else OF_STATES[:3]
-    own = [f"{kind}_{state}" for state in machine.states for kind in what]
-    walls = any(letter.kind == HIT for letter in machine.alphabet.letters.values())
+    what = OF_STATES if model.forced else OF_STATES[:3]
+    own = [f"{kind}_{state}" for state in model.states for kind in what]
+    walls = any(letter.kind == HIT for letter in model.alphabet.letters.values())
     return (
         *own,
-        *(["phase"] if machine.forced else []),
+        *(["phase"] if model.forced else []),
         "period",
         "rate",
         *(["approach_speed"] if walls else []),
-        *machine.load_names,
+        *model.load_names,
     )
 
 
-def shown_first(machine: Machine) -> str:
+def shown_first(model: Machine) -> str:
     """The measure that a diagram shows when none is asked for: what the page says, impact speeds, or how far the first state goes."""
-    if machine.response is not None:
-        return machine.response
-    return "approach_speed" if "approach_speed" in names(machine) else f"max_{machine.states[0]}"
+    if model.response is not None:
+        return model.response
+    return "approach_speed" if "approach_speed" in names(model) else f"max_{model.states[0]}"
 
 
 def measure(
-    machine: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
+    model: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
     """Values, each of shape (m,), of solutions with nodes (m, L, n + 1) and parameters (m, P).
 
@@ -54,15 +54,15 @@ def measure(
     KeyError
         If there is no such measure.
     """
-    known = names(machine)
+    known = names(model)
     for name in wanted:
         if name not in known:
             raise KeyError(f"there is no measure {name!r}{way_out(name)}; choose from {', '.join(known)}")
     result: dict[str, np.ndarray] = {}
-    period = _periods(machine, periods, nodes, params)
+    period = _periods(model, periods, nodes, params)
     extremes = None
     if not _LOADS.isdisjoint(name.partition("_")[0] for name in wanted):
-        result |= _loads(machine, word, periods, nodes, params, period, wanted)
+        result |= _loads(model, word, periods, nodes, params, period, wanted)
     for name in wanted:
         kind, _, state = name.partition("_")
         if name in result:
@@ -74,15 +74,15 @@ def measure(
         elif name == "rate":
             result[name] = 2.0 * np.pi / period
         elif name == "approach_speed":
-            result[name] = _approach_speeds(machine, word, nodes, params)
+            result[name] = _approach_speeds(model, word, nodes, params)
         elif kind == "first":
-            result[name] = nodes[:, 0, 1 + machine.states.index(state)].copy()
+            result[name] = nodes[:, 0, 1 + model.states.index(state)].copy()
         elif kind == "strobe":
-            result[name] = _strobed(machine, word, periods, nodes, params)[:, machine.states.index(state)]
+            result[name] = _strobed(model, word, periods, nodes, params)[:, model.states.index(state)]
         else:
             if extremes is None:
-                extremes = _extremes(machine, word, periods, nodes, params)
-            result[name] = extremes[0 if kind == "max" else 1][:, machine.states.index(state)]
+                extremes = _extremes(model, word, periods, nodes, params)
+            result[name] = extremes[0 if kind == "max" else 1][:, model.states.index(state)]
     return result
 
 

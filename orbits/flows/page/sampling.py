@@ -17,7 +17,7 @@ def strobed(machine: Machine, word: Word, periods: int, node: np.ndarray, params
     return np.column_stack([clocks, watch.path(node[1:], clocks, machine.compiled.numbers(params, mode))])
 
 
-def sample(orbit: Motion[Machine], points: int = 400) -> dict[str, np.ndarray]:
+def sample(motion: Motion[Machine], points: int = 400) -> dict[str, np.ndarray]:
     """States over one period, events included with the states before and after them.
 
     Returns
@@ -26,49 +26,49 @@ def sample(orbit: Motion[Machine], points: int = 400) -> dict[str, np.ndarray]:
         ``time`` from the first event, ``phase`` (of a forced machine), every state by its name, and ``segment`` (index of the
         event before).
     """
-    durations = orbit.durations
+    durations = motion.durations
     total = max(float(durations.sum()), SMALLEST)
-    compiled, e = orbit.model.compiled, orbit.model.equations
+    compiled, e = motion.model.compiled, motion.model.equations
     clocks, states, segments, passed = [], [], [], 0.0
-    first = float(orbit.nodes[0, 0]) if orbit.model.forced else 0.0
+    first = float(motion.nodes[0, 0]) if motion.model.forced else 0.0
     for i, duration in enumerate(durations):
         count = max(2, round(points * duration / total))
-        begin = float(orbit.nodes[i, 0]) if orbit.model.forced else 0.0
+        begin = float(motion.nodes[i, 0]) if motion.model.forced else 0.0
         grid = begin + np.linspace(0.0, max(float(duration), 0.0), count)
-        mode = orbit.word.modes[i % len(orbit.word.modes)]
+        mode = motion.word.modes[i % len(motion.word.modes)]
         watch = compiled.watch(e.pattern_key(mode))
-        states.append(watch.path(orbit.nodes[i, 1:], grid, compiled.numbers(orbit.params, mode)))
+        states.append(watch.path(motion.nodes[i, 1:], grid, compiled.numbers(motion.params, mode)))
         clocks.append(passed + grid - begin)
         segments.append(np.full(count, i))
         passed += float(duration)
     clock = np.concatenate(clocks)
     result = {}
-    if orbit.model.forced:
-        result["time"] = clock / orbit.model.phase_speed(orbit.params)
+    if motion.model.forced:
+        result["time"] = clock / motion.model.phase_speed(motion.params)
         result["phase"] = first + clock
     else:
         result["time"] = clock
     table = np.concatenate(states)
-    for j, name in enumerate(orbit.model.states):
+    for j, name in enumerate(motion.model.states):
         result[name] = table[:, j]
     result["segment"] = np.concatenate(segments)
     return result
 
 
-def states_at(orbit: Motion[Machine], phases: np.ndarray) -> np.ndarray:
+def states_at(motion: Motion[Machine], phases: np.ndarray) -> np.ndarray:
     """States of a forced motion at phases from 0 on, shape (m, n)."""
-    compiled, e = orbit.model.compiled, orbit.model.equations
-    whole, word = 2.0 * np.pi * orbit.periods, orbit.word
-    begins = np.maximum.accumulate(orbit.nodes[:, 0] - orbit.nodes[0, 0])
-    wanted = (phases - orbit.nodes[0, 0]) % whole
+    compiled, e = motion.model.compiled, motion.model.equations
+    whole, word = 2.0 * np.pi * motion.periods, motion.word
+    begins = np.maximum.accumulate(motion.nodes[:, 0] - motion.nodes[0, 0])
+    wanted = (phases - motion.nodes[0, 0]) % whole
     wanted[wanted >= whole] = 0.0  # of a phase just below zero
     segments = np.searchsorted(begins, wanted, side="right") - 1
-    out = np.empty((len(phases), orbit.model.size))
+    out = np.empty((len(phases), motion.model.size))
     for i in np.unique(segments).tolist():
         places = np.flatnonzero(segments == i)
         order = places[np.argsort(wanted[places])]
-        mode, node = word.entries(i), orbit.nodes[i]
+        mode, node = word.entries(i), motion.nodes[i]
         grid = node[0] + np.concatenate([[0.0], wanted[order] - begins[i]])
         watch = compiled.watch(e.pattern_key(mode))
-        out[order] = watch.path(node[1:], grid, compiled.numbers(orbit.params, mode))[1:]
+        out[order] = watch.path(node[1:], grid, compiled.numbers(motion.params, mode))[1:]
     return out

@@ -91,12 +91,6 @@ def _quadratic(params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, 
     return h, h_rate, polynomial, half
 
 
-def symmetric_discriminant(params: np.ndarray) -> float:
-    """Discriminant of the quadratic equation for the symmetric orbits `LR`: positive two orbits, zero a fold, negative none."""
-    c, b, a = _quadratic(params)[2]
-    return float(b * b - 4.0 * a * c)
-
-
 def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
     """Nodes (Psi, B+, v, v') at L and R of the symmetric orbits `LR`, each of shape (2, 4): the faster absorber first.
 
@@ -223,21 +217,6 @@ def stuck_response(params: np.ndarray) -> StuckResponse:
     amplitude = math.hypot(X, Y)
     shaking = (1.0 + eps) * omega**2 * amplitude
     return StuckResponse(amplitude, math.atan2(Y, X), shaking, (1.0 + eps) * _held(params) - shaking)
-
-
-def stuck_state(params: np.ndarray, phase: float = 0.0, w: float = 0.0) -> dict[str, float]:
-    """A start for the simulator on the stuck response: phase, w, w_rate, v, v_rate."""
-    X, Y = response(params, stuck=True)
-    omega, eps = float(params[1]), float(params[3])
-    q1 = X * math.sin(phase) + Y * math.cos(phase)
-    rate = omega * (X * math.cos(phase) - Y * math.sin(phase))
-    return {
-        "phase": phase,
-        "w": w,
-        "w_rate": 0.0,
-        "v": (1.0 + eps) * q1 - eps * w,
-        "v_rate": (1.0 + eps) * rate,
-    }
 
 
 def stuck_frequencies(params: np.ndarray) -> np.ndarray:

@@ -49,6 +49,14 @@ class Response(NamedTuple, Generic[Number]):
     beta: Number
 
 
+class Side(NamedTuple):
+    """One direction of sliding: the relative acceleration of friction, where the wall ahead is, counted in that direction, and its restitution."""
+
+    friction: float
+    reach: float
+    restitution: float
+
+
 class Law(NamedTuple, Generic[Number]):
     """The numbers of the equations of motion.
 
@@ -93,6 +101,12 @@ class Law(NamedTuple, Generic[Number]):
         """q2'' while sliding to the right wall."""
         return self.lean - self.friction_right
 
+    def side(self: Law[float], s: float) -> Side:
+        """Sliding to the left wall (s > 0) or to the right one."""
+        if s > 0.0:
+            return Side(self.whole * self.friction_left, self.left, self.restitution_left)
+        return Side(self.whole * self.friction_right, -self.right, self.restitution_right)
+
     @property
     def frictionless(self: Law[float]) -> bool:
         """Whether turns are no events."""
@@ -133,7 +147,7 @@ def _shaken(
 ) -> Law[Number]:
     """Of a cavity that moves as prescribed, C sin Psi."""
     zero = 0.0 * omega
-    free = Response(C, zero, zero, 1.0 + zero)
+    free = Response(C, zero, zero, 1.0 * omega)
     return Law(
         omega, to_left, to_right, lean, r_left, r_right, left, right,
         free, free, zero, zero, zero, zero, prescribed=True,

@@ -26,7 +26,7 @@ class State(NamedTuple, Generic[Number]):
 
 
 class Point(NamedTuple, Generic[Number]):
-    """q1 and q1' less those at the start, the mean of q1'' since then; second and third derivatives of h and of z."""
+    """q1 and q1' less those at the start, the mean of q1'' since then; second and third derivatives of h and of z; the way less that at q1' of the start."""
 
     way: Number
     speed: Number
@@ -35,6 +35,7 @@ class Point(NamedTuple, Generic[Number]):
     z2: Number
     h3: Number
     z3: Number
+    bend: Number
 
 
 @dataclass(frozen=True)
@@ -84,9 +85,9 @@ class Oscillation(Generic[Number]):
     def _near(self, tau: Number) -> Point[Number]:
         h, z = self.derivatives()
         d = [a + b for a, b in zip(h, z)]
-        mean = _quotient(d, 1, tau)
-        higher = (of[k] + tau * _quotient(of, k, tau) for k in (2, 3) for of in (h, z))
-        return Point(tau * _quotient(d, 0, tau), tau * mean, mean, *higher)
+        mean, bend = d[2] + _beyond(d, 1, tau), tau * _beyond(d, 0, tau)
+        higher = (of[k] + tau * (of[k + 1] + _beyond(of, k, tau)) for k in (2, 3) for of in (h, z))
+        return Point(tau * d[1] + bend, tau * mean, mean, *higher, bend)
 
     def _far(self, tau: Number) -> Point[Number]:
         s, c = sin(self.omega * tau), cos(self.omega * tau)
@@ -98,15 +99,16 @@ class Oscillation(Generic[Number]):
         Z1 = self.z1 * cosine - (self.alpha * self.z1 + self.kappa * self.z0) * sine
         Z2 = -2.0 * self.alpha * Z1 - self.kappa * Z0
         square, speed = self.omega * self.omega, (H1 - self.h1) + (Z1 - self.z1)
+        way = (H0 - self.h0) + (Z0 - self.z0)
         return Point(
-            (H0 - self.h0) + (Z0 - self.z0), speed, speed / tau,
-            -square * H0, Z2, -square * H1, -2.0 * self.alpha * Z2 - self.kappa * Z1,
+            way, speed, speed / tau, -square * H0, Z2, -square * H1, -2.0 * self.alpha * Z2 - self.kappa * Z1,
+            way - (self.h1 + self.z1) * tau,
         )  # fmt: skip
 
     def start(self: Oscillation[float]) -> Point[float]:
         """The motion at the start."""
         h, z = self.derivatives()
-        return Point(0.0, 0.0, h[2] + z[2], h[2], z[2], h[3], z[3])
+        return Point(0.0, 0.0, h[2] + z[2], h[2], z[2], h[3], z[3], 0.0)
 
     def travel(self, tau: Number) -> Number:
         """The way of q2 after a time."""
@@ -121,6 +123,15 @@ class Oscillation(Generic[Number]):
         own = 2.0 * self.alpha * (2.0 * self.alpha * at.z3 + self.kappa * at.z2) - self.kappa * at.z3
         return own - self.omega * self.omega * at.h3
 
+    def bound(self: Oscillation[float], at: Point[float], order: int, strength: float, span: float) -> float:
+        """Bound of the derivative of q1 of this order, 3 or 4, in a span of time after a point, where the excitation has this amplitude.
+
+        The derivative is an oscillator's response to a force of amplitude Omega^order `strength`, which feeds its energy.
+        """
+        one, rate = (at.h3 + at.z3, self.fourth(at)) if order == 3 else (self.fourth(at), self.fifth(at))
+        fed = self.omega**order * strength * span / np.sqrt(self.kappa)
+        return np.sqrt(one * one + rate * rate / self.kappa) + fed
+
     def driven(self: Oscillation[float], order: int) -> float:
         """Bound of the harmonic's derivative of this order."""
         return self.omega**order * np.hypot(self.h0, self.h1 / self.omega)
@@ -131,12 +142,12 @@ class Oscillation(Generic[Number]):
         return size * exp(-self.alpha * start) * self.kappa ** (0.5 * order)
 
 
-def _quotient(derivatives: list[Number], order: int, t: Number) -> Number:
-    """(f(t) - f(0))/t of the derivative `order`, from those above it."""
+def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
+    """(f(t) - f(0))/t - f'(0) of the derivative `order`, from those above the next one."""
     total = 0.0
     for k in range(8, order + 1, -1):
         total = (derivatives[k] + total) * t / (k - order)
-    return derivatives[order + 1] + total
+    return total
 
 
 def chosen(s: float | np.ndarray, left: Number, right: Number, stuck: Number) -> Number:
@@ -170,7 +181,7 @@ def after(
 ) -> State[Number]:
     """Where such a leg is after a time; `low`: digits of w below its roundoff."""
     travel, fallen, sliding = q.travel(t), q.q2_pull * t, s != 0
-    w, rate = x.w + (low + (p.way - travel)), x.rate + p.speed - fallen
+    w, rate = x.w + (low + (x.rate * t + (p.bend - 0.5 * fallen * t))), x.rate + p.speed - fallen
     v, v_rate = x.v + p.way + law.eps * travel, x.v_rate + p.speed + law.eps * fallen
     return State(
         where(sliding, w, x.w),
@@ -180,10 +191,19 @@ def after(
     )
 
 
+def standing(state: np.ndarray, law: Law[float]) -> State[float]:
+    """What a stepper's state says of the motion."""
+    if law.prescribed:
+        v, v_rate = law.amplitude * sin(state[PSI]), law.amplitude * law.omega * cos(state[PSI])
+    else:
+        v, v_rate = state[V], state[V_RATE]
+    return State(state[W], state[RATE], v, v_rate)
+
+
 def oscillation(state: np.ndarray, law: Law[float]) -> Oscillation[float]:
-    """The closed form of the leg that begins with a stepper's state, of a cavity that is not shaken."""
-    rate = state[RATE] if state[MODE] != 0.0 else 0.0
-    return leg(law, state[PSI], State(state[W], rate, state[V], state[V_RATE]), state[MODE])
+    """The closed form of the leg that begins with a stepper's state."""
+    x = standing(state, law)
+    return leg(law, state[PSI], x if state[MODE] != 0.0 else x._replace(rate=0.0), state[MODE])
 
 
 def push(law: Law[Number], x: State[Number], sine: Number, cosine: Number) -> Number:

@@ -6,7 +6,8 @@ import pytest
 from contvines.core.library import native
 from contvines.core.table import TableKernels, native_table
 from orbits.arguments import cycle_data
-from orbits.elimination import block_cyclic, rearranged
+from orbits.flows.native.reference_kernels import ReferenceKernels
+from orbits.machines.reference.machine import reference
 
 
 def closed_by(twist):
@@ -15,18 +16,10 @@ def closed_by(twist):
     return cycle_data([], [], none, np.zeros((2, 0)), twist, 0.0, 0, 0, none, np.zeros((0, 0)))
 
 
-class Reference:
-    """The reference in numpy."""
-
-    bordered = staticmethod(block_cyclic.bordered)
-    transpose = staticmethod(rearranged.transpose)
-    flip = staticmethod(rearranged.flip)
-
-
 def kernels_of(core):
     """Elimination and other readings of a system: "reference", or "native" (those of any machine)."""
     if core == "reference":
-        return Reference
+        return ReferenceKernels(reference("absorber"))
     if not native():
         pytest.skip("no native core")
     return TableKernels(native_table(0))

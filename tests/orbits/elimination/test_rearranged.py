@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orbits.arguments import workspace
-from orbits.elimination import rearranged
+from orbits.flows.native import rearranged
 from tests.orbits.elimination.closures import both_cores, closed_by, kernels_of
 
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson, simpson
 
-from orbits.machines.reference import shaken_motion as motion
+from orbits.machines.reference import motion
 from orbits.machines.reference.law import Law, Response
 
 C, OMEGA, B = 0.8, 1.3, 0.12
 A = {1.0: 0.21, -1.0: 0.34}  # friction's accelerations to the left and to the right wall
-FREE = Response(C, 0.0, 0.0, 1.0)
+FREE = Response(C, 0.0, 0.0, OMEGA)
 LAW = Law(OMEGA, A[1.0], A[-1.0], B, 0.7, 0.6, 1.2, -0.7, FREE, FREE, 0.0, 0.0, 0.0, 0.0, prescribed=True)
 
 

@@ -6,7 +6,6 @@ Nothing of `orbits` takes part in the integration: the equations are written dow
 import numpy as np
 import pytest
 
-from orbits.machines.closed_forms.coupled import stuck_state
 from orbits.simulation import simulate
 from tests.machines import COUPLED
 from tests.orbits.machines.coupled.equations_of_motion import integrate
@@ -78,5 +77,7 @@ def test_stick_slip_at_the_published_detuning():
 def test_a_stuck_start_stays_stuck_where_friction_holds():
     machine = COUPLED.changed(forcing=0.5, frequency=0.9)
     assert machine.stuck_response().real
-    run = simulate(machine, stuck_state(machine.vector()), periods=50)
+    params = machine.vector()
+    v, v_rate = machine.rest.cavity_motion(params, machine.rest.solved(params), np.zeros(1))
+    run = simulate(machine, {"v": float(v[0]), "v_rate": float(v_rate[0])}, periods=50)
     assert run.codes.size == 0

@@ -1,4 +1,4 @@
-"""Event-driven stepper of the absorber on its oscillator in plain Python: the reference of the native core (`native/coupled.hpp`).
+"""Event-driven stepper of the built-in machines in plain Python: the reference of the native core (`native/shaken.hpp`, `native/coupled_simulation.hpp`).
 
 Between events the motion is the closed form of :mod:`orbits.machines.reference.oscillation`. In the direction s of the sliding let
 y = s w' > 0 and y' = s w''. With M >= |w'''| ahead, y stays positive for at least
@@ -7,10 +7,11 @@ y = s w' > 0 and y' = s w''. With M >= |w'''| ahead, y stays positive for at lea
 
 and w is monotone for as long as y is positive: inside such a step the wall ahead is met exactly when it has been passed at
 the end of it, and steps towards a turn approach it from one side like Newton's method. So no hit and no turn can be missed. The slip
-is found in the same way from a - |v'' - b| > 0, b being the acceleration down a slope.
+is found in the same way from a - |v'' - b| > 0, b being the acceleration down a slope and a that of friction in the direction of the slip.
 
 M comes from the energy of the third derivative u = q1''', which is itself an oscillator's response to a force of amplitude
-f = Omega^3 eps G sqrt(1 + (eps lambda Omega)^2): sqrt(u^2 + u'^2/kappa) grows by at most f/sqrt(kappa) per unit of time.
+f = Omega^3 eps G sqrt(1 + (eps lambda Omega)^2): sqrt(u^2 + u'^2/kappa) grows by at most f/sqrt(kappa) per unit of time. Of a shaken cavity it stays
+as it is.
 
 Close to the start of a leg differences are taken from the Taylor series, and positions are kept with the digits below
 their roundoff, so that flights, turns and impacts keep their relative accuracy however small they are.
@@ -25,8 +26,8 @@ from typing import NamedTuple
 import numpy as np
 
 from orbits.machines.digits import shift, wrap
-from orbits.machines.reference.law import Law
-from orbits.machines.reference.oscillation import Oscillation, Point, State, certain, oscillation, push
+from orbits.machines.reference.law import Law, Side
+from orbits.machines.reference.oscillation import Oscillation, Point, certain, oscillation, push, standing
 from orbits.machines.stepping import (
     EVENTS_FULL,
     FAILED,
@@ -53,18 +54,22 @@ _HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # how a leg ends
 
 def launch(law: Law[float], state: np.ndarray) -> None:
     """Reduce the phase and set the mode of a start; contract, item 2."""
-    a = law.whole * law.friction_left
     state[PSI], more = wrap(state[PSI])
     state[TURNS] += more
-    w, rate, v_rate = state[W], state[RATE], state[V_RATE]
-    sine, cosine = math.sin(state[PSI]), math.cos(state[PSI])
-    against = push(law, State(w, rate, state[V], v_rate), sine, cosine) - law.whole * law.lean  # friction
-    if against == 0.0 and a == 0.0:  # the third derivative decides
+    x, sine, cosine = standing(state, law), math.sin(state[PSI]), math.cos(state[PSI])
+    against = push(law, x, sine, cosine) - law.whole * law.lean  # friction
+    undecided = law.frictionless and not law.prescribed
+    if against == 0.0 and undecided:  # the third derivative decides
         force = law.force * law.omega * (cosine - law.base * sine)
-        against = force - v_rate / law.whole - law.drag * law.lean
-    if rate != 0.0:
-        state[MODE] = 1.0 if rate > 0.0 else -1.0
-    elif (abs(against) <= a and a > 0.0) or (abs(w) == 1.0 and against * w >= 0.0):
+        against = force - x.v_rate / law.whole - law.drag * law.lean
+    left, right = law.side(1.0), law.side(-1.0)
+    if x.rate != 0.0:
+        state[MODE] = 1.0 if x.rate > 0.0 else -1.0
+    elif (
+        (-right.friction <= against <= left.friction and not undecided)
+        or (x.w == law.left and against >= 0.0)
+        or (x.w == law.right and against <= 0.0)
+    ):
         state[MODE] = 0.0
     else:
         state[MODE] = 1.0 if against >= 0.0 else -1.0
@@ -93,15 +98,18 @@ class _Run:
 
     def __init__(self, state: np.ndarray, law: Law[float]) -> None:
         self.state, self.law = state, law
-        self.a, self.b = law.whole * law.friction_left, law.whole * law.lean
-        self.force = law.strength
+        self.sides = {s: law.side(s) for s in (1.0, -1.0)}
+        self.b = law.whole * law.lean
+        # the speed of a shaken cavity is what others are compared with
+        self.speed = law.amplitude * law.omega + abs(law.lean) / law.omega if law.prescribed else 1.0
 
     def advance(
         self, until: float, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
     ) -> tuple[int, int]:
-        state, law, a = self.state, self.law, self.a
-        known = [*law.slide, *law.stuck]
-        if not np.isfinite([*known, *state, a, self.b]).all():
+        state, law = self.state, self.law
+        if not np.isfinite(
+            [*law.slide, *law.stuck, *state, self.b, *self.sides[1.0], *self.sides[-1.0]]
+        ).all():
             return 0, FAILED
         limit = min(until, state[TURNS] + STEPPING.forever)
         fresh = False  # the leg starts with a slip: w' = w'' = 0
@@ -111,7 +119,7 @@ class _Run:
         def add(code: int, before: float, after: float) -> None:
             nonlocal count
             codes[count], modes[count] = code, int(state[MODE])
-            rows[count] = state[PSI], state[TURNS], state[W], before, after, state[V], state[V_RATE]
+            rows[count] = state[PSI], state[TURNS], state[W], before, after, *state[V:]
             count += 1
 
         status = EVENTS_FULL
@@ -126,35 +134,24 @@ class _Run:
                     status = REST if outcome == _NEVER else TIME_REACHED
                     break
                 state[MODE], fresh = way, True
-                if a > 0.0 or abs(state[W]) == 1.0:
+                if not law.frictionless or state[W] in (law.left, law.right):
                     add(_U, 0.0, 0.0)
                 continue
             q = oscillation(state, law)
             begin = q.start()
             s = float(state[MODE])
+            ahead, behind = self.sides[s], self.sides[-s]
             Y0 = s * state[RATE]
             Y1 = 0.0 if fresh else s * (begin.h2 + begin.z2) - s * q.q2_pull
-            if EVENTS.slow > Y0 and s * state[W] == -1.0 and state[LOW] == 0.0 and Y1 + 2.0 * a < 0.0:
-                # leaving a wall that is pushed after the absorber: is this the tail of a chatter?
-                shove = -Y1 - a  # |v'' - b|
-                factor = law.restitution_left * np.sqrt((shove - a) / (shove + a))
-                rest = Y0 * (1.0 / (shove + a) + 1.0 / np.sqrt((shove - a) * (shove + a)))
-                if factor < 1.0:
-                    rest /= 1.0 - factor
-                small = (
-                    factor < 1.0
-                    and rest < STEPPING.chatter
-                    and rest * abs(begin.h3 + begin.z3) < 0.01 * (shove - a)
-                )
-                if small or STEPPING.still > Y0:
-                    rest = min(rest, STEPPING.chatter)
-                    state[V] += rest * state[V_RATE]
-                    state[V_RATE] += rest * (self.b - s * shove)
-                    self._turn(rest)
-                    state[RATE] = state[MODE] = 0.0
-                    add(HOLD, 0.0, 0.0)
-                    continue
-            target = (1.0 - s * state[W]) - s * state[LOW]
+            rest = self._piles_up(behind, s, Y0, Y1 + ahead.friction, begin)
+            if rest < math.inf:
+                moved = 0.0 if law.prescribed else rest * state[V_RATE]
+                self._ride(moved, rest * (self.b + s * (Y1 + ahead.friction)))
+                self._turn(rest)
+                state[RATE] = state[MODE] = 0.0
+                add(HOLD, 0.0, 0.0)
+                continue
+            target = (ahead.reach - s * state[W]) - s * state[LOW]
             end = self._slide(q, s, Y0, Y1, target, left)
             fresh = False
             tau = left if end.outcome == _NEVER else end.tau
@@ -162,31 +159,61 @@ class _Run:
             if idle > 10000:
                 status = FAILED
                 break
-            state[V] += end.at.way + law.eps * q.travel(tau)
-            state[V_RATE] += end.at.speed + law.eps * q.q2_pull * tau
+            self._ride(end.at.way + law.eps * q.travel(tau), end.at.speed + law.eps * q.q2_pull * tau)
             self._turn(tau)
             if end.outcome == _HIT:
                 y = max(STEPPING.least_speed, end.y)
-                state[W], state[LOW] = s, 0.0
-                state[RATE], state[MODE] = -s * law.restitution_left * y, -s
+                state[W], state[LOW] = s * ahead.reach, 0.0
+                state[RATE], state[MODE] = -s * ahead.restitution * y, -s
                 add(_L if s > 0.0 else _R, s * y, state[RATE])
                 continue
             w, low = shift(state[W], state[LOW], s * end.gain)
-            if abs(w) > 1.0 or (abs(w) == 1.0 and w * low > 0.0):
-                w, low = math.copysign(1.0, w), 0.0
+            for wall, side in ((law.left, 1.0), (law.right, -1.0)):
+                if side * (w - wall) > 0.0 or (w == wall and side * low > 0.0):
+                    w, low = wall, 0.0
             state[W], state[LOW] = w, low
             if end.outcome != _HALT:
                 state[RATE] = s * end.y if end.y > 0.0 else 0.0
                 status = REST if end.outcome == _NEVER else TIME_REACHED
                 break
             state[RATE] = 0.0
-            if a == 0.0:  # nothing happens where w' passes zero
+            if law.frictionless:  # nothing happens where w' passes zero
                 state[MODE] = -s
                 continue
-            turns_back = end.y_rate < -2.0 * a
+            turns_back = end.y_rate < -(ahead.friction + behind.friction)
             state[MODE] = -s if turns_back else 0.0
             add(_T if turns_back else _S, 0.0, 0.0)
         return count, status if np.isfinite(state).all() else FAILED
+
+    def _piles_up(self, behind: Side, s: float, Y0: float, push: float, begin: Point[float]) -> float:
+        """The time that is left of a chatter, of which this leg from a wall that is pushed after the absorber is the tail; infinite if it is none.
+
+        `push`: s (v'' - b).
+        """
+        state, law = self.state, self.law
+        back, brake = -push - behind.friction, -push + self.sides[s].friction
+        if not (EVENTS.slow * self.speed > Y0 and -s * state[W] == behind.reach and state[LOW] == 0.0 < back):
+            return math.inf
+        factor = behind.restitution * np.sqrt(back / brake)
+        rest = Y0 * (1.0 / brake + 1.0 / np.sqrt(back * brake))
+        if factor < 1.0:
+            rest /= 1.0 - factor
+        if law.prescribed:
+            bent = rest * rest * law.amplitude * law.omega**4 < 0.01 * STEPPING.chatter**2 * back
+            longest = STEPPING.still / law.omega
+        else:
+            bent = rest < STEPPING.chatter and rest * abs(begin.h3 + begin.z3) < 0.01 * back
+            longest = STEPPING.chatter
+        still = STEPPING.still * self.speed > Y0
+        if not (still or (bent and factor < 1.0)):
+            return math.inf
+        return rest if law.prescribed and not still else min(rest, longest)
+
+    def _ride(self, way: float, speed: float) -> None:
+        """Move the centre of mass on, of a cavity that has a motion of its own."""
+        if not self.law.prescribed:
+            self.state[V] += way
+            self.state[V_RATE] += speed
 
     def _turn(self, tau: float) -> None:
         """Move the forcing phase on."""
@@ -195,23 +222,24 @@ class _Run:
 
     def _wait(self, left: float) -> tuple[int, float]:
         """Move on, sticking, until friction no longer holds, or for the time `left`; how this ends, and the direction of the slip."""
-        state, whole = self.state, self.law.whole
-        q = oscillation(state, self.law)
+        whole = self.law.whole
+        q = oscillation(self.state, self.law)
         outcome, tau, at, way = self._until_slip(q, left)
         if outcome == _NEVER:
             tau, at = left, q.at(left)
         if tau > 0.0:
-            state[V] += whole * at.way
-            state[V_RATE] += whole * at.speed
+            self._ride(whole * at.way, whole * at.speed)
             self._turn(tau)
-        state[RATE] = 0.0
+        self.state[RATE] = 0.0
         return outcome, way
 
     def _until_slip(self, q: Oscillation[float], left: float) -> tuple[int, float, Point[float], float]:
-        a, b, w, whole, omega = self.a, self.b, self.state[W], self.law.whole, q.omega
-        hold = min(
-            a + way * b for way in (1.0, -1.0) if way * w < 1.0
-        )  # what holds the absorber where it may slip
+        b, whole, omega = self.b, self.law.whole, q.omega
+        # directions in which there is room, and what holds the absorber there
+        free_ways = [
+            (way, side.friction) for way, side in self.sides.items() if way * self.state[W] < side.reach
+        ]
+        hold = min(a + way * b for way, a in free_ways)
         driven = whole * omega * omega * math.hypot(q.h0, q.h1 / omega)  # bounds of |v''|
         free = whole * q.kappa * math.hypot(q.z0, (q.z1 + q.alpha * q.z0) / q.beta)
         tiny = 2.0 * ROUNDOFF * (driven + free + abs(b))
@@ -219,17 +247,13 @@ class _Run:
         first = True  # a zero right at the start is judged by its slope, and left behind
         while tau < left:
             if tau >= renew:
-                most = driven + free * math.exp(-q.alpha * tau)
-                if most < hold or (most == 0.0 and hold >= 0.0):
+                if (driven + free * math.exp(-q.alpha * tau)) * (1.0 - EVENTS.zero) <= hold:
                     return _NEVER, tau, at, 0.0
-                own = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa)
-                bound = whole * (own + omega**4 * self.force * _HORIZON)
+                bound = whole * q.bound(at, 4, self.law.strength, _HORIZON)
                 renew = tau + _HORIZON
             value, slope = whole * (at.h2 + at.z2), whole * (at.h3 + at.z3)
             step = renew - tau
-            for way in (1.0, -1.0):
-                if way * w >= 1.0:
-                    continue
+            for way, a in free_ways:
                 y, y_rate = a - way * (value - b), -way * slope
                 if y <= tiny:
                     if not first or y_rate < 0.0 or y < -tiny:
@@ -249,13 +273,12 @@ class _Run:
         self, q: Oscillation[float], s: float, Y0: float, Y1: float, target: float, left: float
     ) -> _Sliding:
         """Slide until the wall ahead is hit or the absorber halts, or for the time `left`."""
-        brake = s * q.q2_pull
-        third = q.omega**3 * self.force * _HORIZON / np.sqrt(q.kappa)
+        brake, strength = s * q.q2_pull, self.law.strength
 
         def look(tau: float) -> tuple[Point[float], float, float, float]:
             at = q.at(tau)
             y, y_rate = Y0 + s * at.speed - brake * tau, s * (at.h2 + at.z2) - brake
-            return at, y, y_rate, s * (at.way - q.travel(tau))
+            return at, y, y_rate, Y0 * tau + (s * at.bend - 0.5 * brake * tau * tau)
 
         at, tau, y, y_rate, gain = q.start(), 0.0, Y0, Y1, 0.0
         if target <= 0.0:
@@ -263,14 +286,14 @@ class _Run:
         renew, bound = -1.0, 0.0
         while True:
             if tau >= renew:
-                bound = np.sqrt((at.h3 + at.z3) ** 2 + q.fourth(at) ** 2 / q.kappa) + third
+                bound = q.bound(at, 3, strength, _HORIZON)
                 renew = tau + _HORIZON
             if y <= SMALLEST:
-                if tau > 0.0:
+                if tau > 0.0 or y > 0.0 > y_rate:
                     return _Sliding(_HALT, tau, at, y, y_rate, gain)
                 # from rest: y' or, after a slip, y'' opens the flight
                 jerk = s * (at.h3 + at.z3)
-                further = np.sqrt(q.fourth(at) ** 2 + q.fifth(at) ** 2 / q.kappa) + q.omega * third
+                further = q.bound(at, 4, strength, _HORIZON)
                 if (
                     bound == 0.0 and further == 0.0 and not y_rate > 0.0
                 ):  # neither friction, slope nor forcing

@@ -1,4 +1,4 @@
-"""Pieces of the coupled machine's segments in plain Python: the motion, the work done and the energy.
+"""Pieces of the built-in machines' segments in plain Python: the motion, the work done and the energy.
 
 Signatures: :mod:`orbits.machines.stepping`, items 4 and 5.
 """
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from orbits.machines.reference.law import Law
-from orbits.machines.reference.oscillation import Oscillation, State, after, first_zero, oscillation
+from orbits.machines.reference.oscillation import Oscillation, after, first_zero, oscillation, standing
 from orbits.machines.stepping import LOW, MODE, PSI, RATE, V_RATE, V, W
 from orbits.numbers import ROUNDOFF
 
@@ -22,8 +22,7 @@ def sample(law: Law[float], states: np.ndarray, ahead: np.ndarray, out: np.ndarr
     """w, w', v, v' at given phases after given states; contract, item 4."""
     for state, phase, row in zip(states, ahead, out):
         q, tau = oscillation(state, law), phase / law.omega
-        begin = State(state[W], state[RATE], state[V], state[V_RATE])
-        row[:] = after(law, q, q.at(tau), begin, state[MODE], tau, state[LOW])
+        row[:] = after(law, q, q.at(tau), standing(state, law), state[MODE], tau, state[LOW])
 
 
 def quadrature(phase: float, span: float) -> tuple[np.ndarray, np.ndarray]:
@@ -41,24 +40,37 @@ def quadrature(phase: float, span: float) -> tuple[np.ndarray, np.ndarray]:
 def works(law: Law[float], states: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
     """Work of the excitation, of the damper and of friction inside pieces of segments; contract, item 5.
 
-    Per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the way
-    slid.
+    Per M b^2 omega_0^2: the integrals of (e + eps lambda e') q1' and of eps lambda q1'^2, and eps mu g times the way slid. Of a shaken cavity in its own
+    frame and per mass of the absorber: the integral of v'' w', no damper, and the friction's acceleration times the way slid.
     """
     eps, omega = law.eps, law.omega
     for state, phase, row in zip(states, ahead, out):
         q, span = oscillation(state, law), phase / omega
         times, weights = quadrature(phase, span)
-        rate = q.h1 + q.z1 + np.array([q.at(tau).speed for tau in times])
-        Psi = state[PSI] + omega * times
-        row[0] = law.force * (weights * rate) @ (np.sin(Psi) + law.base * np.cos(Psi))
-        row[1] = law.drag * weights @ rate**2
-        slid = q.at(span).way - q.travel(span) if state[MODE] != 0.0 else 0.0
-        row[2] = eps * law.friction_left * abs(slid)
+        points = [q.at(tau) for tau in times]
+        rate = q.h1 + q.z1 + np.array([at.speed for at in points])
+        sliding, Psi = state[MODE] != 0.0, state[PSI] + omega * times
+        if law.prescribed:
+            relative = rate - (q.q2_rate + q.q2_pull * times) if sliding else 0.0 * rate
+            row[0], row[1] = (weights * np.array([at.h2 for at in points])) @ relative, 0.0
+        else:
+            row[0] = law.force * (weights * rate) @ (np.sin(Psi) + law.base * np.cos(Psi))
+            row[1] = law.drag * weights @ rate**2
+        slid = q.at(span).way - q.travel(span) if sliding else 0.0
+        friction = law.side(state[MODE]).friction / law.whole
+        row[2] = (1.0 if law.prescribed else eps) * friction * abs(slid)
 
 
 def energies(law: Law[float], states: np.ndarray, out: np.ndarray) -> None:
-    """Kinetic and potential energy per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2 + eps g sin(slope) w; contract, item 5."""
+    """Energy of states; contract, item 5.
+
+    Kinetic and potential per M b^2 omega_0^2, (q1'^2 + q1^2 + eps q2'^2)/2 + eps g sin(slope) w; in a shaken cavity that of the relative motion
+    per mass of the absorber, w'^2/2 + b w.
+    """
     eps, lean, whole = law.eps, law.lean, law.whole
+    if law.prescribed:
+        out[:] = 0.5 * states[:, RATE] ** 2 + lean * states[:, W]
+        return
     q1 = (states[:, V] + eps * states[:, W]) / whole
     q1_rate = (states[:, V_RATE] + eps * states[:, RATE]) / whole
     q2_rate = (states[:, V_RATE] - states[:, RATE]) / whole

@@ -1,6 +1,6 @@
 """The same block-cyclic system read in other ways: for perturbations that change sign over the period, and transposed.
 
-Both are block-cyclic again, so that the elimination of `orbits.elimination.block_cyclic` solves them in O(l).
+Both are block-cyclic again, so that the elimination of the native core solves them in O(l).
 """
 
 from __future__ import annotations

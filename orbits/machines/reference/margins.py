@@ -1,0 +1,189 @@
+"""Margins of admissibility of the built-in machines' orbits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from orbits.machines.reference.law import Law
+from orbits.machines.reference.oscillation import (
+    Oscillation,
+    Point,
+    State,
+    after,
+    certain,
+    first_zero,
+    leg,
+    push,
+)
+from orbits.numbers import ROUNDOFF, SMALLEST
+from orbits.settings import EVENTS, STEPPING
+from orbits.words.alphabet import CODES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from orbits.arguments import CycleData, Workspace
+
+LEFT_IMPACT, TURN, STICK, SLIP = (CODES[letter] for letter in "Ltsu")
+
+
+def margins(law: Law[float], data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
+    """Margins of admissibility, none negative for an orbit that a machine can follow.
+
+    `out` has shape (4 L,), four numbers per node; infinity where there is nothing to watch. Reads sines and cosines of the last `linearise` from
+    `work`. All zeros are found by steps that cannot pass one (`orbits.machines.reference.oscillation.first_zero`).
+
+    0. The flight after the node. Sliding: smallest s w' at an interior minimum. Without friction, where a flight may reverse: distance from the
+       walls at the zeros of w'. Stuck: smallest reserve of friction at an interior extremum of v''; of a shaken cavity the time to the slip, negative
+       unless it is the first time friction gives way.
+    1. The event. Impact: approach speed. Turn: -s (v'' - b) - a with s the mode before and a of the direction after it, since the relative
+       acceleration v'' - b - a S cannot vanish for any S in [-1, 1] exactly when |v'' - b| > a. Stick: a - |v'' - b|. Slip: m v''' at its start, of a
+       shaken cavity per radian of the phase. Here neither friction nor gravity enters v'' = -q1 - eps lambda q1' + e + eps lambda e', and
+       b = (1 + eps) g sin(slope).
+    2. The wall: distance from it away from impacts.
+    3. The duration of the segment.
+    """
+    events, modes, twist, shaken = data.events, data.modes, data.twist, law.prescribed
+    length, n = work.F.shape
+    nodes = u.reshape(length, n)
+    b, friction = law.whole * law.lean, {s: law.side(s).friction for s in (1.0, -1.0)}
+
+    def reserve(against: float) -> float:
+        """Friction left where it holds so much, of the two directions the nearer to slipping."""
+        return min(friction[1.0] - against, friction[-1.0] + against)
+
+    for i in range(length):
+        event, mode = events[i], float(modes[i])
+        psi, y = nodes[i, :2]
+        inner = i + 1 < length
+        arrival = events[(i + 1) % length]
+        if not inner and twist < 0.0 and arrival < TURN:
+            arrival = 1 - arrival
+        d = ((nodes[i + 1, 0] if inner else nodes[0, 0] + data.shift) - psi) / law.omega
+        speed = law.amplitude * law.omega
+        v, v_rate = (law.amplitude * work.sines[i], speed * work.cosines[i]) if shaken else nodes[i, 2:]
+        wall = law.left if event == LEFT_IMPACT else law.right
+        begin = State(wall, v_rate - y, v, v_rate) if event < TURN else State(y, 0.0, v, v_rate)
+        against = push(law, begin, work.sines[i], work.cosines[i]) - b  # friction
+        q = leg(law, psi, begin, mode)
+        first = q.start()
+        jerk = first.h3 + first.z3
+        flight = np.inf
+        if shaken and mode == 0.0:
+            flight = _late(law, psi, d)
+        elif not d > 0.0:
+            pass
+        elif mode == 0.0:
+            for at in _extrema(q, 3, psi, d):
+                flight = min(flight, reserve(law.whole * (at.h2 + at.z2) - b))
+        elif not law.frictionless:
+            tau, until = 0.0, d
+            if shaken:  # a slip starts at such a minimum, and the next one is a turn away; a turn or stick has none beside it
+                tau = (1.0 if event == SLIP else EVENTS.at_end if event >= TURN else 0.0) / law.omega
+                until -= (EVENTS.at_end if arrival >= TURN else 0.0) / law.omega
+            elif event == SLIP:  # w' = w'' = 0 at the start of a slip: go as far as m w''' keeps its sign
+                bound = q.driven(4) + q.own(4, 0.0)
+                tau = min(abs(jerk) / bound, 0.5 * d) if bound > 0.0 else 0.0
+            if event != TURN or mode * against > friction[mode]:  # else the turn's own margin says it
+                flight = _slowest(law, q, mode, tau, until)
+        else:
+            tau = 0.0
+            while (tau := first_zero(_slide(q), tau, d, *_bounds(q, 1, tau, d), psi)) < d:
+                w = after(law, q, q.at(tau), begin, mode, tau).w
+                flight = min(flight, law.left - w, w - law.right)
+        before = modes[i - 1] if i > 0 else twist * modes[-1]
+        out[4 * i] = flight
+        out[4 * i + 2] = min(law.left - y, y - law.right) if event >= TURN else np.inf
+        out[4 * i + 3] = d
+        if event == TURN:
+            out[4 * i + 1] = -before * against - friction[-1.0 if before > 0 else 1.0]
+        elif event == STICK:
+            out[4 * i + 1] = reserve(against)
+        elif event == SLIP:
+            out[4 * i + 1] = mode * jerk / (law.omega if shaken else 1.0)  # w''' of the slide that begins
+        if arrival < TURN:
+            following, side = (i + 1) % length, 1.0 - 2.0 * arrival
+            if shaken:
+                rate = after(law, q, q.at(d), begin, mode, d).rate
+            else:  # the wall's reaction: w'+ = -r w'-, and B+ = v' - w'+
+                told = nodes[following, 1] - nodes[following, 3]
+                rate = (1.0 if inner else twist) * told / law.side(side).restitution
+            out[4 * following + 1] = side * rate
+
+
+def _late(law: Law[float], psi: float, d: float) -> float:
+    """Of a stick in a shaken cavity its duration, or how far in phase it does not end the first time that friction gives way."""
+    peak, first = law.amplitude * law.omega * law.omega, np.inf
+    for pull, base in ((law.pull_left, np.pi), (-law.pull_right, 0.0)):
+        ratio = pull / peak if peak > 0.0 else np.inf
+        if ratio <= -1.0:  # it always gives way
+            return -1.0
+        if ratio < 1.0:
+            rest = (base + np.arcsin(ratio) - psi) % (2.0 * np.pi)
+            # rounding must not make a turn of an instant that is now
+            first = min(first, rest - 2.0 * np.pi if rest > 2.0 * np.pi - STEPPING.slip else rest)
+    late = d * law.omega - first
+    return -1.0 if first == np.inf else d if abs(late) < STEPPING.slip else -abs(late)
+
+
+def _bounds(q: Oscillation[float], order: int, start: float, end: float) -> tuple[float, float]:
+    """Of a derivative of q1: what bounds its second derivative from a time on, and its rounding."""
+    drift = abs(q.q2_rate) + abs(q.q2_pull) * end if order == 1 else 0.0
+    return q.driven(order + 2) + q.own(order + 2, start), 2.0 * ROUNDOFF * (
+        drift + 2.0 * q.driven(order) + 2.0 * q.own(order, 0.0)
+    )
+
+
+def _slide(q: Oscillation[float]) -> Callable[[float], tuple[float, float]]:
+    """w' and w'' by time."""
+
+    def look(tau: float) -> tuple[float, float]:
+        at = q.at(tau)
+        return q.h1 + q.z1 + at.speed - (q.q2_rate + q.q2_pull * tau), at.h2 + at.z2 - q.q2_pull
+
+    return look
+
+
+def _extrema(q: Oscillation[float], order: int, psi: float, end: float) -> Iterator[Point[float]]:
+    """The motion where q1''' vanishes."""
+
+    def look(tau: float) -> tuple[float, float]:
+        at = q.at(tau)
+        return at.h3 + at.z3, q.fourth(at)
+
+    tau = 0.0
+    while (tau := first_zero(look, tau, end, *_bounds(q, order, tau, end), psi)) < end:
+        at: Point[float] = q.at(tau)
+        yield at
+
+
+def _slowest(law: Law[float], q: Oscillation[float], s: float, start: float, end: float) -> float:
+    """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none.
+
+    w'' = q1'' - q2'' is followed from zero to zero by steps that cannot pass one (`certain`). A zero need not be known well (`STEPPING.minimum`): the minimum is then taken from
+    the Taylor series, exact to roundoff.
+    """
+    brake = s * q.q2_pull
+    smallest, tau, bound = np.inf, start, -1.0
+    while True:
+        at = q.at(tau)
+        y, slope = s * (at.h2 + at.z2) - brake, s * (at.h3 + at.z3)
+        if bound < 0.0:
+            bound = q.bound(at, 4, law.strength, end - start)
+            if not bound > SMALLEST:
+                return smallest
+        sign = 1.0 if y > 0.0 else -1.0
+        step = certain(abs(y), sign * slope, bound)
+        if step < STEPPING.minimum:
+            zero = -y / slope if sign * slope < 0.0 else 0.0
+            if tau + zero >= end:
+                return smallest
+            if slope > 0.0:
+                speed = s * (q.h1 + q.z1 + at.speed - q.q2_rate) - brake * tau
+                smallest = min(smallest, speed + (y + 0.5 * slope * zero) * zero)
+            step = zero + max(abs(slope) / bound, STEPPING.minimum)
+        tau += step
+        if not tau < end:
+            return smallest
