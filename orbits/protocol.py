@@ -81,27 +81,6 @@ class Answers:
     scales = None
     scales_learned = False
     noise = 0.0
-    movable = False
-    dimension: int
-
-    def scale_within(self, within: tuple[float, float]) -> np.ndarray:
-        """Typical sizes of unknowns and parameter, shape (N + 1,)."""
-        return np.ones(self.dimension + 1)
-
-    def check_value(self, name: str, value: float) -> None:
-        """Refuse a value that a parameter cannot have; every value will do."""
-
-    def middle(self, p: float) -> float:
-        """The position about which mirror images are taken."""
-        return 0.0
-
-    def smooth_margin(self, j: int) -> int:
-        """The margin to follow along a locus where margin `j` vanishes."""
-        return j
-
-    def dead_end(self, point: BorderPoint) -> str:
-        """Why no motion was found on the other side of a border; empty where the reason is not known."""
-        return ""
 
     def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> None:
         """A measure at every point of a cycle: those of a motion have no order."""

@@ -24,7 +24,7 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean, no_parameter
 from orbits.machines.mechanics import Mechanics
 from orbits.machines.parameters import CONTACT_TIME, Limits, Parameter, ParameterError
-from orbits.machines.rest import Rest, rest_of
+from orbits.machines.rest import Rest
 
 
 class Model(Mechanics):
@@ -65,7 +65,7 @@ class Model(Mechanics):
             cls.limits = {entry.name: entry.limits for entry in cls.table}
             cls.node_names = ("phase", "B or w", *(("v", "v_rate") if cls.moving_cavity else ()))
             cls.node = len(cls.node_names)
-            cls.rest = rest_of(cls.name)
+            cls.rest = Rest(cls.name)
 
     def __new__(cls, *values: object, **options: object) -> Self:
         """A machine; a name that it does not have is refused with those that it has, one that is missing with its meaning."""

@@ -11,12 +11,11 @@ from orbits.machines.reference.law import DRIVEN, LAWS, Law
 
 
 class Rest:
-    """The absorber at rest in a shaken cavity; the one unknown is its position, kept at w = 0. Parameter vectors have shape (P,)."""
-
-    unknowns = 1
+    """The absorber at rest in a shaken cavity, whose one unknown is its position, kept at w = 0; on an oscillator a linear response
+    q1 = X sin Psi + Y cos Psi with the mass 1 + eps, about the place where both rest. Parameter vectors have shape (P,)."""
 
     def __init__(self, name: str) -> None:
-        self._law = LAWS[name]
+        self._law, self.unknowns = LAWS[name], 2 if name in DRIVEN else 1
 
     def law(self, params: np.ndarray) -> Law[float]:
         """The numbers of the equations of motion."""
@@ -24,7 +23,11 @@ class Rest:
 
     def equations(self, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Matrix K (N, N) and right-hand side f (N,)."""
-        return np.eye(1), np.zeros(1)
+        law = self.law(params)
+        if law.prescribed:
+            return np.eye(1), np.zeros(1)
+        stiffness, drag = 1.0 - law.whole * law.omega**2, law.drag * law.omega
+        return np.array([[stiffness, -drag], [drag, stiffness]]), law.force * np.array([1.0, law.base])
 
     def reserve(self, params: np.ndarray, u: np.ndarray) -> float:
         """Friction acceleration left before the absorber slips, of the two directions the nearer to slipping."""
@@ -33,12 +36,8 @@ class Rest:
     def reserves(self, params: np.ndarray, u: np.ndarray | None = None) -> tuple[float, float]:
         """The same of both directions: gravity along the cavity helps one and hinders the other."""
         law = self.law(params)
-        size = (
-            float(law.amplitude)
-            if law.prescribed
-            else float(np.hypot(*(self.solved(params) if u is None else u)))
-        )
-        shaking = size * float(law.omega) ** 2
+        size = law.amplitude if law.prescribed else np.hypot(*(self.solved(params) if u is None else u))
+        shaking = float(size) * float(law.omega) ** 2
         return float(law.pull_left) - shaking, float(-law.pull_right) - shaking
 
     def solved(self, params: np.ndarray) -> np.ndarray:
@@ -47,43 +46,27 @@ class Rest:
 
     def multipliers(self, params: np.ndarray) -> np.ndarray:
         """Multipliers over one forcing period, complex, shape (m,) with m the same for all parameters."""
-        return np.zeros(0, complex)
+        law = self.law(params)
+        if law.prescribed:
+            return np.zeros(0, complex)
+        return np.exp(np.roots([law.whole, law.drag, 1.0]).astype(complex) * 2.0 * np.pi / law.omega)
 
     def cavity_motion(
         self, params: np.ndarray, u: np.ndarray, phase: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """v and v' at some phases."""
         law = self.law(params)
-        return law.amplitude * np.sin(phase), law.amplitude * law.omega * np.cos(phase)
-
-    def measure(self, name: str, params: np.ndarray, u: np.ndarray) -> float:
-        """A measure that has a meaning without events; nan for any other."""
-        return float(self.law(params).amplitude) ** 2 if name == "C2" else np.nan
-
-
-class RestOnOscillator(Rest):
-    """The absorber at rest on its oscillator: a linear response q1 = X sin Psi + Y cos Psi with the mass 1 + eps, about the place where both rest."""
-
-    unknowns = 2
-
-    def equations(self, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        law = self.law(params)
-        stiffness, drag = 1.0 - law.whole * law.omega**2, law.drag * law.omega
-        return np.array([[stiffness, -drag], [drag, stiffness]]), law.force * np.array([1.0, law.base])
-
-    def multipliers(self, params: np.ndarray) -> np.ndarray:
-        law = self.law(params)
-        return np.exp(np.roots([law.whole, law.drag, 1.0]).astype(complex) * 2.0 * np.pi / law.omega)
-
-    def cavity_motion(
-        self, params: np.ndarray, u: np.ndarray, phase: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        law = self.law(params)
+        if law.prescribed:
+            return law.amplitude * np.sin(phase), law.amplitude * law.omega * np.cos(phase)
         X, Y = law.whole * u
         return X * np.sin(phase) + Y * np.cos(phase), law.omega * (X * np.cos(phase) - Y * np.sin(phase))
 
     def measure(self, name: str, params: np.ndarray, u: np.ndarray) -> float:
-        law, size = self.law(params), float(np.hypot(u[0], u[1]))
+        """A measure that has a meaning without events; nan for any other."""
+        law = self.law(params)
+        if law.prescribed:
+            return float(law.amplitude) ** 2 if name == "C2" else np.nan
+        size = float(np.hypot(u[0], u[1]))
         ground = float(law.drag / law.eps) * np.pi * float(law.omega) * size**2
         true = ground + share_of_the_base(law, 1, np.pi * float(u[0]))
         return {
@@ -106,8 +89,3 @@ def share_of_the_base(law: Law[float], periods: int, overlap: float) -> float:
     own = np.pi * periods * law.omega * law.force**2
     chi_lambda = law.base / (law.omega * law.eps)
     return float(chi_lambda * (own - 2.0 * law.omega * law.force * overlap))
-
-
-def rest_of(name: str) -> Rest:
-    """The rest of the machine called `name`."""
-    return (RestOnOscillator if name in DRIVEN else Rest)(name)

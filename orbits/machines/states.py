@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
@@ -11,21 +9,6 @@ from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 
 TWO_PI = 2.0 * np.pi
-
-
-def state_of(engine: Machine, params: np.ndarray, code: int, mode: int, node: np.ndarray) -> np.ndarray:
-    """The state, shape (S,), just after an event, from its node (Psi, B+ or w(, v, v'))."""
-    state = np.zeros(engine.state)
-    turns = math.floor(node[0] / TWO_PI)
-    psi = node[0] - turns * TWO_PI
-    state[PSI] = psi if 0.0 <= psi < TWO_PI else 0.0
-    state[TURNS], state[MODE], state[W] = turns, mode, node[1]
-    if engine.moving_cavity:
-        state[V], state[V_RATE] = node[2], node[3]
-    if code < 2:
-        state[W] = engine.walls(params)[code]
-        state[RATE] = _cavity_speed(engine, params, state[None])[0] - node[1]
-    return state
 
 
 def states_of(
@@ -51,6 +34,11 @@ def states_of(
     states[:, W] = np.where(impact, np.where(codes == 0, left, right), nodes[:, 1])
     states[:, RATE] = np.where(impact, _cavity_speed(engine, params, states) - nodes[:, 1], 0.0)
     return states
+
+
+def state_of(engine: Machine, params: np.ndarray, code: int, mode: int, node: np.ndarray) -> np.ndarray:
+    """The same after one event, shape (S,)."""
+    return states_of(engine, params, np.array([code]), np.array([mode]), node[None])[0]
 
 
 def nodes_of(

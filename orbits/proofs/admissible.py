@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.balls import interval, library
 from orbits.proofs.equations import Motif
-from orbits.proofs.flights import WALLS, Coupled, Flight, Motion, Shaken
+from orbits.proofs.flights import WALLS, Flight, Flights, Motion
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def _vanishes(condition: Condition, zero: Zero) -> bool:
 
 
 def _at_event(
-    motif: Motif, i: int, here: Motion, node: Sequence[arb], machine: Shaken | Coupled
+    motif: Motif, i: int, here: Motion, node: Sequence[arb], machine: Flights
 ) -> Iterator[Condition]:
     letter = motif.events[i]
     if letter in WALLS:
@@ -157,7 +157,7 @@ def _at_event(
 
 
 def _in_flight(
-    motif: Motif, i: int, flight: Flight, phases: tuple[arb, arb], machine: Shaken | Coupled, zero: Zero
+    motif: Motif, i: int, flight: Flight, phases: tuple[arb, arb], machine: Flights, zero: Zero
 ) -> Iterator[Condition]:
     pace = 1 / machine.omega
     letter, mode = motif.events[i], motif.modes[i]

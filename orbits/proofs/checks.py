@@ -10,7 +10,7 @@ import numpy as np
 
 from orbits.proofs.balls import Given, ball
 from orbits.proofs.equations import MIRRORED, Motif
-from orbits.proofs.flights import MACHINES, parameter_names
+from orbits.proofs.flights import MOVING, parameter_names
 from orbits.proofs.obstacles import ProofError
 from orbits.proofs.varying import Varying
 from orbits.settings import PROVING
@@ -97,7 +97,7 @@ def check_parameters(motif: Motif, p: Mapping[str, arb]) -> None:
     for name, value in p.items():
         if name.startswith("restitution"):
             good = value > 0 and value.upper() <= 1
-        elif name in ("frequency",) or (name == "mass_ratio" and MACHINES[motif.machine].moving_cavity):
+        elif name in ("frequency",) or (name == "mass_ratio" and motif.machine in MOVING):
             good = value > 0
         else:
             good = name == "slope" or value.lower() >= 0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.balls import library
 from orbits.proofs.elimination import Blocks
-from orbits.proofs.flights import MACHINES, WALLS, Coupled, Shaken, wall
+from orbits.proofs.flights import MOVING, WALLS, Flights, wall
 from orbits.proofs.jets import partial, variables
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ class Motif:
     Attributes
     ----------
     machine : str
-        One of `orbits.proofs.flights.MACHINES`.
+        A key of `orbits.proofs.flights.NAMES`.
     events : tuple of str
         Letters of the part that is solved for.
     modes : tuple of int
@@ -55,7 +55,7 @@ class Motif:
     @property
     def node(self) -> int:
         """Unknowns per event."""
-        return MACHINES[self.machine].node
+        return 4 if self.machine in MOVING else 2
 
     @property
     def twist(self) -> int:
@@ -67,9 +67,9 @@ class Motif:
         """Whether no wall is hit."""
         return not any(letter in WALLS for letter in self.events)
 
-    def flights(self, p: Mapping[str, Number]) -> Shaken | Coupled:
+    def flights(self, p: Mapping[str, Number]) -> Flights:
         """The machine's flights with parameters `p`."""
-        return MACHINES[self.machine](p)
+        return Flights(p, self.machine in MOVING)
 
     def arrival(self, i: int) -> tuple[str, int]:
         """The event that ends flight i, and the mode after it."""
@@ -95,7 +95,7 @@ class Motif:
         return nodes[i + 1] if i + 1 < len(nodes) else self.closing(nodes[0], p)
 
     def residual(
-        self, i: int, flights: Shaken | Coupled, x: Sequence[Number], following: Sequence[Number]
+        self, i: int, flights: Flights, x: Sequence[Number], following: Sequence[Number]
     ) -> list[Any]:
         """The elementary map of flight i, zero where `following` is the node that `x` leads to.
 
@@ -138,14 +138,14 @@ class System:
         """The parameters, at these further unknowns."""
         return self.p
 
-    def prepare(self, extras: Sequence[Number]) -> Shaken | Coupled:
+    def prepare(self, extras: Sequence[Number]) -> Flights:
         """What all blocks share."""
         return self.motif.flights(self.numbers(extras))
 
     def block(
         self,
         i: int,
-        shared: Shaken | Coupled,
+        shared: Flights,
         z: Sequence[Number],
         following: Sequence[Number],
         extras: Sequence[Number],

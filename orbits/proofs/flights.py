@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.jets import exp, sin_cos, sqrt
 from orbits.proofs.obstacles import ProofError
@@ -49,166 +49,105 @@ class Motion:
 Flight = Callable[["Number"], Motion]
 
 
-class Flights(Protocol):
-    """A machine with closed-form flights and definite parameters."""
+class Flights:
+    """A machine with definite parameters; node (Psi, B+) at impacts, (Psi, w) elsewhere, and v, v' where the cavity has a motion of its own.
 
-    limit: Mapping[int, Any]  # largest relative acceleration by friction against sliding in mode +1, -1
-    room: Mapping[int, Any]  # distance of the left (+1) and the right wall (-1) from w = 0
-    omega: Any
+    A shaken cavity is the coupled machine with eps = 0, q1 = v = C sin Psi whatever the absorber does, and q2 counted 1 + eps times.
 
-    def restitution(self, letter: str) -> Number:
-        """Newton's coefficient of the wall."""
-        ...
+    Attributes
+    ----------
+    limit : dict
+        Largest relative acceleration by friction against sliding in mode +1, -1.
+    room : dict
+        Distance of the left (+1) and of the right wall (-1) from w = 0.
+    """
 
-    def launch(self, letter: str, mode: int, node: Sequence[Number]) -> Flight:
-        """The flight in `mode` that begins with event `letter` at `node`."""
-        ...
-
-
-def wall(flights: Flights, letter: str) -> Number:
-    """Where the absorber hits at an impact."""
-    side = WALLS[letter]
-    return side * flights.room[side]
-
-
-class Shaken:
-    """Flights of a cavity that is shaken harmonically; node (Psi, B+) at impacts, (Psi, w) elsewhere."""
-
-    node = 2
-    moving_cavity = False
-
-    limit: Mapping[int, Any]
-    room: Mapping[int, Any]
-
-    def __init__(self, p: Mapping[str, Any]) -> None:
-        self.amplitude, self.omega = p["amplitude"], p["frequency"]
+    def __init__(self, p: Mapping[str, Any], moving_cavity: bool) -> None:
+        self.moving_cavity, self.omega, self.p = moving_cavity, p["frequency"], p
         weight = (1 + p["mass_ratio"]) * p["gravity"]
-        if "slope" in p:
-            sine, cosine = sin_cos(p["slope"])
-            weight, self.bias = weight * cosine, -weight * sine
-            self.limit = {1: weight * p["friction_left"], -1: weight * p["friction_right"], 0: 0}
-            self.room = {1: p["distance_left"], -1: p["distance_right"]}
-            self.left, self.right = p["restitution_left"], p["restitution_right"]
-        else:
-            a = weight * p["friction"]
-            self.limit, self.room, self.bias = {1: a, -1: a, 0: 0}, {1: 1, -1: 1}, 0
-            self.left = self.right = p["restitution"]
+        sine, cosine = sin_cos(p["slope"]) if "slope" in p else (0, 1)
+        left, right = (
+            {
+                name: p.get(f"{name}_{side}", p.get(name, 1))
+                for name in ("friction", "restitution", "distance")
+            }
+            for side in ("left", "right")
+        )
+        self.bias = -weight * sine
+        self.limit: dict[int, Any] = {
+            s: weight * cosine * side["friction"] for s, side in ((1, left), (-1, right))
+        } | {0: 0}
+        self.room: dict[int, Any] = {1: left["distance"], -1: right["distance"]}
+        self._restitution = {"L": left["restitution"], "R": right["restitution"]}
+        self.eps = p["mass_ratio"] if moving_cavity else 0
+        self.whole = 1 + self.eps
+        self._responses: dict[bool, tuple[Any, Any, Any, Any]] = {}
 
     def restitution(self, letter: str) -> Number:
         """Newton's coefficient of the wall."""
-        return self.left if letter == "L" else self.right
+        return self._restitution[letter]
 
-    def launch(self, letter: str, mode: int, node: Sequence[Number]) -> Flight:
-        """See `Flights.launch`."""
-        phase0, y = node
-        C, omega = self.amplitude, self.omega
-        speed = C * omega
-        peak = speed * omega
-        s0, c0 = sin_cos(phase0)
-        w0, beta = (wall(self, letter), y) if letter in WALLS else (y, speed * c0)
-        pull = self.bias - mode * self.limit[mode]
-
-        def flight(phase: Number) -> Motion:
-            s, c = sin_cos(phase)
-            shake, shake1 = -peak * s, -peak * omega * c
-            shake2 = -omega * omega * shake
-            push = shake + self.bias
-            v, v1 = C * s, speed * c
-            if mode == 0:
-                return Motion(w0, 0, 0, 0, push, shake1, shake2, v, v1)
-            t = (phase - phase0) / omega
-            w = w0 + C * (s - s0) - (beta - pull * t / 2) * t
-            return Motion(w, v1 - beta + pull * t, shake + pull, shake1, push, shake1, shake2, v, v1)
-
-        return flight
-
-    def resting(self, phase: Number) -> tuple[Any, Any]:
-        """The push on the stuck absorber in steady state, and its rate."""
-        s, c = sin_cos(phase)
-        peak = self.amplitude * self.omega * self.omega
-        return self.bias - peak * s, -peak * self.omega * c
-
-
-class Coupled:
-    """Flights of the absorber on its oscillator; node (Psi, B+, v, v') at impacts, (Psi, w, v, v') elsewhere."""
-
-    node = 4
-    moving_cavity = True
-    limit: Mapping[int, Any]
-    room: Mapping[int, Any]
-
-    def __init__(self, p: Mapping[str, Any]) -> None:
-        self.eps, self.omega = p["mass_ratio"], p["frequency"]
-        self.whole = 1 + self.eps
-        self.pull, self.lean = p["friction"] * p["gravity"], 0
-        if "slope" in p:
-            sine, cosine = sin_cos(p["slope"])
-            self.pull, self.lean = self.pull * cosine, p["gravity"] * sine
-        a, self.bias = self.whole * self.pull, -self.whole * self.lean
-        self.limit, self.room = {1: a, -1: a, 0: 0}, {1: 1, -1: 1}
-        self.r = p["restitution"]
-        self.rate = self.eps * p["damping"]
-        self._force, self._chi = self.eps * p["forcing"], p["excitation"]
-        self._responses: dict[int, tuple[Number, Number, Number, Number]] = {}
-
-    def restitution(self, letter: str) -> Number:
-        """Newton's coefficient of the walls."""
-        return self.r
-
-    def _response(self, stuck: bool) -> tuple[Number, Number, Number, Number]:
-        """X, Y of the forced response X sin Psi + Y cos Psi, and decay alpha and angular frequency beta of the free one."""
+    def _response(self, stuck: bool) -> tuple[Any, Any, Any, Any]:
+        """X, Y of the forced response X sin Psi + Y cos Psi of q1, and decay alpha and angular frequency beta of the free one."""
+        p = self.p
+        if not self.moving_cavity:
+            return p["amplitude"], 0, 0, 0
         if stuck not in self._responses:
+            rate, force, chi = self.eps * p["damping"], self.eps * p["forcing"], p["excitation"]
             mass = self.whole if stuck else 1
-            drag, stiffness = self.rate * self.omega, 1 - mass * self.omega * self.omega
-            scale = self._force / (stiffness * stiffness + drag * drag)
-            X = scale * (stiffness + self._chi * drag * drag)
-            Y = scale * drag * (self._chi * stiffness - 1)
-            alpha = self.rate / (2 * mass)
-            one = self._force * 0 + 1
-            self._responses[stuck] = X, Y, alpha, sqrt(one / mass - alpha * alpha)
+            drag, stiffness = rate * self.omega, 1 - mass * self.omega * self.omega
+            scale = force / (stiffness * stiffness + drag * drag)
+            alpha = rate / (2 * mass)
+            self._responses[stuck] = (
+                scale * (stiffness + chi * drag * drag),
+                scale * drag * (chi * stiffness - 1),
+                alpha,
+                sqrt((force * 0 + 1) / mass - alpha * alpha),
+            )
         return self._responses[stuck]
 
     def launch(self, letter: str, mode: int, node: Sequence[Number]) -> Flight:
-        """See `Flights.launch`."""
-        phase0, y, v0, v1 = node
+        """The flight in `mode` that begins with event `letter` at `node`."""
+        phase0, y = node[:2]
         eps, omega, whole = self.eps, self.omega, self.whole
-        if letter in WALLS:
-            w0, q2r = wall(self, letter), y / whole
-            q1r = v1 - eps * q2r
-        else:
-            w0, q1r, q2r = y, v1 / whole, v1 / whole
-        q1, q2 = (v0 + eps * w0) / whole, (v0 - w0) / whole
         X, Y, alpha, beta = self._response(mode == 0)
-        slide = self.pull * mode + self.lean if mode else 0  # q2''
-        offset = -eps * slide
         s0, c0 = sin_cos(phase0)
-        z0 = q1 - X * s0 - Y * c0 - offset
-        z1 = q1r - omega * (X * c0 - Y * s0)
-        kappa = alpha * alpha + beta * beta
+        v0, v1 = node[2:] if self.moving_cavity else (X * s0, X * omega * c0)
+        w0, q2r = (wall(self, letter), y / whole) if letter in WALLS else (y, v1 / whole)
+        slide = (mode * self.limit[mode] - self.bias) / whole if mode else 0  # q2''
+        z0 = z1 = kappa = 0
+        if self.moving_cavity:
+            z0 = (v0 + eps * w0) / whole - X * s0 - Y * c0 + eps * slide
+            z1 = (v1 - eps * q2r if letter in WALLS else q2r) - omega * (X * c0 - Y * s0)
+            kappa = alpha * alpha + beta * beta
 
         def flight(phase: Number) -> Motion:
             t = (phase - phase0) / omega
             s, c = sin_cos(phase)
-            sine, cosine = sin_cos(beta * t)
-            decay = exp(-alpha * t)
-            sine, cosine = decay * sine / beta, decay * cosine
-            Z = z0 * cosine + (z1 + alpha * z0) * sine
-            Z1 = z1 * cosine - (alpha * z1 + kappa * z0) * sine
-            Z2 = -2 * alpha * Z1 - kappa * Z
-            h, h1 = X * s + Y * c, omega * (X * c - Y * s)
-            q, q_1 = offset + h + Z, h1 + Z1
-            q_2 = Z2 - omega * omega * h
-            Z3 = -2 * alpha * Z2 - kappa * Z1
-            q_3 = Z3 - omega * omega * h1
-            q_4 = -2 * alpha * Z3 - kappa * Z2 + omega * omega * omega * omega * h
+            h, h1, square = X * s + Y * c, omega * (X * c - Y * s), omega * omega
+            moved, q1, q2, q3, q4 = (
+                X * (s - s0) + Y * (c - c0),
+                h1,
+                -square * h,
+                -square * h1,
+                square * square * h,
+            )
+            if self.moving_cavity:
+                sine, cosine = sin_cos(beta * t)
+                decay = exp(-alpha * t)
+                sine, cosine = decay * sine / beta, decay * cosine
+                Z = z0 * cosine + (z1 + alpha * z0) * sine
+                Z1 = z1 * cosine - (alpha * z1 + kappa * z0) * sine
+                Z2 = -2 * alpha * Z1 - kappa * Z
+                Z3 = -2 * alpha * Z2 - kappa * Z1
+                moved, q1, q2, q3 = moved + Z - z0, q1 + Z1, q2 + Z2, q3 + Z3
+                q4 = q4 - 2 * alpha * Z3 - kappa * Z2
             if mode == 0:
-                v, rate = whole * q - eps * w0, whole * q_1
-                return Motion(w0, 0, 0, 0, whole * q_2 + self.bias, whole * q_3, whole * q_4, v, rate)
-            q2_1 = q2r + slide * t
-            q2_0 = q2 + (q2r + slide * t / 2) * t
-            push = q_2 + eps * slide + self.bias
-            w, v = q - q2_0, q + eps * q2_0
-            return Motion(w, q_1 - q2_1, q_2 - slide, q_3, push, q_3, q_4, v, q_1 + eps * q2_1)
+                push = whole * q2 + self.bias
+                return Motion(w0, 0, 0, 0, push, whole * q3, whole * q4, v0 + whole * moved, whole * q1)
+            way, fall, push = (q2r + slide * t / 2) * t, q2r + slide * t, q2 + eps * slide + self.bias
+            v, rate = v0 + moved + eps * way, q1 + eps * fall
+            return Motion(w0 + moved - way, q1 - fall, q2 - slide, q3, push, q3, q4, v, rate)
 
         return flight
 
@@ -220,11 +159,14 @@ class Coupled:
         return size * (X * s + Y * c) + self.bias, size * self.omega * (X * c - Y * s)
 
 
-MACHINES: dict[str, type[Shaken] | type[Coupled]] = {
-    "absorber": Shaken,
-    "cavity": Shaken,
-    "coupled": Coupled,
-}
+def wall(flights: Flights, letter: str) -> Number:
+    """Where the absorber hits at an impact."""
+    side = WALLS[letter]
+    return side * flights.room[side]
+
+
+MOVING = frozenset({"coupled"})
+"""Machines whose cavity has a motion of its own."""
 
 _EVERY = ("gravity", "mass_ratio", "frequency")
 _SIDES = tuple(

@@ -20,6 +20,7 @@ from orbits.proofs.proof import Proof
 from orbits.proofs.stability import stable_in_basis
 from orbits.proofs.tiles import Along, Tile, lay
 from orbits.proofs.varying import Varying
+from orbits.proofs.wording import SAYS, said, spelling
 from orbits.settings import PROVING
 
 if TYPE_CHECKING:
@@ -121,9 +122,19 @@ class Piece:
         )
 
     def __str__(self) -> str:
-        from orbits.proofs.wording import piece_sentence
-
-        return piece_sentence(self)
+        word = spelling(self.motif, self.parameters)
+        if not self.covered:
+            line = f"the orbits of {word} from {self.asked[0]:g} to {self.asked[1]:g}: not proved"
+            return said([line], self.obstacles)
+        low, high = (
+            f"the {kind} at {float(at):.10g}" if kind else f"{float(at):.10g}"
+            for kind, at in zip(self.ends, self.covered)
+        )
+        line = (
+            f"the orbits of {word}: exactly one near the branch, {SAYS['real'][self.real]}, {SAYS['stable'][self.stable]}, "
+            f"for all {self.parameter} from {low} to {high} ({self.count} boxes)"
+        )
+        return said([line], self.obstacles)
 
 
 def prove_piece(

@@ -12,6 +12,7 @@ from orbits.proofs.enclosing import Box
 from orbits.proofs.equations import Motif
 from orbits.proofs.obstacles import Obstacle
 from orbits.proofs.varying import Varying
+from orbits.proofs.wording import SAYS, said, spelling
 
 
 @dataclass(frozen=True)
@@ -149,9 +150,22 @@ class Proof:
         return certificate(motif, self.parameters, self.varying, boxes, self.real, self.stable, self.bits)
 
     def __str__(self) -> str:
-        from orbits.proofs.wording import sentence
-
-        return sentence(self)
+        word = spelling(self.motif, self.parameters)
+        what = "the orbit" if self.kind == "orbit" else f"the {self.kind}"
+        if not self.existence:
+            lines = [f"{what} of {word}: existence not proved"]
+        else:
+            facts = [f"exists, one and only one within {self.radius:.2g}"]
+            if self.value is not None:
+                facts.append(f"{self.parameter} = {self.value[0][:24]} within {float(self.value[1]):.1g}")
+                facts.append("transversal")
+            facts.append(SAYS["real"][self.real])
+            if self.kind == "orbit":
+                facts.append(SAYS["stable"][self.stable])
+            lines = [f"{what} of {word}: " + ", ".join(facts)]
+        if self.broken is not None:
+            lines.append(f"  the margin {self.broken[0]!r} of event {self.broken[1]} is negative")
+        return said(lines, self.obstacles)
 
 
 def _negated(pair: list[str]) -> list[str]:

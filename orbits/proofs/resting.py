@@ -21,7 +21,7 @@ from orbits.proofs.varying import Varying
 if TYPE_CHECKING:
     from flint import arb
 
-    from orbits.proofs.flights import Coupled, Shaken
+    from orbits.proofs.flights import Flights
     from orbits.proofs.jets import Number
 
 
@@ -41,7 +41,7 @@ class AtSlip(AtParameter):
     def block(
         self,
         i: int,
-        shared: Shaken | Coupled,
+        shared: Flights,
         z: Sequence[Number],
         following: Sequence[Number],
         extras: Sequence[Number],
@@ -72,7 +72,7 @@ def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) 
     return replace(proof, broken=("stick", 0)) if real is False else proof
 
 
-def push_amplitude(flights: Shaken | Coupled) -> Number:
+def push_amplitude(flights: Flights) -> Number:
     """Amplitude of the push on the stuck absorber, from two phases a quarter apart."""
     quarter = ball(1).atan() * 2
     one, other = (flights.resting(phase)[0] - flights.bias for phase in (ball(0), quarter))

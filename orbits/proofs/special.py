@@ -26,7 +26,7 @@ from orbits.proofs.varying import Varying
 if TYPE_CHECKING:
     from flint import arb
 
-    from orbits.proofs.flights import Coupled, Shaken
+    from orbits.proofs.flights import Flights
     from orbits.proofs.jets import Number
 
 
@@ -63,7 +63,7 @@ class AtMultiplier(AtParameter):
         place = self.n + normal.component
         self.borders = ((normal.block, lambda z, e: z[place] - 1),)
 
-    def prepare(self, extras: Sequence[Number]) -> Shaken | Coupled:
+    def prepare(self, extras: Sequence[Number]) -> Flights:
         """The flights over numbers with one direction; what does not move along it is lifted."""
         lifted = {name: Jet(value, {}) for name, value in self.p.items()}
         return self.motif.flights(lifted | self.varying.at(Jet(extras[0], {})))
@@ -71,7 +71,7 @@ class AtMultiplier(AtParameter):
     def block(
         self,
         i: int,
-        shared: Shaken | Coupled,
+        shared: Flights,
         z: Sequence[Number],
         following: Sequence[Number],
         extras: Sequence[Number],

@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.proofs.balls import library
 from orbits.proofs.equations import Motif, System
-from orbits.proofs.flights import Coupled, Flight, Shaken
+from orbits.proofs.flights import Flight, Flights
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.special import Normal, Vanishing
 
@@ -118,7 +118,7 @@ def _least(
     return min(inner, key=lambda pair: pair[0]) if inner else None
 
 
-def _size(flight: Flight, phase: arb, mode: int, vanishing: Vanishing, machine: Shaken | Coupled) -> float:
+def _size(flight: Flight, phase: arb, mode: int, vanishing: Vanishing, machine: Flights) -> float:
     m = flight(phase)
     if vanishing.name == "flight":
         return float((mode * m.w1).mid())

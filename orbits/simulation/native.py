@@ -201,7 +201,7 @@ class NativeSimulator:
         if last:
             self._oscillator_settles()
             return True
-        slips = rest.reserve(self.params, np.linalg.solve(*rest.equations(self.params))) <= -SIMULATING.held
+        slips = rest.reserve(self.params, rest.solved(self.params)) <= -SIMULATING.held
         return None if slips or not self._oscillator_settles() else True
 
     def _oscillator_settles(self) -> bool:

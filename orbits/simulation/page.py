@@ -12,6 +12,7 @@ import numpy as np
 from orbits.contacts.letters import HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page.growth import growth
+from orbits.flows.page.sampling import along
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.page.variations import Variations
 from orbits.flows.protocol import SimulationError, Waiting, checked_start
@@ -154,18 +155,7 @@ class PageTrajectory(Trajectory):
     def sample(self, clocks: np.ndarray) -> np.ndarray:
         """States, shape (m, n), at increasing clocks within the run."""
         clocks = np.asarray(clocks, dtype=float)
-        out = np.empty((len(clocks), self.model.size))
-        segment = np.clip(np.searchsorted(self.clocks, clocks, side="right") - 1, 0, len(self.clocks) - 1)
-        compiled, e = self.model.compiled, self.model.equations
-        for i in np.unique(segment):
-            places = np.flatnonzero(segment == i)
-            watch = compiled.watch(e.pattern_key(self.modes[i]))
-            numbers = compiled.numbers(self.params, self.modes[i])
-            first = self.clocks[i]
-            offset = TWO_PI * math.floor(first / TWO_PI) if self.model.forced else first
-            grid = np.concatenate([[first], clocks[places]]) - offset
-            out[places] = watch.path(self.states[i], grid, numbers)[1:]
-        return out
+        return along(self.model, self.params, self.modes, self.states, self.clocks, clocks)
 
 
 def letter_of(machine: Machine, event: tuple[int, int, int]) -> str:

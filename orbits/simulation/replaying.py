@@ -120,7 +120,7 @@ def _without_events(simulator: Simulator, orbit: Motion) -> Replay:
     """A period without an event; the absorber must not slip."""
     model, params, nothing = orbit.model, orbit.params, np.empty(0, complex)
     if model.in_cavity:
-        held = model.rest.reserve(params, np.linalg.solve(*model.rest.equations(params))) >= 0.0
+        held = model.rest.reserve(params, model.rest.solved(params)) >= 0.0
         return (
             Replay(0.0, "", nothing)
             if held

@@ -162,4 +162,4 @@ def _at_rest(model: Model, name: str, params: np.ndarray) -> np.ndarray:
     ):
         return np.zeros(len(params))
     rest = model.rest
-    return np.array([rest.measure(name, row, np.linalg.solve(*rest.equations(row))) for row in params])
+    return np.array([rest.measure(name, row, rest.solved(row)) for row in params])

@@ -78,7 +78,7 @@ class RestEquations:
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """The unknowns, which follow from the parameters alone."""
-        return np.linalg.solve(*self.model.rest.equations(self.params))
+        return self.model.rest.solved(self.params)
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the forcing period."""

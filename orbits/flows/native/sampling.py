@@ -10,7 +10,6 @@ from orbits.machines.base import Model
 from orbits.machines.catalogue import stepper
 from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
 from orbits.machines.states import state_of, states_of
-from orbits.machines.stepping import Machine
 
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
@@ -83,22 +82,8 @@ def positions(motion: Motion[Model], instants: int) -> np.ndarray:
     count = instants * motion.periods
     if not len(motion.nodes):
         return np.zeros(count)
-    length = 2.0 * np.pi * motion.periods
-    return positions_of(
-        stepper(motion.model.name), motion.params, motion.word.codes, motion.word.mode_codes, motion.nodes, length, count
-    )  # fmt: skip
-
-
-def positions_of(
-    engine: Machine,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    length: float,
-    count: int,
-) -> np.ndarray:
-    """w of a cycle of `length` radians at `count` equal phases, from phase zero on."""
+    engine, params, length = stepper(motion.model.name), motion.params, 2.0 * np.pi * motion.periods
+    codes, modes, nodes = motion.word.codes, motion.word.mode_codes, motion.nodes
     if native():
         left, right = engine.walls(params)
         codes, modes, nodes, params, w = (
@@ -116,19 +101,6 @@ def positions_of(
             NUMBERS[engine.name], address(params), len(codes), *events, left, right, length, count, address(w)
         )
         return w
-    return reference_positions(engine, params, codes, modes, nodes, length, count)
-
-
-def reference_positions(
-    engine: Machine,
-    params: np.ndarray,
-    codes: np.ndarray,
-    modes: np.ndarray,
-    nodes: np.ndarray,
-    length: float,
-    count: int,
-) -> np.ndarray:
-    """`positions_of` in numpy, which the native core is compared with."""
     begins = np.maximum.accumulate(nodes[:, 0] - nodes[0, 0])
     wanted = (np.arange(count) * (length / count) - nodes[0, 0]) % length
     segment = np.searchsorted(begins, wanted, side="right") - 1
@@ -141,7 +113,7 @@ def _at_rest(motion: Motion[Model], points: int) -> dict[str, np.ndarray]:
     """The same of the absorber that rides with its cavity."""
     phase = np.linspace(0.0, 2.0 * np.pi, points)
     omega, rest = motion.parameters["frequency"], motion.model.rest
-    v, v_rate = rest.cavity_motion(motion.params, np.linalg.solve(*rest.equations(motion.params)), phase)
+    v, v_rate = rest.cavity_motion(motion.params, rest.solved(motion.params), phase)
     nothing = np.zeros_like(phase)
     place, _ = motion.model.bodies(nothing, v, motion.params)
     return {

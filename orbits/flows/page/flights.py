@@ -12,8 +12,7 @@ c_{i+1} through its ends only: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
 from __future__ import annotations
 
 import math
-from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,21 +22,10 @@ from orbits.integrators.engine import engine
 from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from orbits.contacts.letters import Letter
-    from orbits.integrators.expressions import Values
-    from orbits.integrators.protocol import Flight, Flights, Watch
-    from orbits.machines.page.machine import Machine
-    from orbits.machines.page.patterns import Guard
-    from orbits.numbers import Reals
-    from orbits.words import Word
+    from orbits.flows.page.pieces import Pieces
 
 CYCLIC = 120  # unknowns from which elimination by blocks is faster
 AHEAD = 2.0  # periods of a forced machine: in a flight that is longer Newton's method has lost its way
-TOGETHER = 4
-"""Flights in one mode from which they are integrated side by side: a flight of two states then takes 11 to 15 us in place of 35 to 40, of four
-states 11 to 17 in place of 24 to 35. With fewer, half empty vectors gain less than another integrator costs to compile."""
 
 
 class Work(NamedTuple):
@@ -56,54 +44,6 @@ class Work(NamedTuple):
     drift: np.ndarray
     still: np.ndarray
     turned: np.ndarray  # 1 where F_u stands for its transpose
-
-
-class Pieces(Protocol):
-    """What the kernels read of the equations, their `data` (`orbits.flows.page.cycle_equations.PageEquations`)."""
-
-    machine: Machine
-    word: Word
-    parameter: str
-    params: np.ndarray
-    path: np.ndarray
-    index: int
-    size: int
-    length: int
-    dimension: int
-    twist: float
-    shift: float
-    forced: bool
-    symmetric: bool
-    movable: bool
-    pinned: tuple[int, ...]
-    unit: np.ndarray
-    base_numbers: np.ndarray
-    contacts: int
-    identity: np.ndarray
-    minus: np.ndarray
-    n_multipliers: int
-    trivial: int
-    turned: np.ndarray
-
-    @property
-    def letters(self) -> Sequence[Letter]: ...
-    @property
-    def slips(self) -> Sequence[int]: ...
-    @property
-    def owned(self) -> Sequence[frozenset[int]]: ...
-    @property
-    def still(self) -> Sequence[tuple[int, Values]]: ...
-    @property
-    def flight_groups(self) -> Sequence[tuple[Flight, Flights | None, np.ndarray]]: ...
-    @property
-    def rate_groups(self) -> Sequence[tuple[Values, np.ndarray]]: ...
-    @property
-    def event_groups(self) -> Sequence[tuple[Values | None, np.ndarray, bool]]: ...
-    @cached_property
-    def guard_groups(self) -> list[tuple[Values, list[Guard], Watch, list[int]]]: ...
-    def allowed(self, p: float) -> bool: ...
-    def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]: ...
-    def clock_rate(self, numbers: np.ndarray) -> Reals: ...
 
 
 def workspace(length: int, states: int, numbers: int) -> Work:

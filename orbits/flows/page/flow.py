@@ -9,7 +9,8 @@ import numpy as np
 from contvines.shared.modulation import BAND, SILENT
 from orbits.contacts.wall import Wall
 from orbits.flows.page import measures, sampling, vanishing
-from orbits.flows.page.cycle_equations import PageEquations, loose_states
+from orbits.flows.page.cycle_equations import PageEquations
+from orbits.flows.page.pieces import loose_states
 from orbits.flows.protocol import Census, Motion
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine

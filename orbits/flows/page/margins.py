@@ -14,10 +14,9 @@ import numpy as np
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN
 from orbits.flows.page.flights import Work
 from orbits.settings import EVENTS
-from orbits.words import Word
 
 if TYPE_CHECKING:
-    from orbits.flows.page.flights import Pieces
+    from orbits.flows.page.pieces import Pieces
 
 
 def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> None:
@@ -73,28 +72,6 @@ def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> No
             for (i, g, _, _), there in zip(found, inner):
                 j = guards[g].contact
                 table[i, j] = min(table[i, j], there[g])
-
-
-def owned(word: Word, place: int) -> frozenset[int]:
-    """The contacts of which an event says itself what their guards are at it.
-
-    Its own; those that an impact turns; and, where a crossing is next to an impact that may jump over it, that impact's wall: as
-    the two fall together the distance vanishes with the time between them, which is watched. A crossing whose surface moves with the
-    velocity of a friction watches that velocity itself, as its own strength; next to it, a turn or stick of that friction has the
-    surface at a distance that vanishes with the time between them.
-    """
-    if not len(word):
-        return frozenset()
-    letter, flips = word.letter(place), word.alphabet.flips
-    found = {letter.contact} | {j for (wall, j), sign in flips.items() if wall == letter.contact and sign}
-    rides = word.alphabet.rides
-    found |= {k for (switch, k) in rides if switch == letter.contact}
-    for near in (word.letter(place - 1), word.letter(place + 1)):
-        if (near.contact, letter.contact) in rides:
-            found.add(near.contact)
-        if flips.get((near.contact, letter.contact), 0) is None:
-            found.add(near.contact)
-    return frozenset(found)
 
 
 def _strength(table, data, i, first, last, guard, start, rate_start, rate_end) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from orbits.flows.protocol import Motion
@@ -57,18 +59,30 @@ def sample(motion: Motion[Machine], points: int = 400) -> dict[str, np.ndarray]:
 
 def states_at(motion: Motion[Machine], phases: np.ndarray) -> np.ndarray:
     """States of a forced motion at phases from 0 on, shape (m, n)."""
-    compiled, e = motion.model.compiled, motion.model.equations
-    whole, word = 2.0 * np.pi * motion.periods, motion.word
-    begins = np.maximum.accumulate(motion.nodes[:, 0] - motion.nodes[0, 0])
-    wanted = (phases - motion.nodes[0, 0]) % whole
+    whole, first = 2.0 * np.pi * motion.periods, motion.nodes[0, 0]
+    wanted = (phases - first) % whole
     wanted[wanted >= whole] = 0.0  # of a phase just below zero
-    segments = np.searchsorted(begins, wanted, side="right") - 1
-    out = np.empty((len(phases), motion.model.size))
-    for i in np.unique(segments).tolist():
-        places = np.flatnonzero(segments == i)
-        order = places[np.argsort(wanted[places])]
-        mode, node = word.entries(i), motion.nodes[i]
-        grid = node[0] + np.concatenate([[0.0], wanted[order] - begins[i]])
+    begins = first + np.maximum.accumulate(motion.nodes[:, 0] - first)
+    return along(motion.model, motion.params, motion.word.modes, motion.nodes[:, 1:], begins, first + wanted)
+
+
+def along(
+    machine: Machine,
+    params: np.ndarray,
+    modes: Sequence[Sequence[int]],
+    states: np.ndarray,
+    begins: np.ndarray,
+    clocks: np.ndarray,
+) -> np.ndarray:
+    """States, shape (m, n), at some clocks, each on the flight that begins last before it: there flight i is in states[i], with the mode modes[i]."""
+    flights = np.clip(np.searchsorted(begins, clocks, side="right") - 1, 0, len(begins) - 1)
+    compiled, e, out = machine.compiled, machine.equations, np.empty((len(clocks), machine.size))
+    for i in np.unique(flights).tolist():
+        places = np.flatnonzero(flights == i)
+        places = places[np.argsort(clocks[places])]
+        mode, first = modes[i % len(modes)], begins[i]
+        turn = 2.0 * np.pi * np.floor(first / (2.0 * np.pi)) if machine.forced else first
+        grid = np.concatenate([[first], clocks[places]]) - turn
         watch = compiled.watch(e.pattern_key(mode))
-        out[order] = watch.path(node[1:], grid, compiled.numbers(motion.params, mode))[1:]
+        out[places] = watch.path(states[i], grid, compiled.numbers(params, mode))[1:]
     return out

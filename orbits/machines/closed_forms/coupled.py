@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from orbits.machines.reference.law import Law, coupled
 from orbits.settings import FORMULAS
 from orbits.words import Word
 
@@ -45,32 +46,24 @@ class _Half:
     transition: np.ndarray
 
 
-def response(params: np.ndarray, stuck: bool = False) -> tuple[float, float]:
-    """X and Y of the linear response q1 = X sin Psi + Y cos Psi, absorber removed (eps enters by damping and forcing) or stuck."""
-    G, omega, lam, eps, chi = (float(params[i]) for i in (0, 1, 2, 3, 7))
-    drag = eps * lam * omega
-    stiffness = 1.0 - (1.0 + eps if stuck else 1.0) * omega**2
-    impedance = complex(stiffness, drag)
-    if G == 0.0:
-        return 0.0, 0.0
-    if impedance == 0.0:
-        return math.inf, math.inf
-    amplitude = eps * G * complex(1.0, chi * drag) / impedance
-    return amplitude.real, amplitude.imag
+def _law(params: np.ndarray) -> Law[float]:
+    """The numbers of the equations; the response is infinite, or no number, at a resonance without damping."""
+    with np.errstate(all="ignore"):
+        return coupled([*params])
 
 
 def _half(params: np.ndarray, s: int) -> _Half:
-    omega, lam, eps, mu, g = (float(params[i]) for i in (1, 2, 3, 5, 6))
+    law = _law(params)
+    omega, eps, pull, alpha, beta = law.omega, law.eps, law.friction_left, law.slide.alpha, law.slide.beta
     T = math.pi / omega
-    alpha = 0.5 * eps * lam
-    beta = math.sqrt(1.0 - alpha**2)
     decay = math.exp(-alpha * T)
     c, d = decay * math.cos(beta * T), decay * math.sin(beta * T) / beta
     transition = np.array([[c + alpha * d, d], [-d, c - alpha * d]])
-    offset = -eps * mu * g * s
+    offset = -eps * pull * s
     solve = np.linalg.inv(transition + np.eye(2))
-    start = solve @ np.array([-2.0 * offset, -eps * s * mu * g * T])
-    return _Half(omega, T, *response(params), offset, start, solve @ np.array([0.0, -2.0 * eps]), transition)
+    start = solve @ np.array([-2.0 * offset, -eps * s * pull * T])
+    ahead = solve @ np.array([0.0, -2.0 * eps])
+    return _Half(omega, T, law.slide.X, law.slide.Y, offset, start, ahead, transition)
 
 
 def _quadratic(params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, _Half]:
@@ -204,19 +197,13 @@ class StuckResponse:
         return self.reserve >= 0.0
 
 
-def _held(params: np.ndarray) -> float:
-    """The acceleration that friction and slope hold in either direction."""
-    mu, g, slope = (float(params[i]) for i in (5, 6, 8))
-    return g * (mu * math.cos(slope) - abs(math.sin(slope)))
-
-
 def stuck_response(params: np.ndarray) -> StuckResponse:
     """The stuck response, which is the only linear one."""
-    X, Y = response(params, stuck=True)
-    omega, eps = float(params[1]), float(params[3])
+    law = _law(params)
+    X, Y, held = law.stuck.X, law.stuck.Y, law.friction_left - abs(law.lean)
     amplitude = math.hypot(X, Y)
-    shaking = (1.0 + eps) * omega**2 * amplitude
-    return StuckResponse(amplitude, math.atan2(Y, X), shaking, (1.0 + eps) * _held(params) - shaking)
+    shaking = law.whole * law.omega**2 * amplitude
+    return StuckResponse(amplitude, math.atan2(Y, X), shaking, law.whole * held - shaking)
 
 
 def stuck_frequencies(params: np.ndarray) -> np.ndarray:
@@ -226,7 +213,8 @@ def stuck_frequencies(params: np.ndarray) -> np.ndarray:
     (eps G)^2 x^2 (1 + chi^2 c^2 x) = f^2 ((1 - (1 + eps) x)^2 + c^2 x).
     """
     G, lam, eps, chi = (float(params[i]) for i in (0, 2, 3, 7))
-    held = _held(params)
+    law = _law(params)
+    held = float(law.friction_left - abs(law.lean))
     if held < 0.0:
         return np.zeros(0)
     square, hold, force = (eps * lam) ** 2, held**2, (eps * G) ** 2

@@ -104,7 +104,7 @@ def margins(law: Law[float], data: CycleData, u: np.ndarray, work: Workspace, ou
         elif event == SLIP:
             out[4 * i + 1] = mode * jerk / (law.omega if shaken else 1.0)  # w''' of the slide that begins
         if arrival < TURN:
-            following, side = (i + 1) % length, 1.0 - 2.0 * arrival
+            following, side = (i + 1) % length, 1.0 - 2.0 * float(arrival)
             if shaken:
                 rate = after(law, q, q.at(d), begin, mode, d).rate
             else:  # the wall's reaction: w'+ = -r w'-, and B+ = v' - w'+

@@ -86,8 +86,8 @@ class Oscillation(Generic[Number]):
         h, z = self.derivatives()
         d = [a + b for a, b in zip(h, z)]
         mean, bend = d[2] + _beyond(d, 1, tau), tau * _beyond(d, 0, tau)
-        higher = (of[k] + tau * (of[k + 1] + _beyond(of, k, tau)) for k in (2, 3) for of in (h, z))
-        return Point(tau * d[1] + bend, tau * mean, mean, *higher, bend)
+        h2, z2, h3, z3 = (of[k] + tau * (of[k + 1] + _beyond(of, k, tau)) for k in (2, 3) for of in (h, z))
+        return Point(tau * d[1] + bend, tau * mean, mean, h2, z2, h3, z3, bend)
 
     def _far(self, tau: Number) -> Point[Number]:
         s, c = sin(self.omega * tau), cos(self.omega * tau)
@@ -144,7 +144,7 @@ class Oscillation(Generic[Number]):
 
 def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
     """(f(t) - f(0))/t - f'(0) of the derivative `order`, from those above the next one."""
-    total = 0.0
+    total = 0.0 * derivatives[order]
     for k in range(8, order + 1, -1):
         total = (derivatives[k] + total) * t / (k - order)
     return total
