@@ -59,7 +59,6 @@ class SwitchLaw:
         letters: Sequence[Letter],
         j: int,
         noted: Mapping[int, int],
-        default: int,
         hits: Mapping[int, int | None],
     ) -> list[int]:
         """The sign after each event of a word.
@@ -72,8 +71,6 @@ class SwitchLaw:
             Index of this contact.
         noted : mapping
             Event -> the sign after it, where the word says so.
-        default : int
-            Where no event of the word fixes it.
         hits : mapping
             Impacts that jump over the surface -> the sign after them (before them: the opposite); None: either.
 
@@ -85,7 +82,7 @@ class SwitchLaw:
         own = [i for i in range(n) if letters[i].contact == j]
         places = sorted([*own, *hits])
         if not places:
-            return [next(iter(noted.values()), default)] * n
+            return [next(iter(noted.values()), 1)] * n
         fixed = {i: letters[i].sign for i in own} | {i: sign for i, sign in hits.items() if sign is not None}
         last = [bisect_right(places, i) - 1 for i in range(n)]  # -1: the last one, cyclically
         after = {places[last[i]]: sign for i, sign in noted.items()} | fixed
@@ -96,7 +93,7 @@ class SwitchLaw:
             before = after.get(places[(k - 1) % len(places)])
             if before is not None:
                 after.setdefault(places[k % len(places)], before)
-        after = {i: after.get(i, default) for i in places}
+        after = {i: after.get(i, 1) for i in places}
         if any(after[places[k - 1]] != -fixed[i] for k, i in enumerate(places) if i in fixed):
             raise NotAlternating
         return [after[places[k]] for k in last]

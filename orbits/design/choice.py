@@ -51,7 +51,6 @@ def best(
     quantile: float | None = None,
     grid: int = 9,
     known: Sequence[tuple[Mapping[str, float], float]] = (),
-    accuracy: float = DESIGNING.accuracy,
 ) -> Choice:
     """The choice with the lowest (or largest) outcome.
 
@@ -75,8 +74,6 @@ def best(
         Values per parameter that are looked at first.
     known : sequence of (mapping, float)
         Outcomes that are known already, of a survey; the grid is left out where there are any.
-    accuracy : float
-        Of the choice, as a share of the interval.
 
     Returns
     -------
@@ -114,7 +111,7 @@ def best(
             f"no machine that was tried has a number for {outcome}; widen the intervals or change the machine"
         )
     start = min(tried, key=lambda key: tried[key])
-    _refine(value, start, list(tried), list(over.values()), accuracy)
+    _refine(value, start, list(tried), list(over.values()))
     chosen = min(tried, key=lambda key: tried[key])
     if chosen not in full:
         _, full[chosen] = _judged(evaluate, dict(zip(names, chosen)), outcome, tolerances, quantile, sign)
@@ -178,7 +175,6 @@ def _refine(
     start: tuple[float, ...],
     tried: list[tuple[float, ...]],
     over: list[tuple[float, float]],
-    accuracy: float,
 ) -> None:
     from scipy.optimize import minimize, minimize_scalar
 
@@ -189,7 +185,7 @@ def _refine(
             lambda x: value([x]),
             bounds=(low, high),
             method="bounded",
-            options={"xatol": accuracy * (over[0][1] - over[0][0])},
+            options={"xatol": DESIGNING.accuracy * (over[0][1] - over[0][0])},
         )
         return
     sizes = np.array([max(b[1] - b[0], SMALLEST) for b in brackets])
@@ -198,7 +194,12 @@ def _refine(
         lambda x: value(np.asarray(start) + x * sizes),
         np.zeros(2),
         method="Nelder-Mead",
-        options={"initial_simplex": simplex, "xatol": accuracy * 4.0, "fatol": DESIGNING.level, "maxfev": 60},
+        options={
+            "initial_simplex": simplex,
+            "xatol": DESIGNING.accuracy * 4.0,
+            "fatol": DESIGNING.level,
+            "maxfev": 60,
+        },
     )
 
 

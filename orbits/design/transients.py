@@ -51,7 +51,7 @@ class Decay(Dissipation):
     bare_time: float
 
 
-def free_decay(model: Model, params: np.ndarray, displacement: float, lost: float = NINE_TENTHS) -> Decay:
+def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
     """The decay of the machine after the oscillator is let go, the absorber at rest in the middle of the cavity.
 
     Parameters
@@ -61,8 +61,6 @@ def free_decay(model: Model, params: np.ndarray, displacement: float, lost: floa
     params : float array (P,)
     displacement : float
         Of oscillator and absorber, in half-widths.
-    lost : float
-        The share of the energy whose loss is the pumping time.
 
     Raises
     ------
@@ -79,7 +77,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float, lost: floa
     state = {"q1": displacement, "q2": displacement}
     first = 0.5 * displacement**2  # of the spring; the energies below are in the same unit
     times, energy, parts = [0.0], [1.0], np.zeros(3)
-    while energy[-1] > 1.0 - lost and len(times) <= LONGEST:
+    while energy[-1] > 1.0 - NINE_TENTHS and len(times) <= LONGEST:
         run = simulate(model, state, periods=1.0, events=None, **numbers)
         balance = run.balance()
         taken = np.array([balance.impacts, balance.friction, balance.damping])
@@ -95,9 +93,9 @@ def free_decay(model: Model, params: np.ndarray, displacement: float, lost: floa
     decay = np.exp(-rate * t)
     q = decay * (np.cos(fast * t) + rate / fast * np.sin(fast * t))
     speed = -decay * np.sin(fast * t) / fast
-    gone = -math.log(1.0 - lost) / (2.0 * rate) if rate > 0.0 else math.nan
+    gone = -math.log(1.0 - NINE_TENTHS) / (2.0 * rate) if rate > 0.0 else math.nan
     impacts, friction, damper = (float(x) for x in parts)
-    when = _when(t, e, 1.0 - lost)
+    when = _when(t, e, 1.0 - NINE_TENTHS)
     return Decay(t, e, q * q + speed * speed, impacts, friction, damper, when, gone)
 
 

@@ -316,11 +316,10 @@ def later(
     point: np.ndarray,
     length: float,
     time: float = 0.0,
-    modes: tuple[int, ...] | None = None,
 ) -> np.ndarray:
     """Where the motion through a point is so much later; NaN where it does not get there."""
     try:
-        simulator.start(point, time, modes)
+        simulator.start(point, time)
         simulator.follow(time + length)
     except SimulationError:
         return np.full(len(point), np.nan)

@@ -39,9 +39,7 @@ def newton(
     return u, float(p), float(residual), tangent
 
 
-def solved_at(
-    system: Equations, guess: np.ndarray, p: float, tolerance: float = SOLVING.last_step, limit: int = 40
-) -> tuple[np.ndarray, float]:
+def solved_at(system: Equations, guess: np.ndarray, p: float, limit: int = 40) -> tuple[np.ndarray, float]:
     """Solution at a parameter value, and its residual (infinite if there is none)."""
-    u, _, residual, _ = newton(system, guess, p, None, tolerance, limit)
+    u, _, residual, _ = newton(system, guess, p, limit=limit)
     return u, residual

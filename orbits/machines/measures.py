@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from contvines.shared.modulation import BAND
 from orbits.machines.base import Model
 
-COMMON = (
-    "B",
-    "B_post",
-    "B_pre",
-    "B_mean",
-    "C2",
-    "phase",
-    "impact_speed",
-    "impact_speed_min",
-    "impact_loss",
-    "friction_loss",
-    "max_abs_w",
+LOADS = (
     "impact_rate",
     "impulse",
     "impulse_left",
@@ -25,16 +18,12 @@ COMMON = (
     "mean_force",
     "work_rate",
     "peak_force",
-)
-LOADS = (
-    "impact_rate",
-    "impulse",
-    "impulse_left",
-    "impulse_right",
-    "impact_energy",
-    "mean_force",
-    "peak_force",
 )  # nothing without impacts
+COMMON = (
+    *("B", "B_post", "B_pre", "B_mean", "C2", "phase", "impact_speed", "impact_speed_min"),
+    *("impact_loss", "friction_loss", "max_abs_w"),
+    *LOADS,
+)
 
 ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
 ENERGIES = (  # per period of the orbit
@@ -48,18 +37,10 @@ ENERGIES = (  # per period of the orbit
 MEANS = {f"{name}_mean": name for name in ENERGIES}  # per forcing period
 
 KINDS = {
-    "B": "velocity",
-    "B_post": "velocity",
-    "B_pre": "velocity",
-    "B_mean": "velocity",
+    **dict.fromkeys(("B", "B_post", "B_pre", "B_mean", "impact_speed", "impact_speed_min"), "velocity"),
     "C2": "area",
-    "phase": "angle",
-    "impact_speed": "velocity",
-    "impact_speed_min": "velocity",
-    "max_abs_w": "length",
-    **dict.fromkeys(("max_abs_q1", *BAND), "length"),
-    "amplitude": "length",
-    "v_phase": "angle",
+    **dict.fromkeys(("phase", "v_phase"), "angle"),
+    **dict.fromkeys(("max_abs_w", "max_abs_q1", *BAND, "amplitude"), "length"),
     "impact_rate": "rate",
     **dict.fromkeys(("impulse", "impulse_left", "impulse_right"), "impulse"),
     "impact_energy": "energy",
@@ -68,6 +49,42 @@ KINDS = {
     **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
 }
 """What kind of quantity each measure is, where it is more than a number."""
+
+
+def loads(
+    speeds: np.ndarray,
+    restitution: np.ndarray,
+    mass: np.ndarray,
+    at: Sequence[str],
+    walls: Sequence[str],
+    duration: np.ndarray,
+    held: np.ndarray | float | None,
+) -> dict[str, np.ndarray]:
+    """Measures of the forces at walls by name, (m,), and `impact_loss`, the energy that impacts take.
+
+    Parameters
+    ----------
+    speeds, restitution, mass : float array (m, l)
+        Of each impact of m solutions: the speed before it, the wall's restitution, the mass of the relative motion.
+    at, walls : sequence of str
+        The wall that each hits, and all walls, as the names of their impulses end.
+    duration : float array (m,)
+    held : float array (m,) or float, optional
+        Duration of an impact, whose force is half a sine: impulse = 2 F T/pi.
+    """
+    impulses, energies = (1.0 + restitution) * mass * speeds, 0.5 * mass * speeds**2
+    largest = {wall: impulses[:, [one == wall for one in at]].max(axis=1, initial=0.0) for wall in walls}
+    found = {
+        "impact_rate": speeds.shape[1] / duration,
+        "impulse": impulses.max(axis=1, initial=0.0),
+        "impact_energy": energies.max(axis=1, initial=0.0),
+        "impact_loss": ((1.0 - restitution**2) * energies).sum(axis=1),
+        "mean_force": impulses.sum(axis=1) / duration,
+        **{f"impulse_{wall}": values for wall, values in largest.items()},
+    }
+    if held is not None:
+        found["peak_force"] = found["impulse"] * np.pi / (2.0 * held)
+    return found
 
 
 def way_out(name: str) -> str:

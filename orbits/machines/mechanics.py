@@ -183,12 +183,6 @@ class Mechanics(Varying):
         return moved
 
     @classmethod
-    def impact_loss(cls, restitution: np.ndarray, speed: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Energy that impacts of these relative speeds (m, L) take, (1 - r^2) w'^2 / (2 (1 + eps)), per unit of the absorber's mass."""
-        eps = np.asarray(cls.column(params, "mass_ratio"))[..., np.newaxis]
-        return (1.0 - restitution**2) * speed**2 / (2.0 * (1.0 + eps))
-
-    @classmethod
     def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:
         """mu g cos(slope) times the path slid, from the displacements w between events (m, L); shape (m,)."""
         left, right = (side[:, None] for side in cls.sides(params, "friction"))

@@ -138,9 +138,6 @@ def _of_states(orbit: Orbit, points: int) -> Shown:
     )  # fmt: skip
 
 
-"""By the flow of the machine."""
-
-
 def _events(
     orbit: Orbit, at: np.ndarray, x: np.ndarray, y: np.ndarray, heights: Sequence[Any] | np.ndarray
 ) -> list[Happening]:
@@ -156,17 +153,15 @@ def _events(
     ]
 
 
-def quantities(orbit: Orbit, digits: int = 6) -> dict[str, str]:
+def quantities(orbit: Orbit) -> dict[str, str]:
     """Parameters of an orbit by name as text: quantities with their units, or the machine's plain numbers.
 
     Parameters
     ----------
     orbit : Orbit
-    digits : int
     """
     about = orbit.model.described(orbit.params)
     units = about.get("units", {})
     return {
-        name: f"{value:.{digits}g} {units.get(name, '')}".rstrip()
-        for name, value in about["parameters"].items()
+        name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in about["parameters"].items()
     }

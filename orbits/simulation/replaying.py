@@ -37,7 +37,7 @@ class Replay:
     multipliers : ndarray of complex
         Eigenvalues of the simulated return map's central differences (empty if not asked for or not available).
     tracked : int
-        Cycles for which the simulation, started on the orbit, stayed within `loss` of it (0 if not asked for).
+        Cycles for which the simulation, started on the orbit, stayed within `REPLAYING.loss` of it (0 if not asked for).
     expected : float
         Cycles for which rounding errors allow that: ln(loss/1e-15)/ln|multiplier|, inf for a stable orbit.
     returned : bool or None
@@ -71,7 +71,7 @@ class Round(NamedTuple):
     message: str
 
 
-def replay(orbit: Motion, *, thorough: bool = False, loss: float = REPLAYING.loss, most: int = 200) -> Replay:
+def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
     """Replay an orbit of a forced machine: start exactly at its first node and compare events and nodes over one period.
 
     Parameters
@@ -81,8 +81,6 @@ def replay(orbit: Motion, *, thorough: bool = False, loss: float = REPLAYING.los
     thorough : bool
         Also take multipliers, follow the orbit for as long as they allow and, if it is stable, start off it and see
         whether the motion comes back.
-    loss : float
-        Distance at which a followed orbit counts as lost.
     most : int
         Largest number of cycles simulated for this.
 
@@ -109,11 +107,11 @@ def replay(orbit: Motion, *, thorough: bool = False, loss: float = REPLAYING.los
     multipliers = np.linalg.eigvals(matrix).astype(complex)
     free = len(flow_of(orbit.model).loose(orbit.model, word))  # such a motion may be moved as a whole
     growth = float(np.sort(np.abs(multipliers))[::-1][free])
-    expected = np.log(loss / REPLAYING.rounding) / np.log(growth) if growth > 1.0 else np.inf
+    expected = np.log(REPLAYING.loss / REPLAYING.rounding) / np.log(growth) if growth > 1.0 else np.inf
     wanted = int(min(most, max(1.0, expected)))
     cycle = simulator, word, nodes, orbit.periods
     returned = _returns(*cycle, growth) if growth < 1.0 - SIMULATING.neutral else None
-    return Replay(error, "", multipliers, _tracked(*cycle, loss, wanted), float(expected), returned)
+    return Replay(error, "", multipliers, _tracked(*cycle, wanted), float(expected), returned)
 
 
 def _without_events(simulator: Simulator, orbit: Motion) -> Replay:
@@ -234,15 +232,13 @@ def _from_freest(word: Word, nodes: np.ndarray, periods: int) -> tuple[Word, np.
     return word.rotate(first), nodes
 
 
-def _tracked(
-    simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, loss: float, wanted: int
-) -> int:
+def _tracked(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, wanted: int) -> int:
     there = go_round(simulator, word, nodes[0], wanted)
     n, claimed = len(word), _following(nodes, periods)
     for c in range(len(there.nodes) // n):
         piece = there.nodes[c * n : (c + 1) * n].copy()
         piece[:, 0] -= TWO_PI * periods * c
-        if np.abs(piece - claimed).max() > loss:
+        if np.abs(piece - claimed).max() > REPLAYING.loss:
             return c
     return len(there.nodes) // n
 

@@ -35,7 +35,6 @@ def read(
     text: str | Sequence[str],
     alphabet: Alphabet,
     absent: frozenset[int] = frozenset(),
-    default: Sequence[int] | None = None,
 ) -> tuple[tuple[str, ...], tuple[Any, ...]]:
     """Events and modes of a word.
 
@@ -48,8 +47,6 @@ def read(
     alphabet : Alphabet
     absent : set of int
         Frictions whose limit is zero.
-    default : sequence of int, optional
-        The mode of contacts that no event of the word fixes.
 
     Raises
     ------
@@ -66,7 +63,7 @@ def read(
     if not items:
         if alphabet.alone is not None:
             return (), ()
-        return (), (_mode_of(alone, alphabet, shown) if alone else _open(alphabet, absent, default),)
+        return (), (_mode_of(alone, alphabet, shown) if alone else _open(alphabet, absent),)
     letters = alphabet.letters
     expanded: list[tuple[str, str | None]] = []
     notes: list[str | None] = []
@@ -81,7 +78,7 @@ def read(
             expanded.append((item, sign))
             notes.append(note)
     fixed = {i: _mode_of(note, alphabet, shown) for i, note in enumerate(notes) if note}
-    return tuple(text for text, _ in expanded), _modes(expanded, alphabet, absent, fixed, default, shown)
+    return tuple(text for text, _ in expanded), _modes(expanded, alphabet, absent, fixed, shown)
 
 
 def _from_maps(source: str, alphabet: Alphabet) -> str:
@@ -152,15 +149,13 @@ def _mode_of(note: str, alphabet: Alphabet, shown: str) -> tuple[int, ...]:
     return tuple(mode)
 
 
-def _open(alphabet: Alphabet, absent: frozenset[int], default: Sequence[int] | None) -> tuple[int, ...]:
+def _open(alphabet: Alphabet, absent: frozenset[int]) -> tuple[int, ...]:
     mode = []
     for j, contact in enumerate(alphabet.contacts):
         if isinstance(contact, WallLaw):
             mode.append(FREE)
         elif j in absent:
             mode.append(ABSENT)
-        elif default is not None:
-            mode.append(default[j])
         else:
             mode.append(STUCK if isinstance(contact, FrictionLaw) else 1)
     return tuple(mode)
@@ -171,10 +166,9 @@ def _modes(
     alphabet: Alphabet,
     absent: frozenset[int],
     fixed: Mapping[int, tuple[int, ...]],
-    default: Sequence[int] | None,
     shown: str,
 ) -> tuple[Any, ...]:
-    """The mode after each event; what nothing fixes becomes a reversal at a slip, else the default."""
+    """The mode after each event; what nothing fixes becomes a reversal at a slip, else the law's usual one."""
     letters = [alphabet.letters[text] for text, _ in items]
     signs = [{"+": 1, "-": -1, None: None}[sign] for _, sign in items]
     columns = []
@@ -182,7 +176,6 @@ def _modes(
         if alphabet.alone not in (None, j):
             continue
         noted = {i: mode[j] for i, mode in fixed.items()}
-        usual = 1 if default is None else default[j]
         if isinstance(contact, WallLaw):
             columns.append([FREE] * len(items))
         elif j in absent or j in alphabet.without:
@@ -194,7 +187,7 @@ def _modes(
             flips = [alphabet.flips.get((letter.contact, j)) for letter in letters]
             columns.append([ABSENT if j in absent else int(sign or 0) for sign in flips])
         elif isinstance(contact, FrictionLaw):
-            columns.append(_directions(j, letters, signs, alphabet, noted, usual, shown))
+            columns.append(_directions(j, letters, signs, alphabet, noted, shown))
         else:
             from orbits.contacts.switch import NotAlternating
 
@@ -204,7 +197,7 @@ def _modes(
                 if (letter.contact, j) in alphabet.flips
             }
             try:
-                columns.append(contact.signs(letters, j, noted, usual, hits))
+                columns.append(contact.signs(letters, j, noted, hits))
             except NotAlternating:
                 between = "; impacts may change its sign between them" if hits else ""
                 raise WordError(
@@ -220,15 +213,13 @@ def _directions(
     signs: Sequence[int | None],
     alphabet: Alphabet,
     noted: Mapping[int, int],
-    usual: int,
     shown: str,
 ) -> list[int]:
     """The mode of friction j after each event: its law says it for the events that it notices, between them it stays."""
     friction: FrictionLaw = alphabet.contacts[j]
     places = [i for i, letter in enumerate(letters) if alphabet.touches(letter, j)]
     if not places:
-        return [next(iter(noted.values()), usual)] * len(letters)
-    own = any(letters[i].contact == j for i in places)
+        return [next(iter(noted.values()), 1)] * len(letters)
     beats = [
         Beat(letters[i].kind, alphabet.flips[letters[i].contact, j] if letters[i].kind == HIT else signs[i])
         for i in places
@@ -236,7 +227,7 @@ def _directions(
     last = np.searchsorted(places, range(len(letters)), side="right") - 1  # -1: the last one, cyclically
     known = {int(last[i]) % len(places): mode for i, mode in noted.items()}
     try:
-        modes = friction.directions(beats, known, 1 if own else usual)
+        modes = friction.directions(beats, known)
     except CannotFollow as error:
         place = places[error.beat]
         letter, before = letters[place], letters[places[error.beat - 1]]

@@ -90,14 +90,13 @@ class Word:
         alphabet: Alphabet,
         text: str | Sequence[str] | Word,
         absent: frozenset[int] = frozenset(),
-        default: Sequence[int] | None = None,
     ) -> Word:
         """Read a word over any alphabet; see `orbits.words.reading.read`."""
         if isinstance(text, Word):
             if alphabet.alone is None or text.alphabet.without == alphabet.without:
                 return text
             text = text.text
-        return cls(*read(text, alphabet, absent, default), alphabet)
+        return cls(*read(text, alphabet, absent), alphabet)
 
     @classmethod
     def described(cls, about: Mapping[str, Any], alphabet: Alphabet | None = None) -> Word:

@@ -18,7 +18,7 @@ from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table
 from orbits.machines.measures import ANGLES as ANGLES
-from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, names, way_out
+from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, loads, names, way_out
 from orbits.words import Word
 
 
@@ -70,7 +70,6 @@ def dimensionless(
     table = event_table(model, word, nodes, params)
     hits = np.array([letter in "LR" for letter in word.events])
     away = np.array([1.0 if letter == "L" else -1.0 for letter in word.events])[hits]
-    nothing = np.full(m, np.nan)
     result: dict[str, np.ndarray] = {}
     means = [name for name in wanted if name in MEANS]
     if means:
@@ -83,6 +82,18 @@ def dimensionless(
         result |= own_measures(own, model, word, periods, nodes, params)
     elif own:
         result["C2"] = np.asarray(model.column(params, model.driven_by)) ** 2
+    lasts = 2.0 * np.pi * periods / np.asarray(model.phase_speed(params))
+    if not {*LOADS, "impact_loss"}.isdisjoint(wanted):
+        held = None if model.contact_time is None else model.contact_time * model.gauge("rate", params)
+        sides = ["left" if letter == "L" else "right" for letter in word.events if letter in "LR"]
+        mass = 1.0 / (1.0 + np.asarray(model.column(params, "mass_ratio"))[:, None])
+        r = contacts(model, word, params)[2][:, hits]
+        result |= loads(np.abs(table.rate_pre[:, hits]), r, mass, sides, ("left", "right"), lasts, held)
+    if not {"friction_loss", "work_rate"}.isdisjoint(wanted):
+        steps = np.diff(np.concatenate([table.w, table.w[:, :1]], axis=1), axis=1)
+        result["friction_loss"] = model.friction_loss(steps, params)
+        if "work_rate" in wanted:
+            result["work_rate"] = (result["impact_loss"] + result["friction_loss"]) / lasts
     for name in wanted:
         if name in result:
             continue
@@ -90,20 +101,8 @@ def dimensionless(
             result[name] = np.mod(table.phase[:, 0], 2.0 * np.pi)
         elif name == "max_abs_w":
             result[name] = np.abs(table.w).max(axis=1)
-        elif name == "friction_loss":
-            steps = np.diff(np.concatenate([table.w, table.w[:, :1]], axis=1), axis=1)
-            result[name] = model.friction_loss(steps, params)
-        elif name == "impact_loss":
-            r = contacts(model, word, params)[2]
-            loss = np.where(hits, model.impact_loss(r, table.rate_pre, params), 0.0)
-            result[name] = loss.sum(axis=1)
-        elif name == "work_rate":
-            lost = dimensionless(model, word, periods, nodes, params, ["impact_loss", "friction_loss"])
-            result[name] = (lost["impact_loss"] + lost["friction_loss"]) / _duration(model, periods, params)
-        elif name in LOADS:
-            result[name] = _load(name, model, word, periods, params, table.rate_pre)
         elif not hits.any():
-            result[name] = nothing if not name.startswith("impact_speed") else np.zeros(m)
+            result[name] = np.full(m, np.nan) if not name.startswith("impact_speed") else np.zeros(m)
         else:
             post, pre = table.B_post[:, hits] * away, -table.B_pre[:, hits] * away
             speed = np.abs(table.rate_pre[:, hits])
@@ -115,37 +114,7 @@ def dimensionless(
                 "impact_speed": speed.max(axis=1),
                 "impact_speed_min": speed.min(axis=1),
             }[name]
-    return result
-
-
-def _duration(model: Model, periods: int, params: np.ndarray) -> np.ndarray:
-    """Duration of the orbit in the machine's own time, shape (m,)."""
-    return 2.0 * np.pi * periods / np.asarray(model.phase_speed(params))
-
-
-def _load(
-    name: str, model: Model, word: Word, periods: int, params: np.ndarray, rates: np.ndarray
-) -> np.ndarray:
-    """A measure of the forces at the walls, from the relative speeds before the events, shape (m, L)."""
-    hits, _, restitution = contacts(model, word, params)
-    duration = _duration(model, periods, params)
-    if name == "impact_rate":
-        return hits.sum() / duration
-    # without restitution an impact takes all energy of the relative motion: half the reduced mass times the speed squared
-    energy = np.where(hits, model.impact_loss(np.zeros_like(rates), rates, params), 0.0)
-    if name == "impact_energy":
-        return energy.max(axis=1)
-    reduced = 2.0 * model.impact_loss(np.zeros_like(rates), np.ones_like(rates), params)
-    impulses = np.where(hits, reduced * (1.0 + restitution) * np.abs(rates), 0.0)
-    if name == "mean_force":
-        return impulses.sum(axis=1) / duration
-    if name == "peak_force":
-        assert model.contact_time is not None
-        return impulses.max(axis=1) * np.pi / (2.0 * model.contact_time * model.gauge("rate", params))
-    if name != "impulse":
-        letter = "L" if name == "impulse_left" else "R"
-        impulses = np.where([event == letter for event in word.events], impulses, 0.0)
-    return impulses.max(axis=1)
+    return {name: result[name] for name in wanted}
 
 
 def _at_rest(model: Model, name: str, params: np.ndarray) -> np.ndarray:
@@ -153,7 +122,6 @@ def _at_rest(model: Model, name: str, params: np.ndarray) -> np.ndarray:
     name = MEANS.get(name, name)  # its period is the forcing's
     if name in (
         *LOADS,
-        "work_rate",
         "impact_loss",
         "friction_loss",
         "impact_speed",

@@ -23,7 +23,13 @@ class PageKernels(PlainKernels[Pieces, flights.Work]):
     accepted = SOLVING.residual
     patience = 0.5
 
-    linearise, fill = staticmethod(flights.linearise), staticmethod(flights.fill)
+    def linearise(self, data: Pieces, u: np.ndarray, p: float, work: flights.Work) -> float:
+        """See `orbits.flows.page.flights.linearise`."""
+        return flights.linearise(data, u, p, work)
+
+    def fill(self, data: Pieces, work: flights.Work, matrix: np.ndarray) -> None:
+        """See `orbits.flows.page.flights.fill`."""
+        flights.fill(data, work, matrix)
 
     def bordered(
         self,

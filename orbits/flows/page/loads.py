@@ -31,14 +31,9 @@ class Impacts:
         return (1.0 + self.restitution) * self.mass * self.speeds
 
     @property
-    def energies(self) -> np.ndarray:
-        """Kinetic energy of the relative motion before each, m s^2/2 [J]."""
-        return 0.5 * self.mass * self.speeds**2
-
-    @property
     def losses(self) -> np.ndarray:
-        """(1 - r^2) of it [J]."""
-        return (1.0 - self.restitution**2) * self.energies
+        """Energy of the relative motion that each takes, (1 - r^2) m s^2/2 [J]."""
+        return (1.0 - self.restitution**2) * (0.5 * self.mass * self.speeds**2)
 
 
 def friction_work(

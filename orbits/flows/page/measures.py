@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.contacts.letters import HIT
 from orbits.flows.page.loads import Impacts, friction_work
-from orbits.machines.measures import way_out
+from orbits.machines.measures import loads, way_out
 from orbits.machines.page.energies import CONTACT
 from orbits.settings import EVENTS, SOLVING
 from orbits.words import Word
@@ -83,7 +83,7 @@ def measure(
             if extremes is None:
                 extremes = _extremes(model, word, periods, nodes, params)
             result[name] = extremes[0 if kind == "max" else 1][:, model.states.index(state)]
-    return result
+    return {name: result[name] for name in wanted}
 
 
 _LOADS = frozenset(("impact", "impulse", "friction", "mean", "work", "peak"))  # how their names begin
@@ -99,32 +99,34 @@ def _loads(
     wanted: Sequence[str],
 ) -> dict[str, np.ndarray]:
     """Measures of `machine.load_names`; the sums of impacts are taken wall by wall."""
-    zero = np.zeros(len(nodes))
-    total, energy, loss, count = zero.copy(), zero.copy(), zero.copy(), 0
-    largest = {machine.contacts[j].letter: zero.copy() for j in machine.equations.gap}
-    for i in range(nodes.shape[1] if len(word) else 0):
-        letter = word.letter(i)
-        if letter.kind != HIT:
-            continue
-        clock = np.ascontiguousarray(nodes[:, i, 0]) if machine.forced else zero
-        hits, name = Impacts(machine, letter.contact, nodes[:, i, 1:], clock, params), letter.text
-        total, energy, loss = total + hits.impulses, np.maximum(energy, hits.energies), loss + hits.losses
-        largest[name], count = np.maximum(largest[name], hits.impulses), count + 1
-    impulse = np.max([zero, *largest.values()], axis=0)
-    found = {"impact_rate": count / period, "impulse": impulse, "impact_energy": energy, "impact_loss": loss}
-    found |= {"mean_force": total / period} | {f"impulse_{name}": values for name, values in largest.items()}
-    if "peak_force" in machine.load_names:  # the force of an impact is half a sine: impulse = 2 F T / pi
-        place = machine.parameter_names.index(CONTACT)
-        found["peak_force"] = (
-            impulse * np.pi / (2.0 * params[:, place] * machine.equations.factors.get(CONTACT, 1.0))
+    zero, walls = np.zeros(len(nodes)), [machine.contacts[j].letter for j in machine.equations.gap]
+    letters = [(i, word.letter(i)) for i in range(nodes.shape[1] if len(word) else 0)]
+    hits = [(i, letter) for i, letter in letters if letter.kind == HIT]
+    each = [
+        Impacts(
+            machine,
+            letter.contact,
+            nodes[:, i, 1:],
+            nodes[:, i, 0].copy() if machine.forced else zero,
+            params,
         )
+        for i, letter in hits
+    ]
+    held = None
+    if "peak_force" in machine.load_names:
+        held = params[:, machine.parameter_names.index(CONTACT)] * machine.equations.factors.get(CONTACT, 1.0)
+    speeds, restitution, mass = (
+        np.array([getattr(one, name) for one in each]).reshape(-1, len(nodes)).T
+        for name in ("speeds", "restitution", "mass")
+    )
+    found = loads(speeds, restitution, mass, [letter.text for _, letter in hits], walls, period, held)
     if {"friction_loss", "work_rate"}.intersection(wanted):
         rubbed = zero.copy()
         for k, rows in enumerate(nodes if machine.equations.limit else ()):
             for i, (begin, end) in enumerate(zip(*_spans(machine, periods, rows))):
                 mode = word.modes[i % len(word.modes)]
                 rubbed[k] += friction_work(machine, mode, rows[i, 1:], begin, end, params[k])
-        found |= {"friction_loss": rubbed, "work_rate": (loss + rubbed) / period}
+        found |= {"friction_loss": rubbed, "work_rate": (found["impact_loss"] + rubbed) / period}
     return found
 
 

@@ -261,13 +261,11 @@ class Machine(Varying):
         return {"name": self.name, **self.page.describe(self), **dict(zip(self.parameter_names, values))}
 
     # ------------------------------------------------------------------ motions
-    def word(
-        self, text: str | Word, params: np.ndarray | None = None, default: Sequence[int] | None = None
-    ) -> Word:
+    def word(self, text: str | Word, params: np.ndarray | None = None) -> Word:
         """Read a word of this machine."""
         vector = self.vector() if params is None else params
         absent = frozenset() if isinstance(text, Word) else self.absent(vector)
-        return Word.over(self.alphabet, text, absent, default)
+        return Word.over(self.alphabet, text, absent)
 
     def word_of(self, events: Sequence[str], modes: Sequence[Sequence[int]], params: np.ndarray) -> Word:
         """The word with these events and modes."""

@@ -45,7 +45,7 @@ def tables(model: type[Model]) -> ModuleType:
     return importlib.import_module(f"orbits.machines.physical.tables.{PLACES[model.name]}")
 
 
-def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section: str = "") -> Physical:
+def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Physical:
     """The machine called `name` with these quantities.
 
     Parameters
@@ -56,8 +56,6 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
         Quantities as text, ``{"half_width": "15 mm", ...}``; those without a unit may be numbers.
     unusual : bool
         Allow values that no machine of the kind has.
-    section : str
-        Put before the names in refusals.
 
     Returns
     -------
@@ -83,21 +81,21 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
     for key, value in given.items():
         if key not in known:
             raise QuantityError(
-                f"{section}{key} = {value!r}: the machine {name!r} has no such quantity{near_quantity(key, known)}; "
+                f"{key} = {value!r}: the machine {name!r} has no such quantity{near_quantity(key, known)}; "
                 f"it has {', '.join(known)}"
             )
         if isinstance(value, str) and key in base.parameter_names:
             value = base.parameter(key).words.get(value, value)
-        counted[key] = units.read(known[key], value, section)
+        counted[key] = units.read(known[key], value)
         values[key] = units.si(known[key], *counted[key])
         if not unusual:
-            units.check_usual(known[key], values[key], f"{section}{key} = {value!r}")
+            units.check_usual(known[key], values[key], f"{key} = {value!r}")
     contact_time = None
     if contact is not None:
-        number, unit = units.read(CONTACT, contact, section)
+        number, unit = units.read(CONTACT, contact)
         contact_time = units.si(CONTACT, number, unit)
         if not unusual:
-            units.check_usual(CONTACT, contact_time, f"{section}{CONTACT.name} = {contact!r}")
+            units.check_usual(CONTACT, contact_time, f"{CONTACT.name} = {contact!r}")
     chosen = independent(known, values)
     values = table.completed(values)
     for quantity in chosen:
@@ -109,7 +107,7 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False, section
             others = [q.name for q in known.values() if q.choice == quantity.choice and q is not quantity]
             said = f" (or {', '.join(others)} instead)" if others else ""
             would = f'"{quantity.example}"' if quantity.unit else quantity.example
-            raise QuantityError(f"{section}{quantity.name} is missing{said}: for example {would}")
+            raise QuantityError(f"{quantity.name} is missing{said}: for example {would}")
         counted[quantity.name] = units.read(quantity, quantity.default)
     return _assembled(base, table, chosen, counted, unusual, contact_time)
 

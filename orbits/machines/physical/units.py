@@ -97,7 +97,7 @@ def in_si(unit: str) -> float:
         raise QuantityError(f"{unit!r} is no unit that is known; for example 'mm' or 'N s/m'") from None
 
 
-def read(quantity: Quantity, value: object, section: str = "") -> tuple[float, str]:
+def read(quantity: Quantity, value: object) -> tuple[float, str]:
     """A quantity as a number and the unit in which it was given.
 
     Parameters
@@ -105,15 +105,13 @@ def read(quantity: Quantity, value: object, section: str = "") -> tuple[float, s
     quantity : Quantity
     value : str or number
         ``"15 mm"``; a plain number only where the quantity has no unit.
-    section : str
-        Put before the name in refusals.
 
     Raises
     ------
     QuantityError
         If it is no number with a unit of this kind.
     """
-    shown = f"{section}{quantity.name} = {value!r}"
+    shown = f"{quantity.name} = {value!r}"
     would = f'for example "{quantity.example}"' if quantity.unit else f"for example {quantity.example}"
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise QuantityError(f"{shown} is no quantity; {would}{_many(quantity, value)}")
