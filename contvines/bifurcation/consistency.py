@@ -31,6 +31,7 @@ PASSED_AT = (
     ("period-doubling", "symmetry-breaking"),
     ("neimark-sacker", "hopf"),
 )
+KNOWN = 10.0  # times the distance of a multiplier from the circle where it should be on it: how well the others are known
 
 
 def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
@@ -81,20 +82,17 @@ def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
         if crossing is None:
             return False
         others, own, certainly = crossing
-        sides = {others, others + own}
-        kept = outside & sides
-        outside = (
-            {2 * others + own - total for total in kept}
-            if certainly and not marginal
-            else (sides if kept else set())
-        )
+        reached = {beyond for n in others for beyond in (n, n + own) if {n, n + own} & outside}
+        if certainly and not marginal:
+            reached = {2 * n + own - total for n in others for total in outside & {n, n + own}}
+        outside = reached
     return not outside & last
 
 
-def _others_outside(engine: Engine, event: Located) -> tuple[int, int, bool] | None:
-    """How many multipliers are outside the circle at a special point but for those that pass it there, how many these are, and whether they do.
+def _others_outside(engine: Engine, event: Located) -> tuple[range, int, bool] | None:
+    """How many multipliers may be outside the circle at a special point but for those that pass it there, how many these are, and whether they do.
 
-    None where another one is on the circle as well, and at points of other kinds.
+    How far those that pass it are from the circle where the point was located tells how well the others are known there. None at points of other kinds.
     """
     sort = next((k for k, kinds in enumerate(PASSED_AT) if event.kind in kinds), None)
     if sort is None or event.kind == "branch-point" or event.astray:
@@ -104,10 +102,10 @@ def _others_outside(engine: Engine, event: Located) -> tuple[int, int, bool] | N
     if sort == 2:
         gaps[spectrum.imag == 0.0] = np.inf
     order = np.argsort(gaps)
-    others = np.abs(spectrum[order[own:]])
-    if np.any(np.abs(others - 1.0) <= engine.settings.critical):
-        return None
-    return int(np.count_nonzero(others > 1.0)), own, bool(gaps[order[0]] <= engine.settings.critical)
+    sizes, reached = np.abs(spectrum[order[own:]]), float(gaps[order[0]])
+    within = max(KNOWN * reached, LOCATING.past)
+    certain, possible = (int(np.count_nonzero(sizes > 1.0 + side)) for side in (within, -within))
+    return range(certain, possible + 1), own, reached <= engine.settings.critical
 
 
 def on_circle(engine: Engine, point: Solved, within: float) -> bool:

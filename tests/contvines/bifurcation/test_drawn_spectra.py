@@ -82,3 +82,9 @@ def test_a_doubling_close_before_a_border(place):
     (doubling,) = graph.of_kind("period-doubling")
     assert doubling.u[0] == pytest.approx(place, abs=1e-12)
     assert not graph.unresolved
+
+
+def test_a_pair_is_found_where_another_multiplier_is_near_the_circle_at_the_point_beside_it():
+    """1.4e-5 inside it at the period doubling: certainly inside, so that a pair has left the circle before the fold."""
+    said, _ = Spectrum(101415).wrong()
+    assert not said
