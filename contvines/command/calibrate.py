@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict
 
+import typer
+
+from contvines.command.amounts import amount
+from contvines.command.compose import check_shaken, machine
 from contvines.command.frame import draw, tell
-from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option
+from contvines.command.measured import Column, Scales, length_on_line, measured
+from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
+from contvines.command.physical_study import number_of
+from contvines.command.study import read_study
 from contvines.command.study_data import Sort, Study
+from contvines.graph.table import with_unit
 from contvines.shared.number_text import figures
-from contvines.text_table import fitted
+from contvines.text_table import Table, fitted, terminal_width
+from orbits.machines.physical.machine import Physical
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    import numpy as np
 
     from orbits.design.calibration import Calibration
     from orbits.machines.base import Model
@@ -22,6 +32,7 @@ CLOSE = 0.95  # correlation of two estimates from which on it is told
 
 
 def calibrate(
+    context: typer.Context,
     study: Annotated[Path, argument("STUDY.toml", "A study; the search begins at its values.")],
     impacts: Annotated[
         Path | None,
@@ -61,18 +72,12 @@ def calibrate(
     (or, with --release, of a free decay).
     A sweep holds steady responses in the order in which they were measured. Column heads may name units: time [ms].
     """
-    from contvines.command.compose import check_shaken
-    from contvines.command.study import read_study
-
     if (impacts is None) == (sweep is None):
         both = "both are" if impacts is not None else "neither is"
         raise ValueError(
             f"--impacts and --sweep: {both} given; give one of them: --impacts times.csv or --sweep responses.csv."
         )
-    if release is not None and impacts is None:
-        raise ValueError(f"--release {release}: this goes with --impacts.")
-    if measure is not None and sweep is None:
-        raise ValueError(f"--measure {measure}: this goes with --sweep.")
+    refuse_alone(context, release="--impacts", measure="--sweep")
     if not 0.0 < confidence < 1.0:
         raise ValueError(f"--confidence {confidence:g}: give a number between 0 and 1, for example 0.95.")
     read = read_study(study)
@@ -85,12 +90,13 @@ def calibrate(
         check_shaken(read, names)
     model, guesses = _guesses(read, names)
     bounds = _limits(limits or [], names, model)
+    known: Known = {"unknown": guesses, "limits": bounds, "fixed": read.loose, "confidence": confidence}
     try:
         if impacts is not None:
-            found, places = _from_impacts(read, model, impacts, guesses, bounds, release, confidence)
+            found, look = _from_impacts(read, model, impacts, release, known)
         else:
             assert sweep is not None
-            found, places = _from_sweep(read, model, sweep, guesses, bounds, measure, confidence)
+            found, look = _from_sweep(read, model, sweep, measure, known)
     except ValueError as error:
         sentence, path = str(error).rstrip("."), impacts or sweep
         raise ValueError(
@@ -99,14 +105,27 @@ def calibrate(
     units = {name: model.units[name] for name in names if model.units.get(name)}
     tell(fitted(calibration_text(found, units, guesses)), as_json(found, units) if json_ else None)
     if plot is not None:
-        from contvines.graph.table import with_unit
         from contvines.plots.measured import plot_calibration
 
-        over, unit, where, heights, label = places
-        drawn = plot_calibration(
-            where, found.residuals, heights, xlabel=with_unit(over, unit), ylabel=label, figsize=size
-        )
-        draw(plot, lambda: drawn, json_)
+        draw(plot, lambda: plot_calibration(residuals=found.residuals, figsize=size, **look), json_)
+
+
+class Known(TypedDict):
+    """What a calibration knows beside the measurement; see `orbits.design.calibration.from_sweep`."""
+
+    unknown: dict[str, float]
+    limits: Mapping[str, tuple[float, float]]
+    fixed: Mapping[str, float]
+    confidence: float
+
+
+class Look(TypedDict):
+    """What the picture shows beside the residuals; see `contvines.plots.measured.plot_calibration`."""
+
+    places: np.ndarray
+    heights: np.ndarray | None
+    xlabel: str
+    ylabel: str
 
 
 def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
@@ -124,8 +143,6 @@ def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
 
 def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -> str:
     """The estimates, what the data cannot tell apart, and lines for the study."""
-    from contvines.text_table import Table, terminal_width
-
     rows = [
         (
             name,
@@ -166,7 +183,6 @@ def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[st
 
 def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
     """The machine given by the unknown parameters, and their values in the study."""
-    from contvines.command.compose import machine
     from orbits.machines.physical.quantities import near_quantity
 
     model = machine(study)
@@ -202,10 +218,6 @@ def _limits(said: list[str], names: list[str], model: Model) -> dict[str, tuple[
 
 def _limit(text: str, name: str, said: str, model: Model) -> float:
     """One end of an interval in which an estimate may lie, in the machine's unit."""
-    from contvines.command.amounts import amount
-    from contvines.command.physical_study import number_of
-    from orbits.machines.physical.machine import Physical
-
     try:
         value = amount("", said, name, model.units)
         if isinstance(model, Physical) and model.units.get(name):
@@ -220,15 +232,8 @@ def _limit(text: str, name: str, said: str, model: Model) -> float:
 
 
 def _from_impacts(
-    study: Study,
-    model: Model,
-    path: Path,
-    guesses: dict[str, float],
-    bounds: Mapping[str, tuple[float, float]],
-    release: str | None,
-    confidence: float,
-) -> tuple[Calibration, tuple[Any, ...]]:
-    from contvines.command.measured import Column, Scales, length_on_line, measured
+    study: Study, model: Model, path: Path, release: str | None, known: Known
+) -> tuple[Calibration, Look]:
     from orbits.design.calibration import from_impacts
 
     scales = Scales(model, model.vector(study.loose))
@@ -242,61 +247,34 @@ def _from_impacts(
                 f"--release {release}: the machine {model.name!r} has no oscillator to be let go."
             )
         start, model = {"q1": displacement, "q2": displacement}, model.changed(forcing=0.0)
-    found = from_impacts(
-        model, times, guesses, start=start, limits=bounds, fixed=study.loose, confidence=confidence
-    )
-    return found, (
-        "time",
-        second,
-        times,
-        None,
-        f"measured less computed [{second}]" if second else "measured less computed",
-    )
+    ylabel = with_unit("measured less computed", second)
+    look: Look = {"places": times, "heights": None, "xlabel": with_unit("time", second), "ylabel": ylabel}
+    return from_impacts(model, times, start=start, **known), look
 
 
 def _from_sweep(
-    study: Study,
-    model: Model,
-    path: Path,
-    guesses: dict[str, float],
-    bounds: Mapping[str, tuple[float, float]],
-    measure: str | None,
-    confidence: float,
-) -> tuple[Calibration, tuple[Any, ...]]:
-    from contvines.command.measured import Column, measured
-    from contvines.command.physical_study import number_of
+    study: Study, model: Model, path: Path, measure: str | None, known: Known
+) -> tuple[Calibration, Look]:
     from contvines.plots.style import axis_label
     from orbits.attractors.observation import measure_names
     from orbits.design.calibration import from_sweep
-    from orbits.machines.physical.machine import Physical
 
-    known = measure_names(model)
-    over, name = study.parameter, measure or next(name for name in known if name.startswith("max_"))
-    if name not in known:
-        raise ValueError(f"--measure {name}: a simulation tells {', '.join(known)}.")
-    if over in guesses:
+    names = measure_names(model)
+    over, name = study.parameter, measure or next(name for name in names if name.startswith("max_"))
+    if name not in names:
+        raise ValueError(f"--measure {name}: a simulation tells {', '.join(names)}.")
+    if over in known["unknown"]:
         raise ValueError(
             f"--unknown {over}: this is what was swept ([continue] parameter); estimate something else."
         )
-    unit = model.units.get(name, "")
-    own = model.units.get(over, "")
+    unit, own = model.units.get(name, ""), model.units.get(over, "")
     values, heights = measured(path, (Column(over, own), Column("response", unit)))
     if own and isinstance(model, Physical):
         for row, value in enumerate(values, 1):
-            _, refusal = number_of(
-                model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}"
-            )
+            place = f"{path}: {over} of measurement {row}"
+            _, refusal = number_of(model, over, f"{float(value)!r} {own}", place)
             if refusal:
                 raise ValueError(refusal)
-    found = from_sweep(
-        model,
-        over,
-        values,
-        heights,
-        guesses,
-        measure=name,
-        limits=bounds,
-        fixed=study.loose,
-        confidence=confidence,
-    )
-    return found, (over, own, values, heights, axis_label(name, unit=unit or None, notation=model.notation))
+    ylabel = axis_label(name, unit=unit or None, notation=model.notation)
+    look: Look = {"places": values, "heights": heights, "xlabel": with_unit(over, own), "ylabel": ylabel}
+    return from_sweep(model, over, values, heights, measure=name, **known), look

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from contvines.command.frame import beside, load_file, say_state
+from contvines.command.frame import beside, say_state
 from contvines.command.options import FileArgument, TrustOption, option
 
 
@@ -66,8 +66,9 @@ def export(
         check_target(target, ending)
     measures = to in (Format.csv, Format.mat, Format.auto, Format.xpp)
     from contvines.loci.chart import Chart
+    from contvines.store import load
 
-    graph = load_file(file, trust, measures, charts=True)
+    graph = load(file, problems=measures, trust=trust)
     if isinstance(graph, Chart):
         from contvines.export.charts import export_chart
 

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
@@ -157,27 +157,13 @@ MOST_NAMED = 24  # labels in one sentence
 
 
 # ---------------------------------------------------------------------- results
-@overload
-def load_file(
-    file: Path, trust: bool = False, problems: bool = True, charts: Literal[False] = False
-) -> "Graph": ...
-
-
-@overload
-def load_file(
-    file: Path, trust: bool = False, problems: bool = True, *, charts: Literal[True]
-) -> "Graph | Chart": ...
-
-
-def load_file(
-    file: Path, trust: bool = False, problems: bool = True, charts: bool = False
-) -> "Graph | Chart":
-    """The graph of a file, or its chart where the verb takes charts."""
+def load_file(file: Path, trust: bool = False, problems: bool = True) -> "Graph":
+    """The graph of a file; a chart is refused."""
     from contvines.graph.graph import Graph
     from contvines.store import load
 
     graph = load(file, problems=problems, trust=trust)
-    if not charts and not isinstance(graph, Graph):
+    if not isinstance(graph, Graph):
         raise ValueError(f"{file}: this file holds a chart; give one that `contvines diagram` has made.")
     return graph
 

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperOption
 
 
 def option(usage: str, help: str, **further: Any) -> Any:
@@ -25,6 +26,37 @@ def option(usage: str, help: str, **further: Any) -> Any:
 def argument(metavar: str, help: str) -> Any:
     """An argument of a verb, and its name in the help."""
     return typer.Argument(metavar=metavar, help=help)
+
+
+def given(context: typer.Context) -> dict[str, str]:
+    """Options of a line that say something else than their defaults, as they are written there, with their values."""
+    found = {}
+    for known in context.command.params:
+        value = context.params.get(str(known.name))
+        if isinstance(known, TyperOption) and value not in (known.default, (), []):
+            name = known.secondary_opts[0] if value is False else known.opts[-1]
+            values = [] if known.is_flag else value if isinstance(value, tuple | list) else [value]
+            found[name] = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in (name, *values))
+    return found
+
+
+def refuse_alone(context: typer.Context, **needed: str) -> None:
+    """Refuse options that go with another one where this one is missing.
+
+    Parameters
+    ----------
+    context : typer.Context
+    **needed : str
+        Name of an option without its dashes -> the option that it goes with.
+
+    Raises
+    ------
+    ValueError
+    """
+    line = given(context)
+    for name, other in needed.items():
+        if f"--{name}" in line and other not in line:
+            raise ValueError(f"{line[f'--{name}']}: this goes with {other}.")
 
 
 def picture(path: Path | None) -> Path | None:

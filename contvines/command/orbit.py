@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from contvines.command.frame import draw, load_file, say, tell
+from contvines.command.frame import draw, say, tell
 from contvines.command.options import JsonOption, PlotOption, TrustOption, argument, option
 from contvines.shared.number_text import complex_figures, figures
 from contvines.text_table import fitted
@@ -68,8 +68,9 @@ def _orbit(file: Path, label: str | None, trust: bool) -> object:
     from contvines.graph.graph import Graph
     from contvines.loci.plane_point import PlanePoint
     from contvines.problems.registry import without_problem
+    from contvines.store import load
 
-    graph = load_file(file, trust, charts=True)
+    graph = load(file, trust=trust)
     if label is None:
         raise ValueError(f"which orbit of {file}? Give one of the labels {', '.join(_labels(graph))}.")
     name, _, place = label.partition(":")

@@ -3,13 +3,21 @@
 import math
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from contvines.command.compare import check_compared, compared
-from contvines.command.frame import beside, load_file, say_state
-from contvines.command.options import CompareOption, FileArgument, SizeOption, TrustOption, option, picture
+from contvines.command.frame import beside, say_state
+from contvines.command.options import (
+    CompareOption,
+    FileArgument,
+    SizeOption,
+    TrustOption,
+    given,
+    option,
+    picture,
+)
 
 
 class Picture(StrEnum):
@@ -18,6 +26,9 @@ class Picture(StrEnum):
     diagram = "diagram"
     multipliers = "multipliers"
     network = "network"
+
+
+GENERAL = ("--output", "--size", "--style", "--trust")  # options for every picture
 
 
 class Colors(StrEnum):
@@ -29,6 +40,7 @@ class Colors(StrEnum):
 
 
 def plot(
+    context: typer.Context,
     file: FileArgument,
     x: Annotated[str | None, option("-x", "Measure on the x axis; by default the parameter.")] = None,
     y: Annotated[
@@ -74,19 +86,8 @@ def plot(
     """Draw a result: the diagram, the multipliers of a branch, or the network of branches."""
     from contvines.plots.figures import check_style, save_figure
 
-    asked = {
-        "-x": x,
-        "-y": y,
-        "--xlim": xlim,
-        "--ylim": ylim,
-        "--color": color,
-        "--marks": marks,
-        "--words": words or None,
-    }
-    asked |= {"--compare": compare[0] if compare else None}
     check_compared(compare, True)
-    asked |= {"--no-inset" if inset is False else "--inset": None if inset is None else ""}
-    asked |= {"--no-legend": None if legend else "", "--branch": branch}
+    asked = given(context)
     _refuse_ignored(kind, asked)
     target = output or beside(file, ".png")
     picture(target)
@@ -97,12 +98,17 @@ def plot(
                 f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
             )
     from contvines.loci.chart import Chart
+    from contvines.store import load
 
-    graph = load_file(file, trust, charts=True)
+    graph = load(file, trust=trust)
     if isinstance(graph, Chart):
         from contvines.plots.chart import plot_chart
 
-        _refuse_of_chart(file, kind, {name: value for name, value in asked.items() if name != "--no-legend"})
+        ignored = next((line for name, line in asked.items() if name not in (*GENERAL, "--no-legend")), None)
+        if ignored is not None:
+            raise ValueError(
+                f"{ignored}: {file} holds a chart, whose picture has no use for it; leave {ignored.split()[0]} out."
+            )
         save_figure(plot_chart(graph, figsize=size, style=style, legend=legend), target)
         typer.echo(str(target))
         return
@@ -142,47 +148,17 @@ def plot(
     typer.echo(str(target))
 
 
-def _refuse_of_chart(file: Path, kind: Picture, options: dict[str, Any]) -> None:
-    """Options that the picture of a chart would ignore are refused."""
-    for name, value in {**options, "--kind": None if kind is Picture.diagram else kind.value}.items():
-        if value is not None:
-            raise ValueError(
-                f"{name}{_given(value)}: {file} holds a chart, whose picture has no use for it; leave {name} out."
-            )
-
-
-def _refuse_ignored(kind: Picture, options: dict[str, Any]) -> None:
+def _refuse_ignored(kind: Picture, asked: dict[str, str]) -> None:
     """Options that this kind of picture would ignore are refused."""
-    of_diagrams = (
-        "-x",
-        "-y",
-        "--xlim",
-        "--ylim",
-        "--color",
-        "--marks",
-        "--words",
-        "--no-legend",
-        "--compare",
-        "--inset",
-        "--no-inset",
-    )
-    takes = {
-        Picture.diagram: (of_diagrams, "draws all branches"),
-        Picture.multipliers: (("--branch",), "draws over the parameter"),
-        Picture.network: ((), "draws boxes and arrows"),
+    why = {
+        Picture.diagram: "draws all branches",
+        Picture.multipliers: "draws over the parameter",
+        Picture.network: "draws boxes and arrows",
     }
-    known, why = takes[kind]
-    for name, value in options.items():
-        if value is not None and name not in known:
-            other = Picture.multipliers if name == "--branch" else Picture.diagram
+    for name, line in asked.items():
+        other = Picture.multipliers if name == "--branch" else Picture.diagram
+        if kind is not other and name not in (*GENERAL, "--kind"):
             raise ValueError(
-                f"{name}{_given(value)}: --kind {kind.value} {why} and has no use for it; leave {name} out, "
+                f"{line}: --kind {kind.value} {why[kind]} and has no use for it; leave {name} out, "
                 f"or choose --kind {other.value}."
             )
-
-
-def _given(value: object) -> str:
-    """An option's value as it was typed; nothing for a switch."""
-    if isinstance(value, bool) or value == "":
-        return ""
-    return " " + (" ".join(f"{v:g}" for v in value) if isinstance(value, tuple) else str(value))

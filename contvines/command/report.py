@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from contvines.command.frame import beside, load_file, say
+from contvines.command.frame import beside, say
 from contvines.command.options import TrustOption, argument, option
 
 if TYPE_CHECKING:
@@ -89,8 +89,9 @@ def _result(file: Path, trust: bool) -> "Graph | Chart | Survey":
             raise ValueError(f"{file}: all machines of the survey failed; its CSV says why.")
         return survey
     from contvines.loci.chart import Chart
+    from contvines.store import load
 
-    result = load_file(file, trust, charts=True)
+    result = load(file, trust=trust)
     if isinstance(result, Chart):
         if not result.loci:
             raise ValueError(f"{file} has no finished locus yet; run the command that made it again.")

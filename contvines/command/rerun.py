@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from contvines.command.chart import chart_of, fingerprint_of
-from contvines.command.frame import held, load_file, place_of, refuse_unfinished, say
+from contvines.command.frame import held, place_of, refuse_unfinished, say
 from contvines.command.options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOption, option
 from contvines.command.run import graph_of
 from contvines.command.study_data import Study
@@ -37,10 +37,10 @@ def rerun(
     """
     from contvines.loci.chart import Chart
     from contvines.provenance import as_text, provenance
-    from contvines.store import Store
+    from contvines.store import Store, load
     from contvines.store.differences import differences, of_chart, of_graph
 
-    before = load_file(file, problems=False, charts=True)
+    before = load(file, problems=False)
     refuse_unfinished(before, file)
     with Store.open(file) as store:
         made, fingerprint, kept = store.made, store.fingerprint, store.study or {}

@@ -2,16 +2,16 @@
 
 import typer
 
-from contvines.command.frame import load_file, say_state, tell
+from contvines.command.frame import say_state, tell
 from contvines.command.options import FileArgument, JsonOption
 
 
 def show(file: FileArgument, json: JsonOption = False) -> None:
     """List branches, special points and switches."""
     from contvines.provenance import as_text
-    from contvines.store import Store
+    from contvines.store import Store, load
 
-    graph = load_file(file, problems=False, charts=True)
+    graph = load(file, problems=False)
     with Store.open(file) as store:
         made = store.made
     if json:

@@ -3,14 +3,25 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+import typer
+
 from contvines.command.frame import beside, draw, refuse_source, tell
-from contvines.command.options import FreshOption, JsonOption, PlotOption, QuietOption, argument, option
+from contvines.command.options import (
+    FreshOption,
+    JsonOption,
+    PlotOption,
+    QuietOption,
+    argument,
+    option,
+    refuse_alone,
+)
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
 
 
 def survey(
+    context: typer.Context,
     study: Annotated[Path, argument("STUDY.toml", "A study with a section [survey].")],
     output: Annotated[
         Path | None,
@@ -63,10 +74,7 @@ def survey(
     refuse_source(target, study)
     check_target(target, "nc")
     check_target(target.with_suffix(".csv"), "csv")
-    if over and best is None:
-        raise ValueError(f"--over {' '.join(over)}: this goes with --best; say what is wanted.")
-    if covered is not None and best is None:
-        raise ValueError(f"--covered {covered:g}: this goes with --best; say what is wanted.")
+    refuse_alone(context, over="--best", covered="--best")
     if workers is not None and cluster is not None:
         raise ValueError(
             f"--workers {workers} and --cluster {cluster} exclude each other; leave one of them out."

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
+import typer
 
 from contvines.command.frame import draw, say, tell
 from contvines.command.measured import Column, Rows, Scales, Series, length_on_line, measured
-from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option
+from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
 from contvines.command.page_transient import frequency_on_line, of_page, time_on_line
 from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
@@ -25,6 +26,7 @@ LONGEST = 100_000.0  # that a motion is followed after a record, in radians of t
 
 
 def transient(
+    context: typer.Context,
     study: Annotated[
         Path,
         argument("STUDY.toml", "A study of the coupled machine or a declared machine."),
@@ -92,8 +94,7 @@ def transient(
         raise ValueError(
             "--from and --over go together, and with --start-up: the frequency runs up from the one in the other."
         )
-    if tail is not None and record is None:
-        raise ValueError(f"--tail {tail}: this goes with --record.")
+    refuse_alone(context, tail="--record")
     if output is not None:
         check_target(output, "csv")
     read = read_study(study)
