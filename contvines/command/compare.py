@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from contvines.shared.number_text import figures
+from orbits.design.references import NAMES, reference
+from orbits.machines.base import Model
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -70,8 +73,6 @@ def draw_compared(axes: Axes, graph: Graph, kinds: list[str], x: str | None, y: 
     ValueError
         If the graph shows no response of an oscillator over its parameter.
     """
-    from orbits.design.references import NAMES
-
     for kind, (values, response) in _lines(graph, kinds, x, y).items():
         color, dashes = LOOKS[kind]
         axes.plot(
@@ -83,11 +84,8 @@ def _lines(
     graph: Graph, kinds: list[str], x: str | None, y: str | None
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Values of the parameter and responses there, of each kind."""
-    import numpy as np
 
     from contvines.graph.measures import default_measure
-    from orbits.design.references import reference
-    from orbits.machines.base import Model
     from orbits.problem import OrbitProblem
 
     shown, over = y or default_measure(graph), x or graph.parameter
@@ -119,10 +117,6 @@ def peaks_compared(
     ValueError
         If the machine is declared: it has no closed forms.
     """
-    import numpy as np
-
-    from orbits.design.references import reference
-    from orbits.machines.base import Model
 
     if not isinstance(model, Model):
         raise ValueError(f"the machine {model.name!r} has no closed forms to compare with")
@@ -142,8 +136,6 @@ def peaks_compared(
 
 def compared_text(model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
     """The largest responses to compare with, as a sentence."""
-    from orbits.design.references import NAMES
-
     unit, place = model.units.get(SHOWN[0], ""), model.units.get(over, "")
     said = [
         f"{NAMES[kind]} {figures(peak)} {unit} at {over} = {figures(at)} {place}".replace("  ", " ").rstrip()

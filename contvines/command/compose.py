@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+import contvines
 from contvines.command.study_data import Sort, Study, without_word
 
 if TYPE_CHECKING:
@@ -147,15 +148,11 @@ def _asked(study: Study) -> dict[str, Any]:
 
 def run_diagram(study: Study, seed: object, **options: Any) -> "Graph":
     """The automatic diagram of a study from its first orbit; options as for `contvines.diagram`."""
-    import contvines
-
     asked = {"bounds": study.bounds, **_asked(study)}
     return contvines.diagram(seed, over=study.parameter, within=study.within, **{**asked, **options})
 
 
 def run_atlas(study: Study, seed: object, **options: Any) -> "Graph":
     """The atlas of a study's starts; options as for `contvines.atlas`."""
-    import contvines
-
     asked = {**study.atlas.model_dump(), **_asked(study)}
     return contvines.atlas(seed, within=study.within, **{**asked, **options})

@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from contvines.command.study_errors import StudyError
 from contvines.shared.near_names import did_you_mean
+from orbits.machines.conditions import Table
 from orbits.machines.parameters import ParameterError
-
-if TYPE_CHECKING:
-    from orbits.machines.conditions import Table
 
 EXAMPLE = "{ temperature = [[20, 0.7], [80, 0.6]] }"
 
@@ -79,7 +77,6 @@ def _table(place: str, name: str, said: Mapping[str, Any]) -> tuple[Table, str]:
         raise StudyError(
             f"{place} = {said!r}: expected a number, or a table over one condition, {name} = {EXAMPLE}."
         )
-    from orbits.machines.conditions import Table
     from orbits.machines.physical.quantities import QuantityError
     from orbits.machines.physical.units import counted, number_and_unit
 

@@ -8,19 +8,20 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
+import numpy as np
+
 from contvines.command.frame import draw as draw_in
 from contvines.command.frame import tell
 from contvines.command.options import JsonOption, StudyArgument, inches, option, picture
 from contvines.command.study import StudyError, read_study
 from contvines.command.study_data import Sort, Study
 from contvines.shared.number_text import figures
+from orbits.design.figures import Design
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from orbits.design.figures import Design
     from orbits.numbers import Reals
 
 DAMPING = 0.9  # the reduced model has none; the coupled model's default
@@ -42,7 +43,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
     StudyError
         If the scale is missing, given twice, or out of range.
     """
-    from orbits.design.figures import SCALE, Design
+    from orbits.design.figures import SCALE
 
     model, physical = study.model, study.sort is Sort.PHYSICAL
     if not physical and study.sort is not Sort.CATALOGUE:
@@ -94,8 +95,6 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
 
 def assumptions(study: Study, cavity: float | None, natural_frequency: float | None) -> dict[str, str]:
     """What `machine` assumes beyond the study, a sentence by name of the quantity; empty if nothing."""
-    from orbits.design.figures import Design
-
     found = {}
     if study.sort is Sort.CATALOGUE and study.parameters["gravity"] != 0:
         found["acceleration"] = f"gravity is {Design.acceleration:g} m/s^2"
@@ -158,8 +157,6 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     assumed : names of `assumptions`
         An assumed half-width is named above the figure.
     """
-    import numpy as np
-
     from contvines.plots.figures import new_figure, settle, styled, thin_ticks
 
     mu0, b0 = float(design.friction), float(design.cavity)
@@ -212,8 +209,6 @@ class Over(NamedTuple):
 
 def _bounds(axes: Axes, design: Design, over: Over, room: float) -> None:
     """Between which amplitudes of the oscillator two symmetric impacts are, and where the absorber sticks; `room` for a legend."""
-    import numpy as np
-
     across, line = over.values * over.unit, design.with_(**{over.name: over.values})
     limits = line.activation_threshold, line.upper_bound, line.sticking_limit()
     low, high, stick = (MM * np.broadcast_to(limit, across.shape) for limit in limits)
@@ -245,8 +240,6 @@ def _map(
     panel: Axes, mu: np.ndarray, b: np.ndarray, values: Reals, here: tuple[float, float], title: str
 ) -> None:
     """A quantity over friction and half-width, as contours."""
-    import numpy as np
-
     values = np.asarray(values)
     known = values[np.isfinite(values)]  # elastic walls without friction: no threshold, no ratio
     if known.size and known.max() > 1.001 * known.min():

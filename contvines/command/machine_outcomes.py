@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from orbits.orbit import Orbit
+
 if TYPE_CHECKING:
     from contvines.survey.outcomes import Findings, Outcome
 
@@ -13,7 +15,6 @@ if TYPE_CHECKING:
 def dissipation(found: Findings) -> dict[str, float]:
     """Power that impacts and friction dissipate where the stable response of the diagram is largest; nan of a declared machine without ``energy=``."""
     from contvines.survey.outcomes import highest, stretches
-    from orbits.orbit import Orbit
 
     top = highest(stretches(found.graph))
     if top is None or "impact_loss" not in top.stretch.branch.measure_names:
@@ -33,7 +34,6 @@ def pumping(found: Findings) -> dict[str, float]:
     from contvines.survey.outcomes import peak
     from orbits.design.transients import free_decay
     from orbits.machines.base import Model
-    from orbits.orbit import Orbit
 
     seed = found.seed
     assert isinstance(seed, Orbit)

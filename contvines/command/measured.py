@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from orbits.machines.physical import units
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -53,7 +55,6 @@ def measured(path: Path, wanted: Sequence[Column]) -> list[np.ndarray]:
 
 
 def _factor(path: Path, number: int, head: str, column: Column) -> float:
-    from orbits.machines.physical import units
 
     match = _UNIT.search(head)
     said = next((part.strip() for part in match.groups() if part), "") if match else ""
@@ -84,8 +85,6 @@ def length_on_line(text: str, option: str, unit: str) -> float:
     unit : str
         In which it is returned; "" where the study has none.
     """
-    from orbits.machines.physical import units
-
     what = {"s": "time", "": "number"}.get(unit, "length")
     example = {"s": "2 s", "": "5"}.get(unit, "5 mm")
     match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
@@ -135,7 +134,6 @@ class Scales:
 
     def unit(self, kind: str) -> str:
         """The unit of a kind of measure; "" for a plain number."""
-        from orbits.machines.physical import units
         from orbits.machines.physical.machine import Physical
 
         if not isinstance(self.model, Physical):
@@ -157,7 +155,6 @@ class Scales:
     @property
     def metre(self) -> float:
         """Metres in one dimensionless length; 1 where there are no units."""
-        from orbits.machines.physical import units
 
         unit = self.unit("length")
         return self.factor("length") * ((units.size(unit, "m") or 1.0) if unit else 1.0)

@@ -15,10 +15,10 @@ from contvines.command.schema import FlowSections, PageSections, given, model_se
 from contvines.command.study_data import Sort, Study, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
 from orbits.machines.catalogue import PAGES, STRUCTURE, page_machine
+from orbits.machines.page.machine import Machine
 
 if TYPE_CHECKING:
     from contvines.flows.problem import FlowProblem
-    from orbits.machines.page.machine import Machine
 
 F = TypeVar("F", PageSections, FlowSections)
 
@@ -37,8 +37,6 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
         machine, plain = _structure(data, path)
         return _page(plain, path, machine)
     if said in PAGES:
-        from orbits.machines.page.machine import Machine
-
         machine = page_machine(said)
         assert isinstance(machine, Machine)
         return _page(data, path, machine)

@@ -16,15 +16,18 @@ import numpy as np
 
 from contvines.command.recommendation import AGREES, MET, Curve, Jump, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
+from contvines.command.survey_study import asked_of, options_of
 from contvines.shared.modulation import BAND, modulation_of
 from contvines.shared.number_text import figures
+from contvines.survey.outcomes import stretches
+from contvines.survey.plan import Plan
+from orbits.design.references import KINDS
 from orbits.flows.catalogue import flow_of
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
     from contvines.survey.completion import Unbranched
     from contvines.survey.outcomes import Findings
-    from contvines.survey.plan import Plan
     from orbits.design.first_clearance import FirstClearance
     from orbits.machines.varying import Varying
 
@@ -59,8 +62,6 @@ DRAWN = 4000  # instants of the start-up that are kept
 
 def loads(found: Findings) -> dict[str, float]:
     """The largest of each load over the stable motions; the speed of impacts over simulated ones, too."""
-    from contvines.survey.outcomes import stretches
-
     largest: dict[str, float] = {}
     parts = stretches(found.graph)
     for name in LOADS:
@@ -78,7 +79,6 @@ def met(found: Findings) -> dict[str, float]:
     """Shares of the simulated motions by what they are (with impacts and a period, modulated or chaotic, without impacts, stuck), and the
     largest response of each, that of the branches included."""
     from contvines.graph.measures import default_measure
-    from contvines.survey.outcomes import stretches
 
     name = default_measure(found.graph)
     kinds = [_kind(measures, text) for _, measures, text in found.simulated]
@@ -182,7 +182,6 @@ class _Work:
         from contvines.coexistence.population import population_of
         from contvines.command.compose import check_shaken, machine
         from contvines.command.survey_study import machines_of, plan_and_machine, units_of
-        from contvines.survey.plan import Plan
 
         study = self.study
         if study.sort is Sort.FLOW:
@@ -275,7 +274,6 @@ class _Work:
 
     def first_look(self) -> Place | None:
         """Diagrams of the study's own machine over the range; the best place."""
-        from contvines.survey.plan import Plan
 
         values = self.range()
         self._tell_round(len(values))
@@ -329,7 +327,6 @@ class _Work:
 
     def _look(self, values: Sequence[float], samples: np.ndarray) -> None:
         """Diagrams at these values, of these samples."""
-        from contvines.survey.plan import Plan
 
         if not len(values) or not len(samples):
             return
@@ -357,7 +354,6 @@ class _Work:
 
     def surveyed(self, plan: Plan, outcomes: Sequence[Any], **ways: Any) -> Survey:
         """The rows of a plan, kept in the journal of the round."""
-        from contvines.command.survey_study import asked_of, options_of
         from contvines.command.surveying import without_main
         from contvines.survey.survey import survey
 
@@ -440,7 +436,6 @@ class _Work:
 
         Where places were simulated alone and the diagrams know a larger response, another one may be the best, which is looked at in its turn.
         """
-        from contvines.survey.plan import Plan
 
         seen: dict[float, Survey] = {}
         choice: Place | None = best
@@ -476,7 +471,6 @@ class _Work:
     ) -> Recommendation:
         """All that is printed of the choice."""
         from contvines.command.compare import peaks_compared
-        from orbits.design.references import KINDS
 
         study = self.study
         unknown = [
@@ -556,7 +550,6 @@ class _Work:
     ) -> tuple[tuple[float, float] | None, list[Curve]]:
         """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value where it
         is next to the largest); of simulations up and down, if these meet more. The responses."""
-        from contvines.command.survey_study import options_of
         from contvines.graph.stretches import highest, inside, stretches
         from contvines.survey.outcomes import peak
         from contvines.survey.work import Job, work
@@ -621,7 +614,7 @@ class _Work:
     def _lines(self, model: Varying) -> list[Curve]:
         """Responses of the machines to compare with; declared machines have none."""
         from contvines.command.compare import POINTS
-        from orbits.design.references import KINDS, reference
+        from orbits.design.references import reference
         from orbits.machines.base import Model
 
         if not isinstance(model, Model):
@@ -722,8 +715,6 @@ def _duration(seconds: float) -> str:
 
 def digest(study: Study, cost: float, target: float | None) -> str:
     """What decides a recommendation."""
-    from contvines.command.survey_study import asked_of
-
     said = {
         "of": asked_of(study),
         "vary": study.survey.vary,

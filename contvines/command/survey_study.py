@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 from contvines.command.conditions import check_range
 from contvines.command.own_code import own_code, run_file
 from contvines.command.study_data import Sort, Study
+from contvines.flows.family import FlowFamily
+from contvines.flows.problem import FlowProblem
 from contvines.shared.near_names import did_you_mean
+from orbits.design import Family
 from orbits.machines.varying import Varying
 
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from contvines.flows.family import FlowFamily
-    from contvines.flows.problem import FlowProblem
     from contvines.survey.outcomes import Findings
     from contvines.survey.plan import Plan
-    from orbits.design import Family
     from orbits.machines.physical.machine import Physical
 
 WRITTEN = (Sort.PAGE, Sort.FLOW)  # equations in a Python file
@@ -94,9 +94,6 @@ def names_of(study: Study) -> Iterable[str]:
 def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily:
     """The machines, or flows, of a study's survey."""
     if study.sort is Sort.FLOW:
-        from contvines.flows.family import FlowFamily
-        from contvines.flows.problem import FlowProblem
-
         assert isinstance(model, FlowProblem) and model.origin is not None
         file, name, _ = model.origin
         return FlowFamily(file, name, study.parameter, study.parameters, study.listed_state, model.box)
@@ -106,8 +103,6 @@ def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily
 
 def machines_of(study: Study, model: Varying) -> Family:
     """The machines of a study's survey."""
-    from orbits.design import Family
-
     return Family(
         model, study.word, study.periods, study.guess, study.loose, study.parameter, study.within,
         study.named_state, study.tables,

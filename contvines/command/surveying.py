@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from contvines.command.frame import held, interruptible, say
 from contvines.command.study_data import Study
+from contvines.command.survey_study import asked_of, outcomes_of, plan_and_machine
+from contvines.command.sweep_rows import journal_of
 
 if TYPE_CHECKING:
     from contvines.survey import Survey
@@ -22,8 +24,6 @@ def surveyed(
     ValueError
         If the file holds another survey, or the study cannot be surveyed.
     """
-    from contvines.command.survey_study import outcomes_of, plan_and_machine
-    from contvines.command.sweep_rows import journal_of
 
     _ = plan_and_machine(study), outcomes_of(study)  # a study that cannot be is refused before its file
     with held(target, quiet, fresh, (target.with_suffix(".csv"), journal_of(target))):
@@ -33,8 +33,7 @@ def surveyed(
 
 def _finished(study: Study, target: Path, quiet: bool) -> "Survey | None":
     """The survey in its file; None if there is none, or its run was ended before it had written all."""
-    from contvines.command.survey_study import asked_of, plan_and_machine
-    from contvines.command.sweep_rows import journal_of, refuse_another
+    from contvines.command.sweep_rows import refuse_another
     from contvines.survey import load_survey
     from contvines.survey.survey import digest_of
 
@@ -57,16 +56,7 @@ def _finished(study: Study, target: Path, quiet: bool) -> "Survey | None":
 
 def _computed(study: Study, target: Path, workers: int | None, cluster: str | None, quiet: bool) -> "Survey":
     """The survey, machine by machine; those that an unfinished run has kept are not computed again."""
-    from contvines.command.survey_study import (
-        asked_of,
-        family_of,
-        options_of,
-        outcomes_of,
-        plan_and_machine,
-        units_of,
-        ways_of,
-    )
-    from contvines.command.sweep_rows import journal_of
+    from contvines.command.survey_study import family_of, options_of, units_of, ways_of
     from contvines.survey.survey import survey as run
 
     plan, model = plan_and_machine(study)

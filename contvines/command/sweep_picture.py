@@ -8,6 +8,7 @@ from contvines.command.frame import load_file
 from contvines.command.study_data import Sort, Study
 from contvines.continuation.settings import Settings
 from contvines.shared.floating_point import TINY
+from orbits.words import Word
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -113,7 +114,6 @@ def picture(
 def _lines(graph: "Graph") -> list[tuple[Any, Any, Any]]:
     """Word, parameter values and B at the word's first impact of every branch that has one."""
     from contvines.graph.measures import measured
-    from orbits.words import Word
 
     found = []
     for branch in graph.branches.values():
@@ -133,7 +133,7 @@ def _drawn_impact(row: "Kept", lines: list[tuple[Any, Any, Any]]) -> int | None:
     """
     import numpy as np
 
-    from orbits.words import Word, WordError
+    from orbits.words import WordError
 
     candidates: list[tuple[float, int]] = []
     for word, values, heights in lines:
