@@ -30,7 +30,6 @@ from contvines.command.options import (
     argument,
     option,
 )
-from contvines.store import Store
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
@@ -135,6 +134,7 @@ def chart_of(
     """The chart of a diagram: from its file if that is finished, computed else; `source` is kept for `contvines rerun`."""
     from contvines.loci.chart import Chart
     from contvines.loci.charting import chart as make
+    from contvines.store import Store
 
     fingerprint = fingerprint_of(graph, over, ends, virtual)
     found = finished_of(Chart, target, fingerprint, quiet, problems=False)
@@ -186,6 +186,8 @@ def _source(
     diagram: Path, target: Path, over: str, ends: tuple[float, float], virtual: bool
 ) -> dict[str, Any] | None:
     """The study of a diagram, as its file keeps it, and what is charted; None where it keeps none."""
+    from contvines.store import Store
+
     with Store.open(diagram) as store:
         kept = (store.study or {}).get("source")
     if not kept:

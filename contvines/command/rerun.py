@@ -10,7 +10,6 @@ from contvines.command.frame import held, place_of, refuse_unfinished, say
 from contvines.command.options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOption, option
 from contvines.command.run import graph_of
 from contvines.command.study_data import Study
-from contvines.store import Store
 
 if TYPE_CHECKING:
     from contvines.graph.graph import Graph
@@ -38,7 +37,7 @@ def rerun(
     """
     from contvines.loci.chart import Chart
     from contvines.provenance import as_text, provenance
-    from contvines.store import load
+    from contvines.store import Store, load
     from contvines.store.differences import differences, of_chart, of_graph
 
     before = load(file, problems=False)
@@ -80,6 +79,8 @@ def rerun(
 
 def _finished(target: Path) -> bool:
     """Whether an earlier run has ended there: an unfinished one is gone on with."""
+    from contvines.store import Store
+
     if not target.is_file():
         return False
     with Store.open(target) as store:

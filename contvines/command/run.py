@@ -33,7 +33,6 @@ from contvines.command.options import (
     YOption,
     option,
 )
-from contvines.store import Store
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -140,6 +139,7 @@ def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, li
     """The graph of a file with what leaves a special point, and the branches that are new."""
     from contvines.continuation.settings import Settings
     from contvines.graph.automatic import switch as leave
+    from contvines.store import Store
 
     graph = load_file(file, trust)
     refuse_unfinished(graph, file)
@@ -216,6 +216,7 @@ def graph_of(
     from contvines.coexistence.effort import BUDGET
     from contvines.command.compose import first_orbit, population, run_atlas, run_diagram
     from contvines.graph.graph import Graph
+    from contvines.store import Store
 
     fingerprint = study.fingerprint(command)
     graph = finished_of(Graph, target, fingerprint, quiet, problems=problems)
@@ -249,6 +250,7 @@ def _look(study: "Study", target: Path) -> "Graph":
     from contvines.coexistence.missing import look
     from contvines.command.compose import population
     from contvines.graph.graph import Graph
+    from contvines.store import Store
 
     with Store.open(target, write=True) as store:
         graph = store.graph()
