@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
@@ -11,7 +12,7 @@ from ..continuation.settings import hinting
 from ..graph.shortening import told_apart
 from .basins import COLORS
 from .diagram import draw_diagram
-from .figures import Size, Style, freeze, given_axes, new_figure, settle, styled, thin_ticks
+from .figures import Size, Style, freeze, given_axes, narrower, new_figure, settle, styled, thin_ticks
 from .legends import NARROW, draw_legend, place_legend
 from .picture import lay_out_again
 from .style import HATCHES, axis_label
@@ -80,7 +81,7 @@ def plot_atlas(
             lower.set_ylabel("share")
         # a high figure has both keys; they stand below one another where there is no room beside the panels
         handles = lower.get_legend_handles_labels()[0]
-        if own and not small and figure.get_size_inches()[0] < NARROW:
+        if own and not small and narrower(lower, NARROW):
             place_legend(lower, [*picture.key.handles(), *handles], legend, own, remarks=picture.key.remarks)
         else:
             place_legend(lower, handles, legend, own, usual="beside")  # first: it narrows both panels
@@ -106,30 +107,28 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     last = np.flatnonzero(np.diff(group))
     edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
     weights = starts / np.bincount(group, weights=starts)[group]
-    names: dict[tuple[str, int], float] = {}
+    total: Counter[tuple[str, int]] = Counter()
     for about in met:
-        key = (about.name, about.periods)
-        names[key] = names.get(key, 0.0) + about.share
-    shown = sorted(names, key=lambda key: -names[key])[:most]
-    order = [key for key in names if key in shown]
-    short = told_apart([name for name, _ in order], 14)
+        total[about.name, about.periods] += about.share
+    shown = dict(total.most_common(most))
+    order: list[tuple[str, int] | None] = [*(key for key in total if key in shown), None]  # and others
+    heights = {key: np.zeros(len(edges) - 1) for key in order}
+    for about in met:
+        key, i = (about.name, about.periods), int(np.searchsorted(values, about.value))
+        heights[key if key in shown else None][group[i]] += about.share * weights[i]
+    named = Counter(name for name, _ in shown)
+    short = told_apart([key[0] for key in order if key], 14)
     bottoms = np.zeros(len(edges) - 1)
-    for k, key in enumerate([*order, None]):
-        heights = np.zeros(len(edges) - 1)
-        for about in met:
-            own = (about.name, about.periods)
-            if own == key or (key is None and own not in shown):
-                i = int(np.searchsorted(values, about.value))
-                heights[group[i]] += about.share * weights[i]
-        if not heights.any():
+    for k, key in enumerate(order):
+        if not heights[key].any():
             continue
         name = "others" if key is None else short[key[0]]
-        if key is not None and sum(key[0] == other for other, _ in order) > 1:
+        if key is not None and named[key[0]] > 1:
             name = f"{name}, k={key[1]}"
         color, hatch = ("0.8", None) if key is None else (COLORS[k % len(COLORS)], HATCHES[k % len(HATCHES)])
         look = {"align": "edge", "facecolor": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
-        axes.bar(edges[:-1], heights, np.diff(edges), bottoms, label=name, **look)
-        bottoms += heights
+        axes.bar(edges[:-1], heights[key], np.diff(edges), bottoms, label=name, **look)
+        bottoms += heights[key]
     axes.set(ylim=(0.0, 1.0), ylabel="share of starts")
     axes.grid(False)
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..continuation.settings import hinting
 from ..graph.shortening import told_apart
 from ..shared.number_text import figures
-from .figures import LOW, Size, Style, drawing
+from .figures import Size, Style, drawing, is_low
 from .legends import place_legend
 from .style import axis_label
 
@@ -53,7 +53,7 @@ def plot_basins(
     light = base + IMAGE * (1.0 - base)
     picture = np.where(basins.mirrored[..., None], light[basins.index], base[basins.index])
     with drawing(axes, style, figsize) as (figure, axes, own):
-        low = own and axes.get_window_extent().height < LOW * figure.dpi
+        low = own and is_low(axes)
         axes.grid(False)
         x, y = (basins.shown(name, v) for name, v in zip(basins.axes, (basins.x, basins.y)))
         half_x, half_y = (0.5 * (v[1] - v[0]) for v in (x, y))

@@ -10,7 +10,7 @@ import numpy as np
 from ..continuation.settings import hinting
 from ..graph.shortening import short_word
 from ..shared.modulation import MODULATIONS
-from .figures import LOW, Size, Style, freeze, new_axes, settle, styled, thin_ticks
+from .figures import Size, Style, freeze, is_low, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, dense, grouped, place_labels, touching
 from .legends import hold_legend, place_legend
 from .style import HATCHES, MARKS, PLAIN, axis_label
@@ -86,20 +86,14 @@ def plot_chart(
             if locus.kind not in COLORS and locus.seed is not None:
                 _hatch(axes, locus)
         for point in chart.points.values():
-            axes.plot(
-                [point.value[0]],
-                [point.value[1]],
-                "o",
-                color="black" if point.real else "0.6",
-                markersize=4,
-                zorder=5,
-            )
+            color = "black" if point.real else "0.6"
+            axes.plot(*point.value, "o", color=color, markersize=4, zorder=5)
         across, up = (axis_label(n, unit=chart.units.get(n), notation=chart.notation) for n in (p, q))
         axes.set(xlabel=across, ylabel=up)
         inside = legend == "inside" or (legend is True and not own)
         if not inside:
             place_legend(axes, list(handles.values()), legend, own, usual="below")
-        if own and axes.get_window_extent().height < LOW * figure.dpi:
+        if own and is_low(axes):
             axes.set_ylabel(axis_label(q, short=True, unit=chart.units.get(q), notation=chart.notation))
         settle(figure)
         if own:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..continuation.settings import hinting
-from .figures import Size, Style, given_axes, new_figure, settle, styled, thin_ticks
+from .figures import Size, Style, panels
 from .legends import place_legend
 from .style import axis_label
 
@@ -67,35 +67,27 @@ def plot_circles(
     if len(wanted) != 2:
         raise ValueError("coordinates: give two names")
     i, j = (names.index(name) for name in wanted)
-    with styled(style):
-        figure, panels = _panels(axes, figsize)
-        _section(panels[0], circles, (i, j))
-        if len(panels) == 3:
-            _sizes(panels[1], panels[2], circles, legend)
-        if axes is None:
-            settle(figure)
-            thin_ticks(*panels)
-    return figure
-
-
-def _panels(axes: Axes | Sequence[Axes] | None, figsize: Size) -> tuple[Figure, list[Axes]]:
-    """The axes given, or a new figure's: the section on the left, or above; alone in a small figure."""
-    if axes is not None:
-        return given_axes(axes, (1, 3), "circles are drawn on")
     size = figsize or (8.2, 3.9)
-    figure = new_figure(figsize=size)
-    if size[0] < NARROW and size[1] < LOW:
-        return figure, [figure.add_subplot()]
-    if size[0] < NARROW:
-        grid = figure.add_gridspec(3, 1, height_ratios=(2.0, 1.0, 1.0))
-        places = [grid[0, 0], grid[1, 0], grid[2, 0]]
-    else:
-        grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
-        places = [grid[:, 0], grid[0, 1], grid[1, 1]]
-    section, radius = (figure.add_subplot(place) for place in places[:2])
-    rotation = figure.add_subplot(places[2], sharex=radius)
-    radius.tick_params(labelbottom=False)
-    return figure, [section, radius, rotation]
+
+    def arranged(figure: Figure) -> list[Axes]:
+        if size[0] < NARROW and size[1] < LOW:
+            return [figure.add_subplot()]
+        if size[0] < NARROW:
+            grid = figure.add_gridspec(3, 1, height_ratios=(2.0, 1.0, 1.0))
+            places = [grid[0, 0], grid[1, 0], grid[2, 0]]
+        else:
+            grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
+            places = [grid[:, 0], grid[0, 1], grid[1, 1]]
+        section, radius = (figure.add_subplot(place) for place in places[:2])
+        rotation = figure.add_subplot(places[2], sharex=radius)
+        radius.tick_params(labelbottom=False)
+        return [section, radius, rotation]
+
+    with panels(axes, (1, 3), "circles are drawn on", arranged, size, style) as (figure, drawn):
+        _section(drawn[0], circles, (i, j))
+        if len(drawn) == 3:
+            _sizes(drawn[1], drawn[2], circles, legend)
+    return figure
 
 
 def _section(axes: Axes, circles: Circles, pair: tuple[int, int]) -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
 from ..graph.measures import default_measure
-from .figures import LOW, Size, Style, freeze, lay_out, new_axes, root, settle, styled, thin_ticks
+from .figures import Size, Style, freeze, is_low, lay_out, new_axes, root, settle, styled, thin_ticks
 from .insets import Region
 from .legends import draw_legend, hold_legend
 from .picture import Picture
@@ -99,16 +99,10 @@ def plot_diagram(
     own = axes is None
     with styled(style):
         figure, axes = new_axes(axes, figsize)
-        look: dict[str, Any] = {
-            "labels": labels,
-            "ends": ends,
-            "marks": marks,
-            "words": words,
-            "color": color,
-            "name": name,
-        }
-        shown = own if inset is None else inset
-        draw_diagram(axes, graph, x, y, own, legend=legend, limits=(xlim, ylim), inset=shown, **look)
+        draw_diagram(
+            axes, graph, x, y, own, labels=labels, ends=ends, marks=marks, words=words, color=color, legend=legend, name=name,
+            limits=(xlim, ylim), inset=own if inset is None else inset,
+        )  # fmt: skip
     return figure
 
 
@@ -140,8 +134,7 @@ def draw_diagram(
     if not axes.get_xlabel():
         axes.set_xlabel(axis_label(x, unit=graph.units.get(x), notation=graph.notation))
     if not axes.get_ylabel():
-        low = axes.get_window_extent().height < LOW * figure.dpi
-        axes.set_ylabel(axis_label(y, low, graph.units.get(y), notation=graph.notation))
+        axes.set_ylabel(axis_label(y, is_low(axes), graph.units.get(y), notation=graph.notation))
     lay_out(figure)
     picture.refine()
     if limits[0] is not None and limits[1] is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -64,6 +64,50 @@ def drawing(axes: Axes | None, style: Style, figsize: Size = None) -> Iterator[t
         settle(figure)
         if axes is None:
             thin_ticks(*figure.axes)
+
+
+@contextmanager
+def panels(
+    axes: Axes | Sequence[Axes] | None,
+    counts: Sequence[int],
+    what: str,
+    arranged: Callable[[Figure], Sequence[Axes]],
+    figsize: Size,
+    style: Style,
+) -> Iterator[tuple[Figure, list[Axes]]]:
+    """A figure and the panels to draw on in a style; new ones are given their place at the end.
+
+    Parameters
+    ----------
+    axes, counts, what
+        As for `given_axes`; None for a new figure.
+    arranged : callable
+        The panels of a new figure.
+    figsize, style
+        Of a new figure.
+
+    Raises
+    ------
+    ValueError
+    """
+    with styled(style):
+        if axes is not None:
+            yield given_axes(axes, counts, what)
+            return
+        figure = new_figure(figsize=figsize)
+        yield figure, [*arranged(figure)]
+        settle(figure)
+        thin_ticks(*figure.axes)
+
+
+def is_low(axes: Axes) -> bool:
+    """Whether axes have room for short labels alone at their side."""
+    return axes.get_window_extent().height < LOW * root(axes).dpi
+
+
+def narrower(axes: Axes, inches: float) -> bool:
+    """Whether the figure of some axes is narrower than that."""
+    return root(axes).get_figwidth() < inches
 
 
 def given_axes(axes: Axes | Sequence[Axes], counts: Sequence[int], what: str) -> tuple[Figure, list[Axes]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
-from .figures import pixels, root, settle
+from .figures import narrower, pixels, root, settle
 from .labels import Box, text_widths
 from .style import PROVED, STATES, Mark, line_of
 
@@ -115,8 +115,8 @@ def place_legend(
         raise ValueError(
             f"legend = {where!r} is unknown{did_you_mean(where, known)}; choose of {', '.join(known)}"
         )
-    narrow = figure.get_size_inches()[0] < NARROW
-    place = where if isinstance(where, str) else "inside" if not own else "below" if narrow else usual
+    place = "inside" if not own else "below" if narrower(axes, NARROW) else usual
+    place = where if isinstance(where, str) else place
     if place == "below":
         _below(axes, handles, own, remarks)
         return

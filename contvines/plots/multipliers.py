@@ -9,7 +9,7 @@ import numpy as np
 
 from ..continuation.settings import hinting
 from ..problems.abilities import notation_of
-from .figures import Size, Style, given_axes, new_figure, root, settle, styled, thin_ticks
+from .figures import Size, Style, narrower, panels, root
 from .legends import place_legend
 from .settings import DRAWING
 from .style import axis_label
@@ -56,24 +56,19 @@ def plot_multipliers(
     if spectrum.ndim != 2 or spectrum.shape[1] == 0:
         raise ValueError(f"{branch.label} has no multipliers to draw: its problem has no spectrum.")
     flow = branch.problem is not None and branch.problem.spectrum == "flow"
-    with styled(style):
-        if axes is not None:
-            figure, panels = given_axes(axes, (1, 2), "the multipliers are drawn on")
-        else:
-            size = figsize or (8.6, 4.0)
-            figure, narrow = new_figure(figsize=size), size[0] < NARROW
-            if narrow and size[1] < LOW:
-                panels = [figure.add_subplot()]  # no room for the plane as well
-            elif narrow:
-                panels = figure.subplots(2, 1, height_ratios=(1, 1.25))
-            else:
-                panels = figure.subplots(1, 2, width_ratios=(1.25, 1))
-        _sizes(panels[0], branch, spectrum, flow, legend)
-        if len(panels) == 2:
-            _plane(panels[1], branch, spectrum, flow)
-        if axes is None:
-            settle(figure)
-            thin_ticks(*figure.axes)
+    size = figsize or (8.6, 4.0)
+
+    def arranged(figure: Figure) -> Sequence[Axes]:
+        if size[0] >= NARROW:
+            return figure.subplots(1, 2, width_ratios=(1.25, 1))
+        if size[1] < LOW:
+            return [figure.add_subplot()]  # no room for the plane as well
+        return figure.subplots(2, 1, height_ratios=(1, 1.25))
+
+    with panels(axes, (1, 2), "the multipliers are drawn on", arranged, size, style) as (figure, drawn):
+        _sizes(drawn[0], branch, spectrum, flow, legend)
+        if len(drawn) == 2:
+            _plane(drawn[1], branch, spectrum, flow)
     return figure
 
 
@@ -98,7 +93,7 @@ def _sizes(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool, legend:
         axes.set_ylim(max(low, DRAWING.smallest) / 1.5, min(high, DRAWING.largest) * 1.5)
     axes.set(xlabel=parameter_label(branch), ylabel=r"Re $\lambda_j$" if flow else r"$|\lambda_j|$")
     what = f"{branch.label}: {'eigenvalues' if flow else 'multipliers'} in order of size"
-    if legend is True and root(axes).get_size_inches()[0] < NARROW and drawn > 1:
+    if legend is True and drawn > 1 and narrower(axes, NARROW):
         above = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "title": what, "alignment": "left"}
         axes.legend(ncols=4, frameon=False, borderpad=0.0, handlelength=1.4, columnspacing=0.9, **above)
         return
@@ -121,11 +116,9 @@ def _plane(axes: Axes, branch: Branch, spectrum: np.ndarray, flow: bool) -> None
     dots = axes.scatter(x, y, c=where[shown], s=9, cmap="viridis_r", zorder=3)
     if not flow:
         axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
-    figure = root(axes)
-    bar = figure.colorbar(dots, ax=axes, shrink=0.85)
+    bar = root(axes).colorbar(dots, ax=axes, shrink=0.85)
     bar.set_label(parameter_label(branch))
     axes.set(xlabel=r"Re $\lambda$", ylabel=r"Im $\lambda$")
     hidden = int((~shown).sum())
-    narrow = figure.get_size_inches()[0] < NARROW
-    apart = "\n" if narrow else " "
+    apart = "\n" if narrower(axes, NARROW) else " "
     axes.set_title(f"the complex plane{apart}({hidden} outside)" if hidden else "the complex plane")

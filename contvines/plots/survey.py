@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..continuation.settings import hinting
-from .figures import Size, Style, given_axes, new_axes, new_figure, pixels, settle, styled, thin_ticks
+from .figures import (
+    Size,
+    Style,
+    given_axes,
+    narrower,
+    new_axes,
+    new_figure,
+    pixels,
+    settle,
+    styled,
+    thin_ticks,
+)
 from .legends import NARROW, place_legend
 from .style import axis_label
 
@@ -191,8 +202,8 @@ def _map(figure: Figure, axes: Axes, survey: Survey, name: str, along: list[str]
     known = shown.compressed()
     heights: list[Text] = []
     if min(shown.shape) > 1 and known.size and known.max() > known.min():
-        narrow = figure.get_size_inches()[0] < NARROW
-        lines = axes.contour(x, y, shown, levels=4 if narrow else 7, colors="white", linewidths=1.0)
+        levels = 4 if narrower(axes, NARROW) else 7
+        lines = axes.contour(x, y, shown, levels=levels, colors="white", linewidths=1.0)
         # white alone could not be seen on the brightest colours
         lines.set(path_effects=[withStroke(linewidth=1.8, foreground="0.35")])
         heights = list(axes.clabel(lines, fmt="%.4g", fontsize="x-small", inline=False))

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..continuation.settings import hinting
 from .diagram import draw_diagram
-from .figures import LOW, Size, Style, new_axes, settle, styled, thin_ticks
+from .figures import Size, Style, is_low, narrower, new_axes, settle, styled, thin_ticks
 from .legends import NARROW, Key, draw_legend
 from .style import axis_label
 
@@ -67,7 +67,7 @@ def plot_sweep(
         figure, axes = new_axes(axes, figsize)
         above = 3.5 if measure != "B" or graph is not None else 2.0
         dark = "0.45" if measure == "B" and graph is None else "black"
-        narrow = own and figure.get_size_inches()[0] < NARROW  # the axis says what it is of
+        narrow = own and narrower(axes, NARROW)  # the axis says what it is of
         told = f"simulated: {at or 'periodic'}" if not narrow or measure != "B" else "simulated"
         lost = {"markersize": 1.5} if measure == "B" else {"marker": "o", "markersize": 2.6, "mfc": "none"}
         _dots(axes, wandering, "simulated: not periodic", color=WANDERING, zorder=1.8, **lost)
@@ -77,7 +77,7 @@ def plot_sweep(
         if not any(len(dots) for dots in (points, others, wandering)):
             what = "no impacts" if measure == "B" else "nothing"
             axes.plot([], [], linestyle="none", label=f"simulated: {what}")
-        low = own and axes.get_window_extent().height < LOW * figure.dpi
+        low = own and is_low(axes)
         unit = f" [{said['B']}]" if "B" in said else ""
         axes.set_xlabel(axis_label(parameter, unit=said.get(parameter), notation=notation))
         axes.set_ylabel(
