@@ -4,15 +4,15 @@ import csv
 import hashlib
 import json
 import math
-import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import gettempdir
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 from contvines.command.compose import machine
 from contvines.command.study_data import Study
 from contvines.graph.table import with_unit
+from contvines.shared import row_journal
 from contvines.shared.modulation import BAND, SILENT
 
 if TYPE_CHECKING:
@@ -120,15 +120,10 @@ def refuse_another(target: Path, header: dict[str, str]) -> None:
     ------
     ValueError
     """
-    try:
-        first, *rows = journal_of(target).read_text(encoding="utf-8", errors="replace").split("\n")
-        found = json.loads(first)
-    except (OSError, ValueError, RecursionError):
-        return
-    ours = isinstance(found, dict) and found.get("contvines") == header["contvines"]
-    if ours and found != header and len(rows) > 1:
+    count = row_journal.rows_of_another(journal_of(target), header)
+    if count:
         raise ValueError(
-            f"{target}: here {len(rows) - 1} rows of an {header['contvines']} of another study (or of this one before it "
+            f"{target}: here {count} rows of an {header['contvines']} of another study (or of this one before it "
             "was edited) are kept; --fresh sets them aside, -o gives another name."
         )
 
@@ -136,87 +131,54 @@ def refuse_another(target: Path, header: dict[str, str]) -> None:
 class Rows:
     """The rows of a sweep on disk, each kept as soon as it is there.
 
-    The CSV is for the user. The journal beside it (`FILE.csv.unfinished`) also has the states, one JSON text a line,
-    and goes when the sweep is finished.
+    The CSV is for the user. The journal beside it (`FILE.csv.unfinished`) also has the states, and goes when the sweep is finished.
     """
 
     def __init__(self, target: Path, study: Study, down: bool, names: list[str]) -> None:
-        self.target, self.names = target, names
-        units = machine(study).units
-        self.units = {
-            "value": units.get(study.parameter, ""),
-            **{name: units.get(name, "") for name in names},
-        }
-        self.journal = journal_of(target)
-        self.header = header_of(study, down)
+        self.target = target
+        units = {"value": machine(study).units.get(study.parameter), **machine(study).units}
+        self.heads = [with_unit(name, units.get(name)) for name in (*FIRST, *names, *LAST)]
         self.lasting = target.is_file() or not target.exists()  # a pipe or a terminal has no journal
-        self.rows: list[Kept] = []
-        self.files: list[IO[str]] = []
+        if self.lasting and not target.exists():
+            journal_of(target).unlink(missing_ok=True)
+        self.journal = row_journal.Rows(
+            journal_of(target) if self.lasting else None, header_of(study, down), Kept
+        )
+
+    @property
+    def rows(self) -> list[Kept]:
+        """All that are there."""
+        return self.journal.found
 
     def __enter__(self) -> "Rows":
         try:
-            self.rows = self._found()
-            if self.lasting:
-                self._renew()
-            table = self.target.open("w", newline="", encoding="utf-8")
-            self.files.append(table)
-            self.writer = csv.writer(table)
-            self.writer.writerow(
-                [with_unit(name, self.units.get(name)) for name in (*FIRST, *self.names, *LAST)]
-            )
-            self.writer.writerows(row.cells for row in self.rows)
-            table.flush()
-            if self.lasting:
-                self.files.append(self.journal.open("a", encoding="utf-8"))
+            self.journal.__enter__()
+            self.table = self.target.open("w", newline="", encoding="utf-8")
         except OSError as error:
-            self._close()
+            self.journal.__exit__()
             raise ValueError(
                 f"{self.target}: cannot be written there ({error.strerror}); "
                 f"choose another place with -o, for example -o {Path(gettempdir()) / self.target.name}."
             ) from None
+        self.writer = csv.writer(self.table)
+        self._write(self.heads, *(row.cells for row in self.rows))
         return self
 
     def keep(self, row: Kept) -> None:
         """Write one more row."""
-        self.writer.writerow(row.cells)
-        self.files[0].flush()
-        if self.lasting:
-            self._note(vars(row))
-        self.rows.append(row)
+        self._write(row.cells)
+        self.journal.keep(row)
+
+    def _write(self, *lines: list[str]) -> None:
+        self.writer.writerows(lines)
+        self.table.flush()
 
     def __exit__(self, kind: object, *_: object) -> None:
-        self._close()
-        if kind is None and self.lasting:
-            self.journal.unlink(missing_ok=True)
-
-    def _renew(self) -> None:
-        """A journal of the rows so far takes the old one's place in one step: a kill loses none of them."""
-        draft = self.journal.with_name(self.journal.name + ".new")
-        lines = [self.header, *map(vars, self.rows)]
-        draft.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
-        os.replace(draft, self.journal)
-
-    def _note(self, data: dict[str, Any]) -> None:
-        self.files[1].write(json.dumps(data) + "\n")
-        self.files[1].flush()
-
-    def _close(self) -> None:
-        for file in self.files:
-            file.close()
-
-    def _found(self) -> list[Kept]:
-        """Rows of an unfinished run of the same sweep; a line cut short by a kill is left out."""
-        if not (self.target.is_file() and self.journal.is_file()):
-            return []
-        lines = self.journal.read_text(encoding="utf-8", errors="replace").split("\n")
-        found: list[Kept] = []
-        try:
-            if json.loads(lines[0]) != self.header:
-                return []
-            found.extend(Kept(**json.loads(line)) for line in lines[1:-1])
-        except (ValueError, TypeError, RecursionError):
-            pass
-        return found
+        self.table.close()
+        if kind is None:
+            self.journal.finish()
+        else:
+            self.journal.__exit__()
 
 
 def header_of(study: Study, down: bool) -> dict[str, str]:

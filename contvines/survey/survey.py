@@ -19,9 +19,9 @@ from ..interruptible import OnInterrupt, check_interrupt
 from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of
 from ..progress import counted
+from ..shared.row_journal import Rows
 from . import pools
 from .family import Carrying, Family
-from .journal import Rows
 from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
 from .plan import Plan, PlanError, planned
 from .results import Survey
@@ -148,13 +148,14 @@ def survey(
     kept = (
         journal
         if isinstance(journal, Rows)
-        else Rows(Path(journal) if journal else None, {"contvines": "unfinished survey", "of": digest})
+        else Rows(Path(journal) if journal else None, {"contvines": "unfinished survey", "of": digest}, Row)
     )
     with kept as rows, counted(len(systems), "systems", progress) as tell:
+        known = {row.index for row in rows.found}
         near: Sequence[object] = [None] * len(systems)
         if isinstance(family, Carrying) and not swept:
             near = family.starts(systems, plan.neighbours())
-        tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in rows.found]
+        tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in known]
         stopped = False
         try:
             with closing(_worked(job, tasks, workers, cluster)) as worked:
@@ -164,7 +165,8 @@ def survey(
                         tell(row)
         except KeyboardInterrupt:
             stopped = True
-        found = [rows.found.get(i) or Row(i, {}, NOT_YET) for i in range(len(systems))]
+        known = {row.index: row for row in rows.found}
+        found = [known.get(i) or Row(i, {}, NOT_YET) for i in range(len(systems))]
     result = Survey.of(plan, found, dict(units or {}), {**description, "digest": digest}, notation_of(family))
     if stopped:
         again = partial(

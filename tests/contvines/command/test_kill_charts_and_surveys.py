@@ -48,7 +48,7 @@ def struck(self, *content):
 main(sys.argv[1:])
 """
 RECORDS = {"module": "contvines.store", "owner": "Store", "method": "record"}
-ROWS = {"module": "contvines.survey.journal", "owner": "Rows", "method": "keep"}
+ROWS = {"module": "contvines.shared.row_journal", "owner": "Rows", "method": "keep"}
 
 
 def command(*words):

@@ -9,7 +9,9 @@ import pytest
 
 from contvines.command.frame import held
 from contvines.graph.persistence import same_graph
+from contvines.shared.row_journal import Rows
 from contvines.store import load
+from contvines.survey.work import Row
 
 STUDY = """
 [model]
@@ -90,11 +92,13 @@ def test_rows_of_another_study_are_not_lost(run, tmp_path, study, monkeypatch):
 
     for command, target in (("sweep", "t.csv"), ("survey", "t.nc")):
         journal = tmp_path / f"{target}.unfinished"
-        journal.write_text(f'{{"contvines": "unfinished {command}", "of": "another"}}\n{{"row": 1}}\n')
+        with Rows(journal, {"contvines": f"unfinished {command}", "of": "another"}, Row) as rows:
+            rows.keep(Row(1, {}, "another"))
         status, _, err = run(command, study, "-o", target, "-q")
-        assert status == 1 and "--fresh" in err and '"row": 1' in journal.read_text()
+        assert status == 1 and "1 rows of an unfinished" in err and "--fresh" in err
+        assert '"index": 1' in journal.read_text()
         assert run(command, study, "-o", target, "-q", "--fresh")[0] == 0
-        assert '"row": 1' in (tmp_path / f"t.old.{target[2:]}.unfinished").read_text()
+        assert '"index": 1' in (tmp_path / f"t.old.{target[2:]}.unfinished").read_text()
 
 
 @pytest.mark.slow
