@@ -99,6 +99,13 @@ def test_coupled_studies_have_their_own_parameters():
 @pytest.mark.parametrize(
     ("changes", "parts"),
     [
+        ({"model__restitution": 1.5}, ["[model] restitution = 1.5"]),
+        ({"model__restitution": 0}, ["[model] restitution = 0"]),
+        ({"model__friction": -0.5}, ["[model] friction = -0.5"]),
+        ({"start__periods": 100_000}, ["[start] periods = 100000", "whole number from 1 to 4096"]),
+        ({"start__word": "LL"}, ["[start]", "LL"]),
+        ({"start__word": "LxR"}, ["[start]", "x"]),
+        ({"continue__within": [float("nan"), 1.3]}, ["[continue] within[0] = nan", "not a finite number"]),
         ({"model__restitution": 0.0}, ["[model] restitution = 0.0", "from 1e-6 to 1", "0.76"]),
         ({"start__word": "LR" * 50_000}, ["[start] word has 100000 letters", "a word of events such as"]),
         ({"model__restitution": "high"}, ["[model] restitution = 'high'", "not a number"]),
