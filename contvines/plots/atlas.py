@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Unpack
 
@@ -107,10 +107,10 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     last = np.flatnonzero(np.diff(group))
     edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
     weights = starts / np.bincount(group, weights=starts)[group]
-    total: Counter[tuple[str, int]] = Counter()
+    total: defaultdict[tuple[str, int], float] = defaultdict(float)
     for about in met:
         total[about.name, about.periods] += about.share
-    shown = dict(total.most_common(most))
+    shown = sorted(total, key=lambda key: -total[key])[:most]
     order: list[tuple[str, int] | None] = [*(key for key in total if key in shown), None]  # and others
     heights = {key: np.zeros(len(edges) - 1) for key in order}
     for about in met:
