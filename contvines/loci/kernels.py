@@ -1,6 +1,6 @@
 """Kernels of a locus: the special points of F(u, p) = 0 as solutions of a larger system, against a second parameter q.
 
-Unknowns are U = (u, p), at branch points (u, p, e), p in units of data[UNIT]; q is the parameter in which the locus is continued. The
+Unknowns are U = (u, p), at branch points (u, p, e), p in units of data.unit; q is the parameter in which the locus is continued. The
 equations are
 
     F(u, p, q) + e b = 0,    g(u, p, q) = 0    (at branch points two of them),
@@ -33,49 +33,20 @@ import numpy as np
 from ..shared.floating_point import PIVOT
 from .layout import (
     APART,
-    BASE,
-    BASE_F,
-    BASE_Q,
-    BORDERS,
     BRANCH,
-    CALLS,
-    COLUMNS,
-    DIRECTIONS,
-    FIRST,
     FLIP,
     FLIP_B,
     FLIP_C,
-    FLOW,
     FOLD,
-    KEPT,
-    KIND,
     KNOWN,
     LEFT,
-    LINES,
     LONGEST,
-    MASKED,
-    MULTIPLIERS,
     PAIR,
     PERIOD,
-    POINT,
-    REFERENCE,
-    RESIDUAL,
-    ROWS,
-    SCALES,
-    SECOND,
     SERVED,
     SIGN,
-    SLOPES,
-    SMALL,
-    SOLUTIONS,
-    STATE,
-    STEEP,
     TESTED,
-    TRIAL,
-    TRIAL_F,
     TURNED,
-    UNIT,
-    VALUES,
     B,
     C,
 )
@@ -85,134 +56,103 @@ from .spanning import particular, span
 
 def locus_linearise(data, U, q, work):
     """F, F_u, F_p, F_q and the tests at (U, q); see `linearise` in the protocol."""
-    first, second, base = data[FIRST], data[SECOND], work[BASE]
-    F, Q, point, columns, directions = (
-        work[BASE_F],
-        work[BASE_Q],
-        work[POINT],
-        work[COLUMNS],
-        work[DIRECTIONS],
-    )
-    borders, values, residuals, kept = work[BORDERS], work[VALUES], work[RESIDUAL], work[KEPT]
-    state = work[STATE]
-    n, size = F.shape[0], U.shape[0]
-    kind, calls = data[KIND], data[CALLS]
-    u, p = U[:n], data[UNIT] * U[n]
+    first, second, base, state = data.first, data.second, work.base, work.state
+    residuals, point, direction = work.residual, work.point, work.directions[0]
+    n, size, calls = len(work.base_F), len(U), data.calls
+    u, p = U[:n], data.unit * U[n]
     still = frozen(work, U, q)
     if not still:
         state[KNOWN] = min(state[KNOWN], 0.0)
         calls.assign(second, first, p)
-        largest = calls.linearise(second, u, q, base)
-        if not math.isfinite(largest):
+        if not math.isfinite(calls.linearise(second, u, q, base)):
             return math.inf
-        columns[1] = Q
+        work.columns[1] = work.base_Q
     calls.assign(first, second, q)
     largest = calls.linearise(first, u, p, base)
     if not math.isfinite(largest):
         return math.inf
-    residuals[:n] = F + U[n + 1] * borders[B, :n] if kind == BRANCH else F
+    residuals[:n] = work.base_F + U[n + 1] * work.borders[B, :n] if data.kind == BRANCH else work.base_F
     if not still:
-        columns[0] = data[UNIT] * Q
+        work.columns[0] = data.unit * work.base_Q
         span(data, work)
     state[SIGN] = particular(data, work)
-    point[:size] = U + directions[0, :size]
-    point[size] = q + directions[0, size]
-    tests(data, work, point[:n], data[UNIT] * point[n], point[size], values)
-    for k in range(size - n):
-        residuals[n + k] = values[k]
-        if not abs(values[k]) < math.inf:
-            return math.inf
-        largest = max(largest, abs(values[k]))
-    kept[:size] = residuals[:size]
-    return largest
+    point[:size] = U + direction[:size]
+    point[size] = q + direction[size]
+    tests(data, work, point[:n], data.unit * point[n], point[size], work.values)
+    residuals[n:] = work.values[: size - n]
+    work.kept[:] = residuals
+    return max(largest, *map(abs, residuals[n:].tolist())) if np.isfinite(residuals[n:]).all() else math.inf
 
 
 def close(small, size):
     """Gauss elimination with row exchange of `size` equations with two right-hand sides; returns the determinant's sign."""
     sign = 1.0
     for j in range(size):
-        best = j
-        for i in range(j + 1, size):
-            if abs(small[i, j]) > abs(small[best, j]):
-                best = i
+        best = j + int(np.abs(small[j:size, j]).argmax())
         if best != j:
-            sign = -sign
-            for c in range(5):
-                small[j, c], small[best, c] = small[best, c], small[j, c]
+            small[[j, best]], sign = small[[best, j]], -sign
         if small[j, j] == 0.0:
             small[j, j] = PIVOT
         if small[j, j] < 0.0:
             sign = -sign
         for i in range(j + 1, size):
-            ratio = small[i, j] / small[j, j]
-            for c in range(j, 5):
-                small[i, c] -= ratio * small[j, c]
-    for j in range(size - 1, -1, -1):
-        for side in range(3, 5):
-            for c in range(j + 1, size):
-                small[j, side] -= small[j, c] * small[c, side]
-            small[j, side] /= small[j, j]
+            small[i, j:] -= small[i, j] / small[j, j] * small[j, j:]
+    for j in reversed(range(size)):
+        small[j, 3:] = (small[j, 3:] - small[j, j + 1 : size] @ small[j + 1 : size, 3:]) / small[j, j]
     return sign
 
 
 def locus_bordered(data, work, border, target, step, tangent):
     """Solve the bordered system of the locus; see `bordered` in the protocol."""
-    directions, residuals, kept, state = work[DIRECTIONS], work[RESIDUAL], work[KEPT], work[STATE]
-    small, steep, slopes = work[SMALL], work[STEEP], work[SLOPES]
-    n, last = work[BASE_F].shape[0], work[POINT].shape[0] - 1
-    count = last - n  # tests; there are as many directions, and the one along the locus
+    directions, residuals, kept, state = work.directions, work.residual, work.kept, work.state
+    small, steep = work.small, work.steep
+    n = len(work.base_F)
+    count = len(residuals) - n  # tests; there are as many directions, and the one along the locus
     total = count + 1
-    slopes[:count] = 0.0
+    slopes = np.zeros(count)
     # else the residuals are those of the point, for which the particular direction stands
-    if (residuals[:last] != kept[:last]).any():
+    if (residuals != kept).any():
         state[SIGN] = particular(data, work)
         slopes_along(data, work, directions[0], slopes)
-        kept[:last] = math.nan
-    across = border @ directions[0]
-    for k in range(count):
-        small[k, 3] = -residuals[n + k] - slopes[k]
-        small[k, 4] = 0.0
-    small[count, 3] = target - across
-    small[count, 4] = 1.0
-    for column in range(total):
-        if state[KNOWN] < 1.0:
+        kept[:] = math.nan
+    if state[KNOWN] < 1.0:
+        for column in range(total):
             slopes_along(data, work, directions[1 + column], steep[column])
-        small[:count, column] = steep[column, :count]
-        small[count, column] = border @ directions[1 + column]
-    state[KNOWN] = 1.0
+        state[KNOWN] = 1.0
+    small[:count, :total] = steep[:total, :count].T
+    small[count, :total] = directions[1 : 1 + total] @ border
     small[:total, total:3] = 0.0
+    small[:count, 3], small[:count, 4] = -residuals[n:] - slopes, 0.0
+    small[count, 3:] = target - border @ directions[0], 1.0
     sign = state[SIGN] * close(small, total)
-    step[: last + 1], tangent[: last + 1] = directions[0], 0.0
-    for column in range(total):
-        step[: last + 1] += small[column, 3] * directions[1 + column]
-        tangent[: last + 1] += small[column, 4] * directions[1 + column]
+    step[:] = directions[0] + small[:total, 3] @ directions[1 : 1 + total]
+    tangent[:] = small[:total, 4] @ directions[1 : 1 + total]
     return sign
 
 
 def renew(data, work, b, c, null):
-    """Borders from the null vectors: c along `null`, b along the left one, in units of the scales; the linearisation is in BASE."""
-    n = b.shape[0] - 1
-    lines, left, scales, rows = work[LINES], work[SOLUTIONS][LEFT], work[SCALES], work[ROWS]
-    size = float(np.linalg.norm(null[:n] / scales[:n]))
+    """Borders from the null vectors: c along `null`, b along the left one, in units of the scales; the linearisation is in `base`."""
+    n = len(b) - 1
+    lines, left, scales, rows = work.lines, work.solutions[LEFT], work.scales[:n], work.rows
+    size = float(np.linalg.norm(null[:n] / scales))
     if not 0.0 < size < math.inf:
         return
-    c[:n] = null[:n] / scales[:n] / scales[:n] / size
+    c[:n] = null[:n] / scales / scales / size
     lines[0, :n], lines[0, n] = b[:n], 0.0
-    data[CALLS].transpose(data[FIRST], work[BASE], c[:n], work[TRIAL])
-    work[TRIAL_F][:] = 0.0
-    data[CALLS].bordered(data[FIRST], work[TRIAL], lines[0], 0.0, lines[1], left)
-    size = float(np.linalg.norm(left[:n] * rows[:n]))
+    data.calls.transpose(data.first, work.base, c[:n], work.trial)
+    work.trial_F[:] = 0.0
+    data.calls.bordered(data.first, work.trial, lines[0], 0.0, lines[1], left)
+    size = float(np.linalg.norm(left[:n] * rows))
     if not 0.0 < size < math.inf:
         return
-    b[:n] = left[:n] * rows[:n] * rows[:n] / size
+    b[:n] = left[:n] * rows * rows / size
 
 
 def worn(work, null):
     """Whether borders are due: the null vector has turned away from c, or they have served a few points."""
-    state, scales = work[STATE], work[SCALES]
-    n = null.shape[0] - 1
+    state, n = work.state, len(null) - 1
     state[SERVED] += 1.0
-    if state[SERVED] < LONGEST and np.linalg.norm(null[:n] / scales[:n]) < TURNED:
+    if state[SERVED] < LONGEST and np.linalg.norm(null[:n] / work.scales[:n]) < TURNED:
         return False
     state[SERVED] = 0.0
     return True
@@ -223,29 +163,24 @@ def locus_inspect(data, U, q, work, row):
 
     The borders are renewed where they are due.
     """
-    first, base = data[FIRST], work[BASE]
-    borders, solutions, reference = work[BORDERS], work[SOLUTIONS], work[REFERENCE]
-    kind, multipliers = data[KIND], data[MULTIPLIERS]
-    n = work[BASE_F].shape[0]
-    if kind in (FOLD, BRANCH, FLIP) and worn(work, solutions[TESTED]):
-        work[STATE][KNOWN] = min(work[STATE][KNOWN], 0.0)  # slopes belong to the borders
+    first, base, borders, reference = data.first, work.base, work.borders, work.reference
+    kind, null, margins = data.kind, work.solutions[TESTED], row[2 * data.multipliers :]
+    n = len(work.base_F)
+    if kind in (FOLD, BRANCH, FLIP) and worn(work, null):
+        work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # slopes belong to the borders
         if kind != FLIP:
-            renew(data, work, borders[B], borders[C], solutions[TESTED])
+            renew(data, work, borders[B], borders[C], null)
         else:
-            data[CALLS].flip(first, base, -1.0)
-            renew(data, work, borders[FLIP_B], borders[FLIP_C], solutions[TESTED])
-            data[CALLS].flip(first, base, 1.0)
-    own = row.shape[0] - 3
-    data[CALLS].assign(first, data[SECOND], q)  # the tests have asked nearby
-    data[CALLS].inspect(first, U[:n], data[UNIT] * U[n], base, row[:own])
-    row[own] = U[n] - reference[3]
-    row[own + 1] = reference[4] - U[n]
-    row[own + 2] = math.inf
+            data.calls.flip(first, base, -1.0)
+            renew(data, work, borders[FLIP_B], borders[FLIP_C], null)
+            data.calls.flip(first, base, 1.0)
+    data.calls.assign(first, data.second, q)  # the tests have asked nearby
+    data.calls.inspect(first, U[:n], data.unit * U[n], base, row[:-3])
+    margins[-3:] = U[n] - reference[3], reference[4] - U[n], math.inf
     if kind == PERIOD:  # a homoclinic orbit is near as long as the cycle comes near to an equilibrium
-        row[2 * multipliers] = APART - row[2 * multipliers]
-    for j in work[MASKED]:
-        row[2 * multipliers + j] = math.inf
+        margins[0] = APART - margins[0]
+    margins[work.masked] = math.inf
     if kind == PAIR:
-        pair_of(row, multipliers, data[FLOW], reference[0], reference[1:])
+        pair_of(row, data.multipliers, data.flow, reference[0], reference[1:])
         reference[0] = reference[2]
-        row[own + 2] = reference[2] if data[FLOW] else 1.0 - reference[2] * reference[2]
+        margins[-1] = reference[2] if data.flow else 1.0 - reference[2] * reference[2]

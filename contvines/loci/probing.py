@@ -9,60 +9,16 @@ import numpy as np
 
 from ..bifurcation.settings import LOCATING
 from ..shared.floating_point import ROUNDED
-from .layout import (
-    BASE_F,
-    BORDERS,
-    BRANCH,
-    CALLS,
-    FIRST,
-    FLIP,
-    FLIP_B,
-    FLIP_C,
-    FLOW,
-    FOLD,
-    FROZEN,
-    GROWTH,
-    KIND,
-    KNOWN,
-    LINES,
-    MARGIN,
-    MULTIPLIERS,
-    PERIOD,
-    POINT,
-    REFERENCE,
-    ROW,
-    SCALES,
-    SECOND,
-    SHIFTED,
-    SOLUTIONS,
-    STATE,
-    TESTED,
-    TRIAL,
-    TRIAL_F,
-    TRIAL_Q,
-    UNIT,
-    VALUES,
-    WHICH,
-    B,
-    C,
-)
+from .layout import BRANCH, FLIP, FLIP_B, FLIP_C, FOLD, GROWTH, KNOWN, MARGIN, PERIOD, TESTED, B, C
 from .settings import SCALING
 
 
-def null_test(calls, data, linear, F, Q, b, c, line, step, tangent):
-    """Solve M (v, g) = (0, 1) with the linearisation at hand, into `tangent`; returns g."""
-    n = F.shape[0]
-    F[:], Q[:], line[:n], line[n] = 0.0, b[:n], c[:n], 0.0
-    calls.bordered(data, linear, line, 0.0, step, tangent)
-    return tangent[n]
-
-
-def flipped_test(calls, data, linear, F, Q, b, c, line, step, tangent):
-    """The same for perturbations that change sign over the period; the linearisation is left as it was."""
-    calls.flip(data, linear, -1.0)
-    value = null_test(calls, data, linear, F, Q, b, c, line, step, tangent)
-    calls.flip(data, linear, 1.0)
-    return value
+def null_test(data, work, b, c):
+    """Solve M (v, g) = (0, 1) with the linearisation in `trial`; returns g."""
+    line, step, null = *work.lines, work.solutions[TESTED]
+    work.trial_F[:], work.trial_Q[:], line[:-1], line[-1] = 0.0, b[:-1], c[:-1], 0.0
+    data.calls.bordered(data.first, work.trial, line, 0.0, step, null)
+    return null[-1]
 
 
 def pair_of(row, multipliers, flow, reference, found):
@@ -95,65 +51,50 @@ def pair_of(row, multipliers, flow, reference, found):
 
 
 def tests(data, work, u, p, q, values):
-    """The tests g at any (u, p, q), into `values`; the linearisation in TRIAL is used up. Returns the residual."""
-    first, trial = data[FIRST], work[TRIAL]
-    F, Q, lines, borders, solutions = (
-        work[TRIAL_F],
-        work[TRIAL_Q],
-        work[LINES],
-        work[BORDERS],
-        work[SOLUTIONS],
-    )
-    n = F.shape[0]
-    kind, calls = data[KIND], data[CALLS]
-    calls.assign(first, data[SECOND], q)
-    residual = calls.linearise(first, u, p, trial)
-    if not math.isfinite(residual):
-        return residual
+    """The tests g at any (u, p, q), into `values`; the linearisation in `trial` is used up."""
+    first, trial, borders, calls, kind = data.first, work.trial, work.borders, data.calls, data.kind
+    calls.assign(first, data.second, q)
+    if not math.isfinite(calls.linearise(first, u, p, trial)):
+        return
     if kind == FOLD:
-        values[0] = null_test(
-            calls, first, trial, F, Q, borders[B], borders[C], lines[0], lines[1], solutions[TESTED]
-        )
-    elif kind == FLIP:
-        values[0] = flipped_test(
-            calls, first, trial, F, Q, borders[FLIP_B], borders[FLIP_C], lines[0], lines[1], solutions[TESTED]
-        )
+        values[0] = null_test(data, work, borders[B], borders[C])
+    elif kind == FLIP:  # the linearisation is left as it was
+        calls.flip(first, trial, -1.0)
+        values[0] = null_test(data, work, borders[FLIP_B], borders[FLIP_C])
+        calls.flip(first, trial, 1.0)
     elif kind == BRANCH:
-        F[:] = data[UNIT] * Q
-        Q[:], lines[0, :n], lines[0, n] = borders[B, :n], borders[C, :n], 0.0
-        calls.bordered(first, trial, lines[0], 0.0, lines[1], solutions[TESTED])
-        values[0] = solutions[TESTED, n]
-        values[1] = lines[1, n]
+        line, step, null = *work.lines, work.solutions[TESTED]
+        work.trial_F[:] = data.unit * work.trial_Q
+        work.trial_Q[:], line[:-1], line[-1] = borders[B, :-1], borders[C, :-1], 0.0
+        calls.bordered(first, trial, line, 0.0, step, null)
+        values[:2] = null[-1], step[-1]
     elif kind == PERIOD:
-        values[0] = u[data[WHICH]] / work[REFERENCE][0] - 1.0
+        values[0] = u[data.which] / work.reference[0] - 1.0
     else:
-        row = work[ROW]
+        row = work.row
         calls.inspect(first, u, p, trial, row)
         if kind == MARGIN:
-            values[0] = row[2 * data[MULTIPLIERS] + data[WHICH]]
+            values[0] = row[2 * data.multipliers + data.which]
         elif kind == GROWTH:
             values[0] = math.log(abs(row[0])) if row[0] != 0.0 else -math.inf
         else:
-            pair_of(row, data[MULTIPLIERS], data[FLOW], work[REFERENCE][0], work[REFERENCE][1:])
-            values[0] = work[REFERENCE][1]
-    return residual
+            pair_of(row, data.multipliers, data.flow, work.reference[0], work.reference[1:])
+            values[0] = work.reference[1]
 
 
 def slopes_along(data, work, direction, slopes):
     """Derivatives of the tests along a direction in (U, q), by differences."""
-    point, scales, shifted, values = work[POINT], work[SCALES], work[SHIFTED], work[VALUES]
-    n, last = work[BASE_F].shape[0], point.shape[0] - 1
-    count = last - n
-    parts = np.abs(direction) / np.maximum(scales[: last + 1], np.abs(point))
-    length = max(parts[last], parts[: n + 1].max())
+    point, n = work.point, len(work.base_F)
+    count = len(point) - 1 - n
+    parts = np.abs(direction) / np.maximum(work.scales[: len(point)], np.abs(point))
+    length = max(parts[-1], parts[: n + 1].max())
     if not length > ROUNDED:
         slopes[:count] = 0.0
         return
     h = SCALING.step / length
-    shifted[: n + 1] = point[: n + 1] + h * direction[: n + 1]
-    q = point[last] + h * direction[last]
-    tests(data, work, shifted[:n], data[UNIT] * shifted[n], q, slopes)
-    slopes[:count] = (slopes[:count] - values[:count]) / h
+    moved = point + h * direction
+    tests(data, work, moved[:n], data.unit * moved[n], moved[-1], slopes)
+    slopes[:count] = (slopes[:count] - work.values[:count]) / h
 
 
 def frozen(work, U, q):
@@ -161,10 +102,12 @@ def frozen(work, U, q):
 
     Slopes are known to about the step; a point that has moved less than that has them to that accuracy.
     """
-    kept, scales, state = work[FROZEN], work[SCALES], work[STATE]
-    last = U.shape[0]
-    near = state[KNOWN] > 0.0 and abs(q - kept[last]) < SCALING.step * max(scales[last], abs(q))
-    if near and (np.abs(U - kept[:last]) < SCALING.step * np.maximum(scales[:last], np.abs(U))).all():
+    kept, here = work.frozen, np.append(U, q)
+    scales = work.scales[: len(here)]
+    if (
+        work.state[KNOWN] > 0.0
+        and (np.abs(here - kept) < SCALING.step * np.maximum(scales, np.abs(here))).all()
+    ):
         return True
-    kept[:last], kept[last] = U, q
+    kept[:] = here
     return False

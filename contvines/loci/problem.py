@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from typing import Any, NamedTuple, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -12,69 +12,19 @@ from contvines.shared.near_names import did_you_mean
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
-from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, array_of
+from ..problems.protocol import Kernels, Problem, ProblemDefaults
 from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
-from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
+from .layout import BRANCH, FLIP, MARGIN, PAIR
 from .settings import SCALING
+from .work import Data, Work
 
 FURTHER = 100.0  # times the sizes along the branch: no locus is measured with more
 
 
 TABLE = 3  # of loci, in the native core
 IN_PYTHON = Kernels(locus_linearise, locus_bordered, locus_inspect)
-NOTHING = np.zeros(0)
-
-
-class Data(NamedTuple):
-    """What the kernels know of a locus; the order is that of the names in :mod:`contvines.loci.layout`.
-
-    ``memory`` is the struct `Data` of native/loci.hpp.
-    """
-
-    first: object
-    second: object
-    calls: KernelFunctions
-    kind: int
-    which: int
-    multipliers: int
-    flow: bool
-    unit: float
-    memory: np.ndarray = NOTHING
-
-
-class Work(NamedTuple):
-    """Arrays of the kernels; the order is that of the names in :mod:`contvines.loci.layout`. ``memory`` is the struct `Work` of native/loci.hpp."""
-
-    residual: np.ndarray
-    base: object
-    trial: object
-    base_F: np.ndarray
-    base_Q: np.ndarray
-    trial_F: np.ndarray
-    trial_Q: np.ndarray
-    point: np.ndarray
-    columns: np.ndarray
-    solutions: np.ndarray
-    directions: np.ndarray
-    borders: np.ndarray
-    row: np.ndarray
-    shifted: np.ndarray
-    scales: np.ndarray
-    values: np.ndarray
-    slopes: np.ndarray
-    lines: np.ndarray
-    reference: np.ndarray
-    small: np.ndarray
-    masked: np.ndarray
-    rows: np.ndarray
-    frozen: np.ndarray
-    steep: np.ndarray
-    state: np.ndarray
-    frame: np.ndarray
-    kept: np.ndarray
-    memory: np.ndarray = NOTHING
 
 
 class LocusProblem(ProblemDefaults):
@@ -183,44 +133,7 @@ class LocusProblem(ProblemDefaults):
 
     def workspace(self) -> Work:
         """Arrays for the kernels; borders and reference are state that a trace renews."""
-        problem, n = self.base, self.size
-        base, trial = self.first.workspace(), self.first.workspace()
-        column = problem.kernels.column
-        tests = self.dimension - n
-        work = Work(
-            residual=np.zeros(self.dimension),
-            base=base,
-            trial=trial,
-            base_F=array_of(base).reshape(-1),
-            base_Q=array_of(base, column).reshape(-1),
-            trial_F=array_of(trial).reshape(-1),
-            trial_Q=array_of(trial, column).reshape(-1),
-            point=np.zeros(self.dimension + 1),
-            columns=np.zeros((2, n)),
-            solutions=np.zeros((6, n + 1)),
-            directions=np.zeros((4, self.dimension + 1)),
-            borders=self.borders.copy(),
-            row=np.zeros(2 * problem.n_multipliers + problem.n_margins),
-            shifted=np.zeros(n + 1),
-            scales=self.sizes,
-            values=np.zeros(max(tests, 2)),
-            slopes=np.zeros(max(tests, 2)),
-            lines=np.zeros((2, n + 1)),
-            reference=np.array([self.reference, 0.0, 0.0, *(bound / self.unit for bound in self.bounds)]),
-            small=np.zeros((3, 5)),
-            masked=np.array(self.masked, np.int64).reshape(-1),
-            rows=self.rows,
-            frozen=np.zeros(self.dimension + 1),
-            steep=np.zeros((3, max(tests, 2))),
-            state=np.array([-1.0, 1.0, 0.0, LONGEST]),
-            frame=np.random.default_rng(7).standard_normal(n + 1) / np.sqrt(n),
-            kept=np.zeros(self.dimension),
-        )
-        if not self.compiled:
-            return work
-        arrays = [part for part in work[:-1] if isinstance(part, np.ndarray)]
-        sizes = n, self.dimension, len(work.masked), memory_of(base), memory_of(trial)
-        return work._replace(memory=pack(*sizes, *arrays, len(work.row)))
+        return Work(self)
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""

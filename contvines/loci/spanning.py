@@ -14,32 +14,7 @@ native/loci.hpp has the same for compiled problems.
 
 import math
 
-from .layout import (
-    ALONG,
-    ANGLE,
-    BASE,
-    BASE_F,
-    BASE_Q,
-    BORDERS,
-    BRANCH,
-    CALLS,
-    COLUMNS,
-    DIRECTIONS,
-    FIRST,
-    FRAME,
-    KIND,
-    KNOWN,
-    LINES,
-    NULL,
-    POINT,
-    RESIDUAL,
-    SCALES,
-    SOLUTIONS,
-    SPARE,
-    STATE,
-    B,
-    C,
-)
+from .layout import ALONG, ANGLE, BRANCH, KNOWN, NULL, SPARE, B, C
 
 
 def rotate(columns, angle):
@@ -50,58 +25,66 @@ def rotate(columns, angle):
 
 def turn(work):
     """Angle and row from the two directions found last; returns by how much the angle changes."""
-    frame, scales, state, solutions = work[FRAME], work[SCALES], work[STATE], work[SOLUTIONS]
-    n = frame.shape[0] - 1
-    angle = -math.atan(solutions[ALONG, n])
-    scaled = solutions[NULL, :n] / scales[:n]
-    size = solutions[NULL, n] ** 2 + float(scaled @ scaled)
+    along, null = work.solutions[ALONG], work.solutions[NULL]
+    n = len(null) - 1
+    angle = -math.atan(along[n])
+    scaled = null[:n] / work.scales[:n]
+    size = null[n] ** 2 + float(scaled @ scaled)
     if not (0.0 < size < math.inf and -2.0 < angle < 2.0):
         return 0.0
-    frame[:n] = scaled / scales[:n] / size
-    frame[n] = math.cos(angle) * solutions[NULL, n] / size
-    state[ANGLE] += angle
+    work.frame[:n] = scaled / work.scales[:n] / size
+    work.frame[n] = math.cos(angle) * null[n] / size
+    work.state[ANGLE] += angle
     return angle
 
 
 def parted(work, k, solution):
     """Direction k: unknowns of a solution, and what its part along C1 means for the parameters."""
-    direction, scales, angle = work[DIRECTIONS][k], work[SCALES], work[STATE][ANGLE]
-    n, last = solution.shape[0] - 1, direction.shape[0] - 1
+    direction, scales, angle = work.directions[k], work.scales, work.state[ANGLE]
+    n = len(solution) - 1
     direction[:n] = solution[:n]
     direction[n] = solution[n] * math.cos(angle) * scales[n]
-    direction[last] = solution[n] * math.sin(angle) * scales[last]
+    direction[-1] = solution[n] * math.sin(angle) * scales[len(direction) - 1]
 
 
-def plain_row(work):
-    """(c, 0), into the first of LINES."""
-    row, n = work[LINES][0], work[LINES].shape[1] - 1
-    row[:n], row[n] = work[BORDERS][C, :n], 0.0
+def unfolded(work, k, solution, p=0.0, q=0.0):
+    """Direction k at branch points: unknowns and unfolding of a solution, and changes of the parameters."""
+    direction, n = work.directions[k], len(solution) - 1
+    direction[:n] = solution[:n]
+    direction[n:] = p, solution[n], q
 
 
 def solve(data, work, side, column, row, step, tangent):
     """[[F_u, column], [row]] x = (-side, 0) into `step`, (0, 1) into `tangent`; returns the determinant's sign."""
-    F, Q = work[BASE_F], work[BASE_Q]
-    F[:], Q[:] = side[: F.shape[0]], column[: F.shape[0]]
-    return data[CALLS].bordered(data[FIRST], work[BASE], row, 0.0, step, tangent)
+    n = len(work.base_F)
+    work.base_F[:], work.base_Q[:] = side[:n], column[:n]
+    return data.calls.bordered(data.first, work.base, row, 0.0, step, tangent)
+
+
+def plain_row(work):
+    """(c, 0)."""
+    row = work.lines[0]
+    row[:-1], row[-1] = work.borders[C, :-1], 0.0
+    return row
 
 
 def span(data, work):
-    """The directions but the particular one; F_p and F_q, in the units of U and q, are in COLUMNS and are used up."""
-    columns, solutions, directions, state = work[COLUMNS], work[SOLUTIONS], work[DIRECTIONS], work[STATE]
-    scales, borders, frame = work[SCALES], work[BORDERS], work[FRAME]
+    """The directions but the particular one; F_p and F_q, in the units of U and q, are in `columns` and are used up."""
+    columns, directions, state, scales, frame = (
+        work.columns,
+        work.directions,
+        work.state,
+        work.scales,
+        work.frame,
+    )
+    along, null = work.solutions[ALONG], work.solutions[NULL]
     n, last = columns.shape[1], directions.shape[1] - 1
-    if data[KIND] == BRANCH:
-        plain_row(work)
+    if data.kind == BRANCH:
+        row = plain_row(work)
         for k in range(2):
-            solve(data, work, columns[k], borders[B], work[LINES][0], solutions[ALONG], solutions[NULL])
-            directions[1 + k, :n] = solutions[ALONG, :n]
-            directions[1 + k, n] = 1.0 - k
-            directions[1 + k, n + 1] = solutions[ALONG, n]
-            directions[1 + k, last] = 1.0 * k
-        directions[3, :n] = solutions[NULL, :n]
-        directions[3, n] = 0.0
-        directions[3, n + 1] = solutions[NULL, n]
-        directions[3, last] = 0.0
+            solve(data, work, columns[k], work.borders[B], row, along, null)
+            unfolded(work, 1 + k, along, 1.0 - k, k)
+        unfolded(work, 3, null)
     else:
         columns[0] *= scales[n]
         columns[1] *= scales[last]
@@ -111,11 +94,11 @@ def span(data, work):
         else:  # any row, then the one that belongs to this place
             frame[:n] /= scales[:n]
             rotate(columns, state[ANGLE])
-            solve(data, work, columns[1], columns[0], frame, solutions[ALONG], solutions[NULL])
+            solve(data, work, columns[1], columns[0], frame, along, null)
             rotate(columns, turn(work))
-        solve(data, work, columns[1], columns[0], frame, solutions[ALONG], solutions[NULL])
-        parted(work, 1, solutions[NULL])
-        parted(work, 2, solutions[ALONG])
+        solve(data, work, columns[1], columns[0], frame, along, null)
+        parted(work, 1, null)
+        parted(work, 2, along)
         directions[2, n] -= math.sin(state[ANGLE]) * scales[n]
         directions[2, last] += math.cos(state[ANGLE]) * scales[last]
     state[KNOWN] = 0.0
@@ -123,17 +106,11 @@ def span(data, work):
 
 def particular(data, work):
     """Direction 0: what makes up for the residuals of F; returns the sign of the elimination."""
-    solutions, directions, residuals = work[SOLUTIONS], work[DIRECTIONS], work[RESIDUAL]
-    n, last = work[BASE_F].shape[0], work[POINT].shape[0] - 1
-    found, spare = solutions[SPARE], solutions[SPARE + 1]
-    if data[KIND] == BRANCH:
-        plain_row(work)
-        sign = solve(data, work, residuals, work[BORDERS][B], work[LINES][0], found, spare)
-        directions[0, :n] = found[:n]
-        directions[0, n] = 0.0
-        directions[0, n + 1] = found[n]
-        directions[0, last] = 0.0
+    found, spare = work.solutions[SPARE], work.solutions[SPARE + 1]
+    if data.kind == BRANCH:
+        sign = solve(data, work, work.residual, work.borders[B], plain_row(work), found, spare)
+        unfolded(work, 0, found)
     else:
-        sign = solve(data, work, residuals, work[COLUMNS][0], work[FRAME], found, spare)
+        sign = solve(data, work, work.residual, work.columns[0], work.frame, found, spare)
         parted(work, 0, found)
     return sign

@@ -1,5 +1,5 @@
 """The factors of a cycle, M_i = -D_i^{-1} A_i, and numbers with an exponent of their own: common ground of
-`contvines.core.multipliers.product_of_two`, `product_of_any` and `periodic_qr`."""
+`contvines.core.multipliers.scaled_product` and `periodic_qr`."""
 
 import math
 

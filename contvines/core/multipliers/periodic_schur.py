@@ -6,23 +6,20 @@ multipliers are the eigenvalues of S M_{L-1} ... M_0, with S = diag(1, twist, tw
 Two levels. The product is formed in scaled form together with a bound on its rounding error, the trace of
 sum_j |M_{L-1} .. M_{j+1}| |M_j| |M_{j-1} .. M_0| (entry by entry, so that badly scaled nodes do no harm). Where
 that is small, or hardly more than what rounding the factors alone does, sum_j |M_j| |M_{j-1} .. M_0 M_{L-1} ..
-M_{j+1}|, the product is the answer; for 2 x 2 factors the smaller multiplier comes from the product of the
-determinants, so it keeps its relative accuracy however small it is. Otherwise the periodic QR algorithm
-(`contvines.core.multipliers.periodic_qr`) works on the factors. Both cost O(L) time and memory.
+M_{j+1}|, the product is the answer. Otherwise the periodic QR algorithm (`contvines.core.multipliers.periodic_qr`) works on the
+factors. Both cost O(L) time and memory.
 
-The native core (native/multipliers.hpp) does the same; `reference` here defines what is right.
+`reference` here defines what is right. The native core (native/multipliers.hpp) does the same; for 2 x 2 factors it takes the smaller
+multiplier from the product of the determinants, which keeps its relative accuracy however small it is.
 """
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 
 from ..library import NUMBER, POINTER, WHOLE, address, function, native
 from . import periodic_qr
-from .product_of_any import product_of_any
-from .product_of_two import CERTAIN, UNCERTAIN, UNDEFINED, dominant_of_two, product_of_two
+from .scaled_product import scaled_product
 
 
 def multipliers(A: np.ndarray, D: np.ndarray, twist: float, re: np.ndarray, im: np.ndarray) -> bool:
@@ -55,21 +52,8 @@ def periodic_multipliers(A: np.ndarray, D: np.ndarray, twist: float, re: np.ndar
 
 def reference(A: np.ndarray, D: np.ndarray, twist: float, re: np.ndarray, im: np.ndarray) -> bool:
     """`multipliers` in plain Python and numpy."""
-    length, n = A.shape[0], A.shape[1]
     with np.errstate(all="ignore"):
-        if n == 2:
-            scratch = np.empty(10 * length + 2)
-            found = product_of_two(A, D, twist, re, im, scratch)
-            if found == UNCERTAIN:
-                found = dominant_of_two(length, twist, re, im, scratch)
-        else:
-            found = product_of_any(A, D, twist, re, im)
-        if found == CERTAIN:
-            return True
-        if found == UNDEFINED:
-            re[:] = im[:] = math.nan
-            return False
-        return periodic_qr.periodic_multipliers(A, D, twist, re, im)
+        return scaled_product(A, D, twist, re, im) or periodic_qr.periodic_multipliers(A, D, twist, re, im)
 
 
 def _called(name: str, A: np.ndarray, D: np.ndarray, twist: float, re: np.ndarray, im: np.ndarray) -> bool:

@@ -8,7 +8,6 @@ import pytest
 
 from contvines.core.library import native
 from contvines.core.multipliers import periodic_qr
-from contvines.core.multipliers.eigenvectors import eigenvector
 from contvines.core.multipliers.periodic_schur import multipliers, periodic_multipliers, reference
 
 NATIVE = [multipliers, periodic_multipliers] if native() else []
@@ -102,26 +101,6 @@ def test_singular_second_block_gives_nan():
     assert np.isnan(re).all()
 
 
-@pytest.mark.parametrize("twist", [1.0, -1.0])
-@pytest.mark.parametrize("length", [1, 2, 9, 200])
-def test_eigenvectors_solve_the_cycle(length, twist):
-    draw = np.random.default_rng(length)
-    for n in (2, 4):
-        A, D = draw.normal(size=(2, length, n, n))
-        for value in compute(multipliers, A, D, twist):
-            if not 1e-290 < abs(value) < 1e290:
-                continue
-            y, gap = eigenvector(A, D, twist, value)
-            assert gap < 1e-6
-            assert np.isrealobj(y) == (value.imag == 0.0)
-            growth = abs(value) ** (1.0 / length)
-            closing = np.r_[1.0, np.full(n - 1, twist)] * y[0] * value / abs(value)
-            for i in range(length):
-                ahead = y[i + 1] if i + 1 < length else closing
-                left, right = A[i] @ y[i], growth * D[i] @ ahead
-                assert np.linalg.norm(left + right) <= 1e-6 * (np.linalg.norm(left) + np.linalg.norm(right))
-
-
 @pytest.mark.parametrize("n", [1, 2, 3, 4, 6])
 def test_small_eigenvalues(n):
     """Of one factor: Francis' double shifts in the native core."""
@@ -165,3 +144,31 @@ def test_entries_below_the_least_normal_number(method):
     found = compute(method, A)
     pair = 1.05**40 * np.exp(4j)
     assert distance(found, [pair, pair.conjugate(), 0.73**40, 0.88**40]) < 1e-12
+
+
+@BOTH
+@pytest.mark.parametrize("length", [1, 4, 30])
+def test_two_multipliers_of_different_size_have_their_signs(method, length):
+    """Both signs are among the seeds."""
+    for seed in range(6):
+        A, D = np.random.default_rng(100 * seed + length).normal(size=(2, length, 2, 2))
+        A[0] = A[0] @ np.diag([1.0, 1e-6])
+        for twist in (1.0, -1.0):
+            assert distance(compute(method, A, D, twist), exact(A, D, twist)) < 1e-6
+
+
+@BOTH
+@pytest.mark.parametrize("size", [1e-40, 1.0, 1e60])
+def test_pairs_of_any_size(method, size):
+    """Long products are scaled by powers of two on the way; real and imaginary parts must come back alike."""
+    length, angle = 12, 0.4
+    basis = np.eye(3) + 0.1 * np.random.default_rng(3).normal(size=(3, 3))
+    block = np.array(
+        [[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 0.5]]
+    )
+    step = basis @ (size ** (1.0 / length) * block) @ np.linalg.inv(basis)
+    found = compute(method, np.tile(step, (length, 1, 1)))
+    pair = size * np.exp(1j * angle * length)
+    assert sorted(found[:2], key=np.imag) == pytest.approx(
+        sorted([pair, pair.conjugate()], key=np.imag), rel=1e-8
+    )

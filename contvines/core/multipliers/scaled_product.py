@@ -1,4 +1,4 @@
-"""Multipliers from the scaled product of factors of any order: see `contvines.core.multipliers.periodic_schur`."""
+"""Multipliers from the scaled product of factors: see `contvines.core.multipliers.periodic_schur`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from .factors import (
     scaled,
     sort_eigenvalues,
 )
-from .product_of_two import CERTAIN, UNCERTAIN, UNDEFINED
 from .settings import CERTIFIED
 
 
@@ -30,12 +29,12 @@ def _in_range(matrix):
     return matrix * math.ldexp(1.0, -shift), shift
 
 
-def product_of_any(A, D, twist, re, im):
-    """The scaled product for factors of any order; the bound is the largest row sum of the matrix of bounds."""
+def scaled_product(A, D, twist, re, im):
+    """Fill in the eigenvalues of the scaled product; whether they are certain. The bound is the largest row sum of the matrix of bounds."""
     length, n = A.shape[0], A.shape[1]
     M = factors(A, D, twist)
     if M is None:
-        return UNDEFINED
+        return False
     before, powers = np.empty((length, n, n)), []
     P, power = np.eye(n), 0
     for i in range(length):
@@ -43,7 +42,7 @@ def product_of_any(A, D, twist, re, im):
         powers.append(power)
         known = _in_range(M[i] @ P)
         if known is None or not known[0].any():
-            return UNCERTAIN
+            return False
         P, power = known[0], power + known[1]
     # from the other end: bound on the rounding of the product, in units of 2^power
     bound = np.zeros(n)
@@ -54,7 +53,7 @@ def product_of_any(A, D, twist, re, im):
         bound += np.abs(after) @ moved * factor
         known = _in_range(after @ M[i])
         if known is None:
-            return UNCERTAIN
+            return False
         after, back = known[0], back + known[1]
         if not after.any():
             break
@@ -62,13 +61,13 @@ def product_of_any(A, D, twist, re, im):
     try:
         found = np.linalg.eigvals(P)
     except np.linalg.LinAlgError:
-        return UNCERTAIN
+        return False
     re[:], im[:] = found.real, found.imag
     sort_eigenvalues(re, im)
     lost = min(deficiency(A), n)
     if lost < n and not error <= CERTIFIED * math.hypot(re[n - 1 - lost], im[n - 1 - lost]):
-        return UNCERTAIN
+        return False
     for k in range(n):
         re[k], im[k] = scaled(re[k], power), scaled(im[k], power)
     re[n - lost :] = im[n - lost :] = 0.0
-    return CERTAIN
+    return True
