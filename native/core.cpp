@@ -63,10 +63,10 @@ EXPORT whole core_march(continuation::Frame* frame, double* points, double* valu
                                judge ? judge : continuation::by_angle, filled);
 }
 
-EXPORT whole core_points(continuation::Frame* frame, whole what, const double* chord, double start, double length, const double* places, whole count,
+EXPORT whole core_points(continuation::Frame* frame, const double* chord, double start, double length, const double* places, whole count,
                          const double* border, const double* along, whole max_sweeps, double* u, double* tangents, double* rows, double* numbers,
                          const continuation::Aim* aim) {
-    return continuation::points(*frame, what, chord, start, length, places, count, border, along, max_sweeps, {u, tangents, rows, numbers}, *aim);
+    return continuation::points(*frame, chord, start, length, places, count, border, along, max_sweeps, {u, tangents, rows, numbers}, *aim);
 }
 
 EXPORT whole core_scan(const continuation::Scanner* scanner, whole count, double flat, const double* points, const double* values, const double* tangents,

@@ -8,6 +8,9 @@ namespace continuation {
 
 struct Metric { double of_unknowns, of_parameter; };
 
+// `SolutionSettings` in contvines/continuation/settings.py, in their order.
+struct Solution { double rounding, small, predicted, stalled, solved, huge, left, jump, told, cancels; };
+
 // What all calls about one problem have in common. `Engine` in contvines/continuation/engine.py fills it.
 struct Frame {
     const Table* table;
@@ -16,6 +19,7 @@ struct Frame {
     Metric metric;
     double noise;
     double *u, *border, *step, *tangent, *guess, *known;  // room: (N,), four (N + 1,), Bracket
+    const Solution* solution;
 };
 
 // ---- lengths ------------------------------------------------------------------------------------------------------------------
@@ -73,22 +77,26 @@ inline double hermite(const double* chord, double s, double* u, double* guess, w
 }
 
 // ---- corrector ------------------------------------------------------------------------------------------------------------------
-constexpr double TIGHT = 1e-12, SMALLEST = 1e-11, ROUNDOFF = 1e-13, STRAY = 0.3, STALLED = 1e-6, TOO_LARGE = 1e6, BEYOND = 1e300;
+constexpr double STRAY = 0.3, BEYOND = 1e300;
 
 // Add a Newton correction to u and p, unless Newton's method diverges: 1 when converged, -1 when diverged, else 0.
-inline int improve(double* u, double& p, const double* step, whole sweep, double residual, double& size, double tolerance, whole n, double noise) {
+inline int improve(const Frame& f, double* u, double& p, whole sweep, double residual, double& size, double tolerance) {
+    const Solution& limits = *f.solution;
+    const double* step = f.step;
+    const double noise = f.noise;
+    const whole n = f.unknowns;
     double before = size;
     size = correction_size(step, u, p, n);
-    if (!(size < TOO_LARGE)) return -1;
-    if (sweep > 1 && size > 2.0 * before && size > larger(STALLED, 10.0 * noise)) return -1;
+    if (!(size < limits.huge)) return -1;
+    if (sweep > 1 && size > 2.0 * before && size > larger(limits.stalled, 10.0 * noise)) return -1;
     for (whole i = 0; i < n; i++) u[i] += step[i];
     p += step[n];
-    if (size <= larger(smaller(SMALLEST, tolerance), noise)) return 1;
+    if (size <= larger(smaller(limits.small, tolerance), noise)) return 1;
     if (sweep > 0) {
         double ratio = size / before;
         // quadratic convergence: the next correction would be about ratio^2 size
-        if (size <= tolerance && ratio * ratio * size <= larger(ROUNDOFF, noise)) return 1;
-        if (size <= STALLED && ratio > 0.3 && residual < 1e-9) return 1;
+        if (size <= tolerance && ratio * ratio * size <= larger(limits.predicted, noise)) return 1;
+        if (size <= limits.stalled && ratio > 0.3 && residual < limits.solved) return 1;
         if (size <= 30.0 * noise && ratio > 0.1) return 1;  // corrections that are noise do not shrink, whatever the tolerance
     }
     return 0;
@@ -106,7 +114,7 @@ inline double by_angle(double turn, double error, whole sweeps, double length, d
 
 struct Control { double angle, min_step, max_step, tolerance, lower, upper, stop_at_border, sweeps, row_margins, noise; };
 enum Status { ABORTED = -1, RUNNING = 0, LEFT_INTERVAL = 1, STEP_TOO_SMALL = 2, NOT_EVALUABLE = 3, AT_BORDER = 4 };
-constexpr double MARGIN = -1e-12, ABORT = -HUGE_VAL;
+constexpr double ABORT = -HUGE_VAL;
 
 struct Chunk { double *points, *values, *tangents, *rows, *signs, *corrections; };
 
@@ -147,7 +155,7 @@ inline Status march(Frame& f, const Chunk& chunk, whole first, whole stop, doubl
                 break;
             }
             sign = table.bordered(f.data, f.work, border, rest_of(border, u, p, target, n), step, tangent);
-            int verdict = improve(u, p, step, sweep, residual, size, control.tolerance, n, noise);
+            int verdict = improve(f, u, p, sweep, residual, size, control.tolerance);
             if (verdict != 0) {
                 sweeps = verdict > 0 ? sweep + 1 : -1;
                 break;
@@ -173,7 +181,7 @@ inline Status march(Frame& f, const Chunk& chunk, whole first, whole stop, doubl
             if (cosine < 0.0) cosine = -cosine, norm = -norm;
             if (tangent[n] * norm < 0.0) sign = -sign;
         }
-        double turn = sqrt(larger(0.0, 2.0 - 2.0 * cosine)), factor = judge(turn, error, sweeps, length, control.angle, larger(1e-12, noise));
+        double turn = sqrt(larger(0.0, 2.0 - 2.0 * cosine)), factor = judge(turn, error, sweeps, length, control.angle, larger(f.solution->rounding, noise));
         if (factor == ABORT) return ABORTED;
         if (!(factor > 0.0)) {
             h = length * (-1.0 < factor && factor < 0.0 ? -factor : 0.5);
@@ -196,7 +204,7 @@ inline Status march(Frame& f, const Chunk& chunk, whole first, whole stop, doubl
         h = smaller(h * factor, control.max_step);
         if (control.stop_at_border > 0.0)
             for (whole j = whole(control.row_margins); j < f.row; j++)
-                if (row[j] < MARGIN) return AT_BORDER;
+                if (row[j] < -f.solution->rounding) return AT_BORDER;
     }
     return RUNNING;
 }
@@ -292,8 +300,9 @@ inline double secant(Bracket& k) {
     }
     return where;
 }
-// Take notice of f(x), and of what else is to be kept of x; the next place to look at, NaN where that is enough.
-inline double follow(Bracket& k, double x, double fx, double px) {
+// Take notice of f(x), and of what else is to be kept of x; the next place to look at, NaN where that is enough. `part`: of the first bracket,
+// over which f jumps.
+inline double follow(Bracket& k, double part, double x, double fx, double px) {
     if (!isfinite(fx)) {
         if (k.again > 0.0) return NAN;
         k.again = 1.0;
@@ -315,7 +324,7 @@ inline double follow(Bracket& k, double x, double fx, double px) {
         return NAN;
     }
     double limit = 0.5 * k.tolerance * k.width / larger(fabs(x2 - x1), 1e-300);
-    if (fabs(f1 - f2) > k.jump && fabs(x2 - x1) < 1e-5 * k.width) return NAN;
+    if (fabs(f1 - f2) > k.jump && fabs(x2 - x1) < part * k.width) return NAN;
     if (limit > 0.5 || fabs(x2 - x1) <= k.tolerance * k.width || k.count >= MOST) return NAN;
     double xi = (x1 - x2) / (x3 - x2), phi = f3 != f2 ? (f1 - f2) / (f3 - f2) : 2.0, t;
     if (phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi)
@@ -324,12 +333,11 @@ inline double follow(Bracket& k, double x, double fx, double px) {
     return x1 + smaller(1.0 - limit, larger(limit, t)) * (x2 - x1);
 }
 
-// ---- single solutions, and everything about them, or a part of that (contvines/continuation/corrector.py: points) ------------------------
-enum Part { LINEARISE, ELIMINATE, EVERYTHING };
+// ---- single solutions, and everything about them (contvines/continuation/corrector.py: point, search) --------------------------------
 enum Outcome { NOWHERE, PASSED, AT_END };
 struct Found { double *u, *tangents, *rows, *numbers; };  // (k, N), (k, N + 1), (k, row), (k, 5)
 
-inline Outcome points(Frame& f, whole what, const double* chord, double start, double length, const double* places, whole count,
+inline Outcome points(Frame& f, const double* chord, double start, double length, const double* places, whole count,
                       const double* border, const double* along, whole max_sweeps, const Found& found, const Aim& aim) {
     const Table& table = *f.table;
     const whole n = f.unknowns;
@@ -345,27 +353,22 @@ inline Outcome points(Frame& f, whole what, const double* chord, double start, d
         whole sweeps = -1;
         bool settled = limit == 0;
         for (whole sweep = 0; sweep <= limit; sweep++) {
-            double gap = start + s * length;
-            if (what != ELIMINATE) {
-                residual = table.linearise(f.data, u, p, f.work);
-                if (what == LINEARISE) break;
-                if (!(residual < BEYOND)) {
-                    sweeps = -2;
-                    break;
-                }
-                gap = rest_of(border, u, p, gap, n);
+            residual = table.linearise(f.data, u, p, f.work);
+            if (!(residual < BEYOND)) {
+                sweeps = -2;
+                break;
             }
-            sign = table.bordered(f.data, f.work, border, gap, f.step, tangent);
+            sign = table.bordered(f.data, f.work, border, rest_of(border, u, p, start + s * length, n), f.step, tangent);
             if (settled) {
                 sweeps = sweep;
                 break;
             }
             if (sweep == limit) break;
-            int verdict = improve(u, p, f.step, sweep, residual, size, TIGHT, n, f.noise);
+            int verdict = improve(f, u, p, sweep, residual, size, f.solution->rounding);
             if (verdict < 0) break;
             settled = verdict > 0;
         }
-        if (sweeps >= 0 && what == EVERYTHING) {
+        if (sweeps >= 0) {
             table.inspect(f.data, u, p, f.work, row);
             double part_norm = 0.0, part_same = 0.0, across = border[n] * tangent[n], part_away = 0.0;
             for (whole j = 0; j < n; j++) {
@@ -401,7 +404,7 @@ inline Outcome points(Frame& f, whole what, const double* chord, double start, d
             if (!isfinite(value)) return NOWHERE;
             if (first_value * value > 0.0) {
                 double least = smaller(fabs(first_value), fabs(value)), most = larger(fabs(first_value), fabs(value));
-                if (aim.anyway == 0 && least > 1e-9 * most) return NOWHERE;  // an end that is the zero itself may have either sign, by roundoff
+                if (aim.anyway == 0 && least > f.solution->solved * most) return NOWHERE;  // an end that is the zero itself may have either sign, by roundoff
                 outcome = AT_END;
                 known.x1 = fabs(first_value) < fabs(value) ? 0.0 : 1.0;
                 if (known.x1 == s) return outcome;
@@ -410,7 +413,7 @@ inline Outcome points(Frame& f, whole what, const double* chord, double start, d
             }
             stage = 2, outcome = PASSED;
             ahead = begin(known, 0.0, 1.0, first_value, value, first_p, p, known.tolerance, known.jump);
-        } else ahead = follow(known, s, value, p);
+        } else ahead = follow(known, f.solution->jump, s, value, p);
         if (ahead == ahead) {
             s = ahead;
             continue;

@@ -4,6 +4,8 @@
 
 namespace continuation {
 
+constexpr double MARGIN = -1e-12;  // of contvines/continuation/layout.py
+
 constexpr double PAST = 1e-10;  // multipliers of a conservative system lie on the circle up to roundoff
 
 // Of one problem. Signed permutations T: u - T(u) of column j is u[j] - (signs[j] u[orders[j]] + constants[j]), modulo `shift`.

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from ..continuation import bracketing
+from ..continuation.bracketing import Bracket
 from ..shared.floating_point import ROUNDED
 
 
@@ -38,16 +38,10 @@ def bracketed_root(
     (root, low, high, f(low), f(high)) : tuple of float
         The best estimate and the final bracket.
     """
-    known = [0.0] * bracketing.SIZE
-    x = bracketing.begin(known, a, b, fa, fb, 0.0, 0.0, tolerance, jump)
-    while x == x:
-        x = bracketing.follow(known, x, f(x), 0.0)
-    ends = (
-        (known[bracketing.X1], known[bracketing.F1]),
-        (known[bracketing.X2], known[bracketing.F2]),
-    )
-    (low, flow), (high, fhigh) = sorted(ends)
-    return bracketing.best(known), low, high, flow, fhigh
+    bracket = Bracket(b, fb, 0.0, a, fa, 0.0, tolerance, jump)
+    bracket.narrow(lambda x: (f(x), 0.0))
+    (low, flow), (high, fhigh) = sorted(((bracket.x1, bracket.f1), (bracket.x2, bracket.f2)))
+    return bracket.best, low, high, flow, fhigh
 
 
 @cache

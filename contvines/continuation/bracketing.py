@@ -4,34 +4,17 @@ Chandrupatla's method (Adv. Eng. Software 28 (1997) 145): bisection with inverse
 not be continuous. Where these are not safe, as at a jump or a kink, secants on one side of the zero take the place of bisection: what is
 beyond a jump says nothing of the zero, which is that of the secant on one side.
 
-What is known is kept in a list of numbers, or an array: see the names below. native/march.hpp has the same functions.
+native/march.hpp has the same.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from contvines.shared.floating_point import TINY
 
-from .layout import (
-    AGAIN,
-    AIMED,
-    BEYOND,
-    COUNT,
-    F1,
-    F2,
-    F3,
-    JUMP,
-    ON_A_SIDE,
-    P1,
-    P2,
-    PRECISION,
-    SIDES,
-    SIZE,
-    WAIT,
-    WIDTH,
-    X1,
-    X2,
-    X3,
-)
 from .settings import SOLUTION
 
 BISECTIONS = 2  # before a function is taken for one with a jump or a kink at its zero
@@ -40,121 +23,131 @@ SHORT = 0.02  # part of the way back that is gone where a secant has gone too fa
 MOST = 100  # evaluations
 
 
-def begin(known, a, b, fa, fb, pa, pb, tolerance, jump):
-    """Begin with a bracket; the next place to look at, NaN where one end is the root itself.
+@dataclass
+class Side:
+    """How many points have been on one side of zero, the last but one, and the last one."""
+
+    points: int = 0
+    xa: float = math.nan
+    fa: float = math.nan
+    xb: float = math.nan
+    fb: float = math.nan
+
+
+@dataclass
+class Bracket:
+    """Two places between which f has its zero, x1 and x2.
 
     Parameters
     ----------
-    known : list or ndarray (SIZE,)
-        Filled.
-    a, b, fa, fb : float
-        Bracket; fa and fb of opposite sign, or one of them zero.
-    pa, pb : float
-        What else is to be kept of both ends.
+    x1, f1, p1, x2, f2, p2 : float
+        Either end, f there, and what else is to be kept of it; f1 and f2 of opposite sign, or one of them zero.
     tolerance : float
         Width of the final bracket relative to the first one.
     jump : float
         Give up where f still changes by more than this over a small part of the first bracket: f has a jump there.
     """
-    for j in range(SIZE):
-        known[j] = 0.0
-    known[X1], known[F1], known[P1] = b, fb, pb
-    known[X2], known[F2], known[P2] = a, fa, pa
-    known[X3], known[F3] = b, fb
-    known[WIDTH], known[PRECISION], known[JUMP] = abs(b - a), tolerance, jump
-    known[WAIT], known[AIMED] = BISECTIONS, -1.0
-    if fa == 0.0 or fb == 0.0:
-        end = X2 if fa == 0.0 else X1
-        other = X1 if fa == 0.0 else X2
-        for j in range(3):
-            known[other + j] = known[end + j]
-        return math.nan
-    return b + 0.5 * (a - b)
 
+    x1: float
+    f1: float
+    p1: float
+    x2: float
+    f2: float
+    p2: float
+    tolerance: float
+    jump: float
+    count: int = 0
+    again: bool = False  # whether f could not be evaluated the last time
+    wait: int = BISECTIONS
+    aimed: int | None = None  # the side of which the last place was a secant's
+    beyond: bool = False
+    sides: tuple[Side, Side] = field(default_factory=lambda: (Side(), Side()))
 
-def follow(known, x, fx, px):
-    """Take notice of f(x), and of what else is to be kept of x; the next place to look at, NaN where that is enough.
+    def __post_init__(self) -> None:
+        self.x3, self.f3, self.width = self.x1, self.f1, abs(self.x1 - self.x2)
 
-    Where f cannot be evaluated the place is replaced by one nearby, once.
-    """
-    x1, x2 = known[X1], known[X2]
-    if not math.isfinite(fx):
-        if known[AGAIN] > 0.0:
+    @property
+    def best(self) -> float:
+        """The end with the smaller value."""
+        return self.x1 if abs(self.f1) < abs(self.f2) else self.x2
+
+    def narrow(self, f: Callable[[float], tuple[float, float]]) -> float:
+        """Find the zero of f(x), which also returns what else is to be kept of x; the last place that was looked at."""
+        if self.f1 == 0.0 or self.f2 == 0.0:  # one end is the root itself
+            if self.f2 == 0.0:
+                self.x1, self.f1, self.p1 = self.x2, self.f2, self.p2
+            else:
+                self.x2, self.f2, self.p2 = self.x1, self.f1, self.p1
             return math.nan
-        known[AGAIN] = 1.0
-        return x1 + 0.37 * (x2 - x1)
-    known[AGAIN] = 0.0
-    known[COUNT] += 1.0
-    _add(known, x, fx)
-    if (fx > 0.0) == (known[F1] > 0.0):
-        known[X3], known[F3] = x1, known[F1]
-    else:
-        known[X3], known[F3] = x2, known[F2]
-        known[X2], known[F2], known[P2] = x1, known[F1], known[P1]
-    known[X1], known[F1], known[P1] = x, fx, px
-    x1, f1, x2, f2, x3, f3 = x, fx, known[X2], known[F2], known[X3], known[F3]
-    if f1 == 0.0:
-        known[X2], known[F2], known[P2] = x1, f1, px
-        return math.nan
-    width, tolerance = known[WIDTH], known[PRECISION]
-    limit = 0.5 * tolerance * width / max(abs(x2 - x1), TINY)
-    if abs(f1 - f2) > known[JUMP] and abs(x2 - x1) < SOLUTION.jump * width:
-        return math.nan
-    if limit > 0.5 or abs(x2 - x1) <= tolerance * width or known[COUNT] >= MOST:
-        return math.nan
-    xi = (x1 - x2) / (x3 - x2)
-    phi = (f1 - f2) / (f3 - f2) if f3 != f2 else 2.0
-    if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
-        t = (f1 / (f2 - f1)) * (f3 / (f2 - f3)) + ((x3 - x1) / (x2 - x1)) * (f1 / (f3 - f1)) * (
-            f2 / (f3 - f2)
-        )
-    else:
-        t = (_ahead(known) - x1) / (x2 - x1)
-    t = min(1.0 - limit, max(limit, t))
-    return x1 + t * (x2 - x1)
+        x, ahead = math.nan, self.x1 + 0.5 * (self.x2 - self.x1)
+        while ahead == ahead:
+            x, ahead = ahead, self.follow(ahead, *f(ahead))
+        return x
 
+    def follow(self, x: float, fx: float, px: float) -> float:
+        """Take notice of f(x); the next place to look at, NaN where that is enough.
 
-def best(known):
-    """The end of the bracket with the smaller value."""
-    return known[X1] if abs(known[F1]) < abs(known[F2]) else known[X2]
+        Where f cannot be evaluated the place is replaced by one nearby, once.
+        """
+        if not math.isfinite(fx):
+            if self.again:
+                return math.nan
+            self.again = True
+            return self.x1 + 0.37 * (self.x2 - self.x1)
+        self.again = False
+        self.count += 1
+        self._add(x, fx)
+        if (fx > 0.0) == (self.f1 > 0.0):
+            self.x3, self.f3 = self.x1, self.f1
+        else:
+            self.x3, self.f3 = self.x2, self.f2
+            self.x2, self.f2, self.p2 = self.x1, self.f1, self.p1
+        self.x1, self.f1, self.p1 = x, fx, px
+        x1, f1, x2, f2, x3, f3 = x, fx, self.x2, self.f2, self.x3, self.f3
+        if f1 == 0.0:
+            self.x2, self.f2, self.p2 = x1, f1, px
+            return math.nan
+        limit = 0.5 * self.tolerance * self.width / max(abs(x2 - x1), TINY)
+        if abs(f1 - f2) > self.jump and abs(x2 - x1) < SOLUTION.jump * self.width:
+            return math.nan
+        if limit > 0.5 or abs(x2 - x1) <= self.tolerance * self.width or self.count >= MOST:
+            return math.nan
+        xi = (x1 - x2) / (x3 - x2)
+        phi = (f1 - f2) / (f3 - f2) if f3 != f2 else 2.0
+        if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
+            t = (f1 / (f2 - f1)) * (f3 / (f2 - f3)) + ((x3 - x1) / (x2 - x1)) * (f1 / (f3 - f1)) * (
+                f2 / (f3 - f2)
+            )
+        else:
+            t = (self._ahead() - x1) / (x2 - x1)
+        return x1 + min(1.0 - limit, max(limit, t)) * (x2 - x1)
 
+    def _add(self, x: float, fx: float) -> None:
+        """Keep a point of one side; a secant that has ended beyond the zero, or has left too much, is not trusted again soon."""
+        own = int(fx > 0.0)
+        side, aimed = self.sides[own], self.aimed
+        if aimed is not None and aimed != own:
+            self.beyond = True
+        elif aimed is not None and not abs(fx) < ENOUGH * abs(side.fb):
+            self.wait = BISECTIONS  # it is not that smooth
+        side.points += 1
+        side.xa, side.fa, side.xb, side.fb = side.xb, side.fb, x, fx
+        self.aimed = None
 
-def _add(known, x, fx):
-    """Keep a point of one side; a secant that has ended beyond the zero, or has left too much, is not trusted again soon."""
-    side = 1 if fx > 0.0 else 0
-    place = SIDES + ON_A_SIDE * side
-    aimed = known[AIMED]
-    if aimed >= 0.0 and aimed != side:
-        known[BEYOND] = 1.0
-    elif aimed >= 0.0 and not abs(fx) < ENOUGH * abs(known[place + 4]):
-        known[WAIT] = BISECTIONS  # it is not that smooth
-    known[place] += 1.0
-    known[place + 1], known[place + 2] = known[place + 3], known[place + 4]
-    known[place + 3], known[place + 4] = x, fx
-    known[AIMED] = -1.0
-
-
-def _ahead(known):
-    """Where to look next in the bracket, where inverse quadratic steps are not safe."""
-    x1, x2 = known[X1], known[X2]
-    beyond = known[BEYOND] > 0.0
-    known[BEYOND] = 0.0
-    if beyond:  # a secant ended beyond the zero, hardly: a little before its end
-        known[WAIT] = 0.0
-        return x1 + SHORT * (x2 - x1)
-    if known[WAIT] > 0.0:
-        known[WAIT] -= 1.0
-        return 0.5 * (x1 + x2)
-    nearest = math.inf
-    where = 0.5 * (x1 + x2)
-    for side in range(2):
-        place = SIDES + ON_A_SIDE * side
-        if known[place] < 2.0:
-            continue
-        xa, fa, xb, fb = known[place + 1], known[place + 2], known[place + 3], known[place + 4]
-        if not abs(fb) < abs(fa):
-            continue
-        step = fb * (xb - xa) / (fa - fb)
-        if abs(step) < nearest and min(x1, x2) < xb + step < max(x1, x2):
-            nearest, where, known[AIMED] = abs(step), xb + step, float(side)
-    return where
+    def _ahead(self) -> float:
+        """Where to look next, where inverse quadratic steps are not safe."""
+        x1, x2 = self.x1, self.x2
+        if self.beyond:  # a secant ended beyond the zero, hardly: a little before its end
+            self.beyond, self.wait = False, 0
+            return x1 + SHORT * (x2 - x1)
+        nearest, where = math.inf, 0.5 * (x1 + x2)
+        if self.wait > 0:
+            self.wait -= 1
+            return where
+        for own, side in enumerate(self.sides):
+            if side.points < 2 or not abs(side.fb) < abs(side.fa):
+                continue
+            step = side.fb * (side.xb - side.xa) / (side.fa - side.fb)
+            if abs(step) < nearest and min(x1, x2) < side.xb + step < max(x1, x2):
+                nearest, where, self.aimed = abs(step), side.xb + step, own
+        return where

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -42,6 +43,10 @@ class Status(IntEnum):
         }[self]
 
 
+OF_SOLVED = ("u", "p", "tangent", "row", "sign", "correction")
+"""What a chunk has of solved points."""
+
+
 @dataclass
 class Chunk:
     """Consecutive points of a branch; the first one is the last point of the chunk before.
@@ -62,33 +67,22 @@ class Chunk:
     def __len__(self) -> int:
         return len(self.values)
 
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """All that is known of the points."""
+        return self.points, self.values, self.tangents, self.rows, self.signs, self.corrections
+
     def cut(self, n: int) -> Chunk:
         """The first n points."""
-        return Chunk(
-            self.points[:n],
-            self.values[:n],
-            self.tangents[:n],
-            self.rows[:n],
-            self.signs[:n],
-            self.corrections[:n],
-            self.status,
-            self.before,
-        )
+        return Chunk(*(array[:n] for array in self.arrays), status=self.status, before=self.before)
+
+    def joined(self, other: Chunk) -> Chunk:
+        """These points and those of another chunk, with its status."""
+        return Chunk(*map(np.concatenate, zip(self.arrays, other.arrays, strict=True)), status=other.status)
 
     def widened(self) -> Chunk:
         """The chunk with the point before its first one, where there is one."""
-        first = self.before
-        if first is None:
-            return self
-        return Chunk(
-            np.vstack([first.u, self.points]),
-            np.append(first.p, self.values),
-            np.vstack([first.tangent, self.tangents]),
-            np.vstack([first.row, self.rows]),
-            np.append(first.sign, self.signs),
-            np.append(first.correction, self.corrections),
-            self.status,
-        )
+        return self if self.before is None else packed([self.before], self.status).joined(self)
 
     def solved(self, i: int, sign: float | None = None) -> Solved:
         """Point i; with another sign where that is known better."""
@@ -101,3 +95,8 @@ class Chunk:
             0.0,
             float(self.corrections[i]),
         )
+
+
+def packed(points: Sequence[Solved], status: Status) -> Chunk:
+    """Some points as a chunk."""
+    return Chunk(*(np.array([getattr(point, name) for point in points]) for name in OF_SOLVED), status=status)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .chunk import Chunk, Status
+from .chunk import Chunk, Status, packed
 from .engine import Engine, Solved
 from .settings import SOLUTION
 
@@ -56,17 +56,8 @@ class Closing:
                 continue
             gap = np.abs(engine.join(found.u, found.p) - z) / (engine.scale + np.abs(z))
             if gap.max() <= engine.settings.same and engine.inner(found.tangent, self.start.tangent) > 0.0:
-                points, rest = chunk.cut(int(i) + 1), self.start
-                end = rest.u if shift is None else rest.u + turns[i] * shift
-                return Chunk(
-                    np.vstack([points.points, end]),
-                    np.append(points.values, rest.p),
-                    np.vstack([points.tangents, rest.tangent]),
-                    np.vstack([points.rows, rest.row]),
-                    np.append(points.signs, rest.sign),
-                    np.append(points.corrections, rest.correction),
-                    Status.CLOSED,
-                )
+                end = self.start.u if shift is None else self.start.u + turns[i] * shift
+                return chunk.cut(int(i) + 1).joined(packed([self.start._replace(u=end)], Status.CLOSED))
         return None
 
     def _on_other_meshes(self, chunk: Chunk) -> Chunk | None:
@@ -90,13 +81,6 @@ class Closing:
                     points = chunk.cut(int(i) + 1)
                     # not the start itself: there the same motion may begin at another time, or lie on another mesh
                     way = 1.0 if engine.inner(found.tangent, points.tangents[-1]) > 0.0 else -1.0
-                    return Chunk(
-                        np.vstack([points.points, found.u]),
-                        np.append(points.values, found.p),
-                        np.vstack([points.tangents, way * found.tangent]),
-                        np.vstack([points.rows, found.row]),
-                        np.append(points.signs, way * found.sign),
-                        np.append(points.corrections, found.correction),
-                        Status.CLOSED,
-                    )
+                    found = found._replace(tangent=way * found.tangent, sign=way * found.sign)
+                    return points.joined(packed([found], Status.CLOSED))
         return None

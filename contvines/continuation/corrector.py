@@ -5,12 +5,10 @@ For problems in Python; native/march.hpp has the same for compiled ones.
 
 import math
 
-import numpy as np
-
-from .aims import NOTHING, probe
+from .aims import probe
 from .arrays import add, correction_size, distance, hermite, orient, put, remainder
-from .bracketing import begin, best, follow
-from .layout import AT_END, ELIMINATE, EVERYTHING, JUMP, LINEARISE, NOWHERE, PASSED, PRECISION, X1
+from .bracketing import Bracket
+from .layout import AT_END, ENDS, JUMP, NOWHERE, PASSED, PRECISION
 from .settings import SOLUTION
 
 STRAY = 0.3  # part of a chord by which a point may lie off the interpolation between its ends
@@ -93,140 +91,99 @@ def correct(kernels, data, work, u, p, border, target, tolerance, max_sweeps, st
     return p, -1, sign, size
 
 
-def points(
-    kernels,
-    frame,
-    what,
-    chord,
-    stretch,
-    places,
-    border,
-    along,
-    max_sweeps,
-    found,
-    aim,
-    noise,
-):
-    """Single solutions, and everything about them, or a part of that.
-
-    EVERYTHING: at most ``max_sweeps`` sweeps of Newton's method from a place on a chord (none at its ends: they are good as they are), then
-    linearisation, elimination and multipliers once more at the solution; tangents are unit vectors with <along, tangent> >= 0. With an aim
-    the one solution is looked for at which a number passes zero between the chord's ends.
-    LINEARISE: the residual only. ELIMINATE: with the linearisation at hand.
+def point(kernels, frame, way, s, found, i, noise):
+    """The solution at a place on a chord, and everything about it, into entry i of what is found.
 
     Parameters
     ----------
     kernels
         Of the problem.
     frame : tuple
-        The problem's data and workspace; of a search the final bracket (an array of `bracketing.SIZE` numbers); metric and `Scratch`.
-    what : int
-    chord : ndarray, shape (4, N + 1)
-        Of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its tangent likewise.
-    stretch : (float, float)
-        start and length: border.(u, p) is to be start + s length. With length 0 the first end is a guess, and no more.
-    places : ndarray, shape (k,)
-        Each s; with an aim only the first ends are looked at, 0 and 1.
-    border, along : ndarray, shape (N + 1,)
-    max_sweeps : int
+        The problem's data and workspace, metric and `Scratch`.
+    way : Way
+    s : float
     found : Found
-        Filled.
-    aim : Aim
+    i : int
     noise : float
+    """
+    data, work, metric, scratch = frame
+    border, u, tangent = way.border, found.u[i], found.tangents[i]
+    p = hermite(way.chord, s, u, scratch.guess)
+    limit = 0 if way.length > 0.0 and (s == 0.0 or s == 1.0) else way.sweeps
+    target = way.start + s * way.length
+    residual, sign, size, sweeps, settled = 0.0, 0.0, 0.0, -1, limit == 0
+    for sweep in range(limit + 1):
+        residual = kernels.linearise(data, u, p, work)
+        if not math.isfinite(residual):
+            sweeps = -2
+            break
+        sign = kernels.bordered(data, work, border, remainder(border, u, p, target), scratch.step, tangent)
+        if settled:
+            sweeps = sweep
+            break
+        if sweep == limit:
+            break
+        p, size, verdict = improve(
+            u, p, scratch.step, sweep, residual, size, SOLUTION.rounding, metric, noise
+        )
+        if verdict < 0:
+            break
+        settled = verdict > 0
+    if sweeps >= 0:
+        kernels.inspect(data, u, p, work, found.rows[i])
+        norm, same, across = orient(tangent, way.along, border, metric)
+        if not math.isfinite(norm):
+            sweeps = -3
+        else:
+            if same < 0.0:
+                norm, across = -norm, -across
+            put(tangent, tangent, norm)
+            if across < 0.0:
+                sign = -sign
+            if way.length > 0.0 and distance(u, p, scratch.guess, metric) > STRAY * way.length:
+                sweeps = -4
+    found.numbers[i] = p, sweeps, residual, sign, size
+
+
+def search(kernels, frame, way, found, known, aim, noise):
+    """The solution at which a number passes zero between a chord's ends.
+
+    Parameters
+    ----------
+    kernels, frame, way, found, noise
+        See :func:`point`; the solution is the first one of what is found.
+    known : ndarray
+        Has tolerance and jump of :class:`contvines.continuation.bracketing.Bracket`; the final bracket is left there.
+    aim : Aim
 
     Returns
     -------
     int
-        With an aim: `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
+        `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
     """
-    data, work, known, metric, scratch = frame
-    start, length = stretch
-    searching = aim.what != NOTHING
-    step = scratch.step
-    outcome = NOWHERE
-    stage, place, s = 0, 0, places[0]
-    first_value, first_p = 0.0, 0.0
-    while True:
-        u, tangent, row, numbers = (
-            found.u[place],
-            found.tangents[place],
-            found.rows[place],
-            found.numbers[place],
-        )
-        p = hermite(chord, s, u, scratch.guess)
-        limit = 0 if length > 0.0 and (s == 0.0 or s == 1.0) else max_sweeps
-        residual, sign, size, sweeps = 0.0, 0.0, 0.0, -1
-        settled = limit == 0
-        for sweep in range(limit + 1):
-            gap = start + s * length
-            if what != ELIMINATE:
-                residual = kernels.linearise(data, u, p, work)
-                if what == LINEARISE:
-                    break
-                if not math.isfinite(residual):
-                    sweeps = -2
-                    break
-                gap = remainder(border, u, p, gap)
-            sign = kernels.bordered(data, work, border, gap, step, tangent)
-            if settled:
-                sweeps = sweep
-                break
-            if sweep == limit:
-                break
-            p, size, verdict = improve(u, p, step, sweep, residual, size, SOLUTION.rounding, metric, noise)
-            if verdict < 0:
-                break
-            settled = verdict > 0
-        if sweeps >= 0 and what == EVERYTHING:
-            kernels.inspect(data, u, p, work, row)
-            norm, same, across = orient(tangent, along, border, metric)
-            if math.isfinite(norm):
-                if same < 0.0:
-                    norm, across = -norm, -across
-                put(tangent, tangent, norm)
-                if across < 0.0:
-                    sign = -sign
-                if length > 0.0 and distance(u, p, scratch.guess, metric) > STRAY * length:
-                    sweeps = -4
-            else:
-                sweeps = -3
-        numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] = p, sweeps, residual, sign, size
-        if not searching:
-            place += 1
-            if place == places.shape[0]:
-                return outcome
-            s = places[place]
-            continue
-        if stage == 3:  # the best place once more
-            return outcome
-        value = probe(aim, row, tangent[u.shape[0]], sign) if sweeps >= 0 else np.nan
-        if stage == 0:
-            stage, first_value, first_p, s = 1, value, p, 1.0
-            if not math.isfinite(value):
-                return NOWHERE
-            continue
-        if stage == 1:
-            if not math.isfinite(value):
-                return NOWHERE
-            smallest, largest = min(abs(first_value), abs(value)), max(abs(first_value), abs(value))
-            if first_value * value > 0.0:
-                # an end that is the zero itself may have either sign, by roundoff
-                if aim.anyway == 0 and smallest > SOLUTION.solved * largest:
-                    return NOWHERE
-                outcome = AT_END
-                known[X1] = 0.0 if abs(first_value) < abs(value) else 1.0
-                if known[X1] == s:
-                    return outcome
-                stage, s = 3, 0.0
-                continue
-            stage, outcome = 2, PASSED
-            ahead = begin(known, 0.0, 1.0, first_value, value, first_p, p, known[PRECISION], known[JUMP])
-        else:
-            ahead = follow(known, s, value, p)
-        if ahead == ahead:
-            s = ahead
-            continue
-        end = best(known)
-        if end == s and sweeps >= 0:
-            return outcome
-        stage, s = 3, end
+
+    def value(s):
+        point(kernels, frame, way, s, found, 0, noise)
+        p, sweeps, _, sign, _ = found.numbers[0].tolist()
+        return probe(aim, found.rows[0], found.tangents[0, -1], sign) if sweeps >= 0 else math.nan, p
+
+    first, first_p = value(0.0)
+    if not math.isfinite(first):
+        return NOWHERE
+    last, last_p = value(1.0)
+    if not math.isfinite(last):
+        return NOWHERE
+    smallest, largest = sorted((abs(first), abs(last)))
+    if first * last > 0.0:
+        # an end that is the zero itself may have either sign, by roundoff
+        if aim.anyway == 0 and smallest > SOLUTION.solved * largest:
+            return NOWHERE
+        outcome, seen, end = AT_END, 1.0, 0.0 if abs(first) < abs(last) else 1.0
+        known[0] = end
+    else:
+        bracket = Bracket(1.0, last, last_p, 0.0, first, first_p, *known[[PRECISION, JUMP]].tolist())
+        seen, outcome, end = bracket.narrow(value), PASSED, bracket.best
+        known[ENDS] = bracket.x1, bracket.f1, bracket.p1, bracket.x2, bracket.f2, bracket.p2
+    if end != seen or found.numbers[0, 1] < 0.0:  # the best place once more
+        value(end)
+    return outcome

@@ -15,7 +15,7 @@ from ..problems.abilities import Adaptive, Nearing, Rough
 from ..problems.protocol import KernelFunctions, Problem, array_of
 from . import layout
 from .aims import NO_COLUMNS, NOTHING, Aim
-from .layout import Found, Metric, Scratch, solved_point
+from .layout import Control, Found, Metric, Scratch, Way, solved_point
 from .layout import Hit as Hit
 from .layout import Solved as Solved
 from .rows import Rows
@@ -53,7 +53,7 @@ class Engine(Rows):
         self.lower, self.upper = float(within[0]), float(within[1])
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
-        kernels = problem.kernels
+        kernels = self.kernels = problem.kernels
         self.compiled = kernels.compiled
         self.section = HELD if self.compiled else OPEN
         self.data = problem.data
@@ -80,25 +80,26 @@ class Engine(Rows):
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.metric = Metric(self.weights, self.scale, 1.0 / n, float(self.weights[n]))
         self.scratch = Scratch(np.zeros(n), *np.zeros((4, n + 1)))
-        control = np.zeros(layout.CONTROL_SIZE)
-        control[layout.ANGLE] = settings.angle
-        control[layout.MIN_STEP], control[layout.MAX_STEP] = settings.min_step, settings.max_step
-        # a tolerance below what the noise of the equations allows is none
-        control[layout.TOLERANCE] = max(settings.tolerance, NOISY * self.noise)
-        control[layout.SWEEPS] = settings.max_iterations
-        control[layout.LOWER], control[layout.UPPER] = self.lower, self.upper
-        control[layout.ROW_MARGINS] = 2 * self.m
-        control[layout.NOISE] = self.noise
-        self.control = control
+        self.control = Control(
+            settings.angle,
+            settings.min_step,
+            settings.max_step,
+            max(
+                settings.tolerance, NOISY * self.noise
+            ),  # below what the noise of the equations allows is none
+            self.lower,
+            self.upper,
+            0,
+            settings.max_iterations,
+            2 * self.m,
+            self.noise,
+        )
         self._rows = np.zeros((0, self.row_size))
         self.guess = np.zeros((4, n + 1))  # a chord of which the first end alone is used
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
         self.known = np.zeros(layout.SIZE)
         self.loop = self._loop(kernels)
-        self.part = Found(
-            np.empty((1, n)), np.empty((1, n + 1)), np.zeros((1, self.row_size)), np.empty((1, 5))
-        )
 
     def _loop(self, kernels: KernelFunctions) -> InterpretedLoop | NativeLoop:
         """March and single points, in the native core for compiled problems."""
@@ -189,7 +190,7 @@ class Engine(Rows):
         along: np.ndarray | None,
     ) -> Solved | None:
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return solved_point(self._run(self.guess, (target, 0.0), ONE, border, along, sweeps)[0], 0)
+        return solved_point(self._run(self.guess, target, 0.0, ONE, border, along, sweeps)[0], 0)
 
     def on_chord(
         self,
@@ -200,8 +201,8 @@ class Engine(Rows):
         border: np.ndarray,
         along: np.ndarray,
     ) -> Found:
-        """The points of a branch at places along a chord; see :func:`contvines.continuation.corrector.points`."""
-        return self._run(chord, (start, length), places, border, along, 40)[0]
+        """The points of a branch at places along a chord; see :class:`contvines.continuation.layout.Way`."""
+        return self._run(chord, start, length, places, border, along, 40)[0]
 
     def search(
         self,
@@ -219,18 +220,18 @@ class Engine(Rows):
         Parameters
         ----------
         chord, start, length, border, along
-            See :func:`contvines.continuation.corrector.points`.
+            See :class:`contvines.continuation.layout.Way`.
         aim : Aim
         tolerance, jump : float
-            See :func:`contvines.continuation.bracketing.begin`.
+            See :class:`contvines.continuation.bracketing.Bracket`.
         """
         known = self.known
         known[layout.PRECISION], known[layout.JUMP] = tolerance, jump
-        found, outcome = self._run(chord, (start, length), ONE, border, along, 40, aim)
+        found, outcome = self._run(chord, start, length, ONE, border, along, 40, aim)
         if outcome == layout.NOWHERE:
             return None
         point = solved_point(found, 0)
-        one, f_one, p_one, other, f_other, p_other = known[:6].tolist()
+        one, f_one, p_one, other, f_other, p_other = known[layout.ENDS].tolist()
         if outcome == layout.AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
         place = one if abs(f_one) < abs(f_other) else other
@@ -240,7 +241,8 @@ class Engine(Rows):
     def _run(
         self,
         chord: np.ndarray,
-        stretch: tuple[float, float],
+        start: float,
+        length: float,
         places: np.ndarray,
         border: np.ndarray,
         along: np.ndarray | None,
@@ -249,19 +251,9 @@ class Engine(Rows):
     ) -> tuple[Found, int]:
         k, n = len(places), self.n
         found = Found(np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5)))
+        way = Way(chord, start, length, border, self.nothing if along is None else along, sweeps)
         with self.section:
-            outcome = self.loop.points(
-                layout.EVERYTHING,
-                chord,
-                stretch,
-                places,
-                border,
-                self.nothing if along is None else along,
-                sweeps,
-                found,
-                aim,
-            )
-        return found, outcome
+            return found, self.loop.points(way, places, found, aim)
 
     def at_value(self, u: np.ndarray, p: float, along: np.ndarray | None = None) -> Solved | None:
         """The solution at a fixed parameter value, or None."""
@@ -294,26 +286,14 @@ class Engine(Rows):
         return found
 
     def residual(self, u: np.ndarray, p: float) -> float:
-        """Largest absolute residual."""
-        self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        self._part(layout.LINEARISE, self.nothing, 0.0)
-        return float(self.part.numbers[0, 2])
+        """Largest absolute residual; linearises."""
+        with np.errstate(all="ignore"):
+            return float(self.kernels.linearise(self.data, np.array(u, dtype=float), float(p), self.work))
 
     def apply_inverse(self, border: np.ndarray, side: np.ndarray) -> np.ndarray:
         """Solve [[F_u, F_p], [border]] x = side with the linearisation in the work arrays."""
         array_of(self.work).reshape(-1)[:] = -side[: self.n]
-        self._part(layout.ELIMINATE, border, float(side[self.n]))
-        return self.scratch.step.copy()
-
-    def _part(self, what: int, border: np.ndarray, target: float) -> None:
-        self.loop.points(
-            what,
-            self.guess,
-            (target, 0.0),
-            ONE,
-            border,
-            self.nothing,
-            0,
-            self.part,
-            NO_AIM,
-        )
+        step, tangent = np.empty((2, self.n + 1))
+        with np.errstate(all="ignore"):
+            self.kernels.bordered(self.data, self.work, border, float(side[self.n]), step, tangent)
+        return step

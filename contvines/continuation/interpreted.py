@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import corrector, loop
-from .aims import Aim
-from .layout import Found, Metric, Points, Scratch
+from .aims import NOTHING, Aim
+from .layout import NOWHERE, Control, Found, Metric, Points, Scratch, Way
 from .step_rule import StepRule
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ class InterpretedLoop:
     metric : Metric
     noise : float
     known : ndarray
-        Bracket of a search; see :mod:`contvines.continuation.bracketing`.
+        Bracket of a search; see :mod:`contvines.continuation.layout`.
     scratch : Scratch
     rule : StepRule
     """
@@ -41,43 +41,19 @@ class InterpretedLoop:
         scratch: Scratch,
         rule: StepRule,
     ) -> None:
-        self.kernels, self.frame, self.noise = kernels, (data, work, known, metric, scratch), noise
-        self.rule = rule
+        self.kernels, self.frame, self.noise = kernels, (data, work, metric, scratch), noise
+        self.known, self.rule = known, rule
 
-    def march(self, chunk: Points, first: int, h: float, control: np.ndarray) -> tuple[int, float, int]:
+    def march(self, chunk: Points, first: int, h: float, control: Control) -> tuple[int, float, int]:
         """See :func:`contvines.continuation.loop.march`."""
-        data, work, _, metric, scratch = self.frame
-        numbers = control.tolist()  # Python's own numbers are quicker
         with np.errstate(all="ignore"):
-            return loop.march(
-                self.kernels, self.rule.judge, data, work, chunk, first, h, numbers, metric, scratch
-            )
+            return loop.march(self.kernels, self.rule.judge, self.frame, chunk, first, h, control)
 
-    def points(
-        self,
-        what: int,
-        chord: np.ndarray,
-        stretch: tuple[float, float],
-        places: np.ndarray,
-        border: np.ndarray,
-        along: np.ndarray,
-        max_sweeps: int,
-        found: Found,
-        aim: Aim,
-    ) -> int:
-        """See :func:`contvines.continuation.corrector.points`."""
+    def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:
+        """The points at some places, or the one that is aimed at; see :mod:`contvines.continuation.corrector`."""
         with np.errstate(all="ignore"):
-            return corrector.points(
-                self.kernels,
-                self.frame,
-                what,
-                chord,
-                stretch,
-                places,
-                border,
-                along,
-                max_sweeps,
-                found,
-                aim,
-                self.noise,
-            )
+            if aim.what != NOTHING:
+                return corrector.search(self.kernels, self.frame, way, found, self.known, aim, self.noise)
+            for i, s in enumerate(places):
+                corrector.point(self.kernels, self.frame, way, s, found, i, self.noise)
+        return NOWHERE

@@ -8,21 +8,6 @@ import numpy as np
 
 from .settings import SOLUTION
 
-# entries of the control vector
-(
-    ANGLE,
-    MIN_STEP,
-    MAX_STEP,
-    TOLERANCE,
-    LOWER,
-    UPPER,
-    STOP_AT_BORDER,
-    SWEEPS,
-    ROW_MARGINS,
-    NOISE,
-) = range(10)
-CONTROL_SIZE = 10
-
 # status codes (`contvines.continuation.chunk`)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
 
@@ -30,35 +15,42 @@ MARGIN = (
     -SOLUTION.rounding
 )  # margins below this are negative; above it they are zero to rounding, at a border or all along a branch
 
-# what `points` does
-LINEARISE, ELIMINATE, EVERYTHING = 0, 1, 2
-
 # what it finds when it looks for something
 NOWHERE, PASSED, AT_END = 0, 1, 2
 
-# where the numbers of a bracket stand (`contvines.continuation.bracketing`): the bracket (its last end first), a third point, and what belongs to each; the first width; tolerance and jump as
-# `begin` is given them; evaluations so far; whether the last one was not finite; what the secants need
-(
-    X1,
-    F1,
-    P1,
-    X2,
-    F2,
-    P2,
-    X3,
-    F3,
-    WIDTH,
-    PRECISION,
-    JUMP,
-    COUNT,
-    AGAIN,
-    WAIT,
-    AIMED,
-    BEYOND,
-) = range(16)
-SIDES = 16  # then for either side of zero: how many points have been there, the last but one, the last one (x and f)
-ON_A_SIDE = 5
-SIZE = SIDES + 2 * ON_A_SIDE
+# where numbers of a bracket stand in the memory of a loop: its last end first, x, f and the parameter of either; the tolerance and jump of a search
+ENDS, PRECISION, JUMP, SIZE = slice(6), 9, 10, 26
+
+
+class Control(NamedTuple):
+    """Settings of the march."""
+
+    angle: float
+    min_step: float
+    max_step: float
+    tolerance: float
+    lower: float
+    upper: float
+    stop_at_border: float
+    sweeps: float
+    row_margins: float
+    noise: float
+
+
+class Way(NamedTuple):
+    """Where single points are looked for.
+
+    ``chord``, shape (4, N + 1), is one of cubic Hermite interpolation: the first end, its tangent times the arc's length, the second end, its
+    tangent likewise. At a place s border.(u, p) is to be ``start`` + s ``length``; with length 0 the first end is a guess, and no more. Tangents are
+    returned with <along, tangent> >= 0. Newton's method takes at most ``sweeps`` (none at the chord's ends: they are good as they are).
+    """
+
+    chord: np.ndarray
+    start: float
+    length: float
+    border: np.ndarray
+    along: np.ndarray
+    sweeps: int
 
 
 class Metric(NamedTuple):

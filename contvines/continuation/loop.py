@@ -11,28 +11,11 @@ import math
 
 from .arrays import compare, extrapolate, fix_parameter, plane, put
 from .corrector import correct
-from .layout import (
-    ANGLE,
-    BORDER,
-    LEFT_INTERVAL,
-    LOWER,
-    MARGIN,
-    MAX_STEP,
-    MIN_STEP,
-    NOISE,
-    NOT_EVALUABLE,
-    ROW_MARGINS,
-    RUNNING,
-    STEP_TOO_SMALL,
-    STOP_AT_BORDER,
-    SWEEPS,
-    TOLERANCE,
-    UPPER,
-)
+from .layout import BORDER, LEFT_INTERVAL, MARGIN, NOT_EVALUABLE, RUNNING, STEP_TOO_SMALL
 from .settings import SOLUTION
 
 
-def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch):
+def march(kernels, judge, frame, chunk, first, h, control):
     """Fill rows first, first + 1, ... of the chunk arrays with points of the branch.
 
     Row first - 1 holds the last known point, row first - 2 (if any) the one before it.
@@ -42,20 +25,19 @@ def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch)
 
     Parameters
     ----------
-    kernels, data, work
+    kernels
         Of the problem.
     judge : callable
         Of the step rule.
+    frame : tuple
+        The problem's data and workspace, metric and `Scratch`.
     chunk : Points
         Filled.
     first : int
         At least 1.
     h : float
         Step to try first.
-    control : ndarray
-        Settings; see the names at the top.
-    metric : Metric
-    scratch : Scratch
+    control : Control
 
     Returns
     -------
@@ -65,21 +47,18 @@ def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch)
         Step to go on with.
     status : int
     """
+    data, work, metric, scratch = frame
     points, values, tangents = chunk.points, chunk.values, chunk.tangents
     rows, signs, corrections = chunk.rows, chunk.signs, chunk.corrections
     u, border, step, tangent = scratch.u, scratch.border, scratch.step, scratch.tangent
-    n = points.shape[1]
-    angle = control[ANGLE]
-    lower = control[LOWER]
-    upper = control[UPPER]
-    sweeps_allowed = int(control[SWEEPS])
-    row_margins = int(control[ROW_MARGINS])
-    row_size = rows.shape[1]
-    noise = control[NOISE]
+    n, row_size = points.shape[1], rows.shape[1]
+    angle, min_step, max_step, tolerance, lower, upper, stop_at_border, sweeps_allowed, row_margins, noise = (
+        control
+    )
     i = first
     trouble = 0
     while i < points.shape[0]:
-        if h < control[MIN_STEP]:
+        if h < min_step:
             return i, h, NOT_EVALUABLE if trouble == -2 else STEP_TOO_SMALL
         start = values[i - 1]
         p = extrapolate(points, values, tangents, i, h, metric, u)
@@ -108,7 +87,7 @@ def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch)
             p,
             border,
             target,
-            control[TOLERANCE],
+            tolerance,
             sweeps_allowed,
             step,
             tangent,
@@ -150,8 +129,8 @@ def march(kernels, judge, data, work, chunk, first, h, control, metric, scratch)
         i += 1
         if fixed:
             return i, h, LEFT_INTERVAL
-        h = min(h * factor, control[MAX_STEP])
-        if control[STOP_AT_BORDER] > 0.0:
+        h = min(h * factor, max_step)
+        if stop_at_border:
             for j in range(row_margins, row_size):
                 if rows[i - 1, j] < MARGIN:
                     return i, h, BORDER

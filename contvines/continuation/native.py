@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
+from dataclasses import astuple
 from functools import cache
 
 import numpy as np
@@ -13,11 +14,14 @@ from ..core.records import pack, place
 from ..core.table import memory_of
 from ..interrupts import wanted
 from .aims import Aim
-from .layout import RUNNING, Found, Metric, Points, Scratch
+from .layout import RUNNING, Control, Found, Metric, Points, Scratch, Way
+from .settings import SOLUTION
 from .step_rule import BY_ANGLE, StepRule
 
 AT_ONCE = 50_000  # unknowns times points of one call: between calls an interrupt is seen
 FEWEST = 8  # points of one call
+
+LIMITS = np.array(astuple(SOLUTION))
 
 JUDGE = ctypes.CFUNCTYPE(NUMBER, NUMBER, NUMBER, WHOLE, NUMBER, NUMBER, NUMBER)
 ABORT = -np.inf
@@ -66,7 +70,7 @@ class NativeLoop:
         Of unknowns with scale 1.
     noise : float
     known : ndarray
-        Bracket of a search; see :mod:`contvines.continuation.bracketing`.
+        Bracket of a search; see :mod:`contvines.continuation.layout`.
     scratch : Scratch
     rule : StepRule
     """
@@ -95,14 +99,15 @@ class NativeLoop:
             float(noise),
             *scratch,
             known,
+            LIMITS,
         )
         self.at = address(self.frame)
         self.judge = None if rule is BY_ANGLE else Judge(rule)
 
-    def march(self, chunk: Points, first: int, h: float, control: np.ndarray) -> tuple[int, float, int]:
+    def march(self, chunk: Points, first: int, h: float, control: Control) -> tuple[int, float, int]:
         """See :func:`contvines.continuation.loop.march`."""
         step, filled, status = NUMBER(h), WHOLE(first), RUNNING
-        arrays, size = [place(array) for array in chunk], len(chunk.points)
+        arrays, size, settings = [place(array) for array in chunk], len(chunk.points), np.array(control)
         slice_ = max(FEWEST, AT_ONCE // self.n)
         judge = None if self.judge is None else self.judge.address
         while status == RUNNING and filled.value < size and not wanted():
@@ -112,7 +117,7 @@ class NativeLoop:
                 filled.value,
                 min(filled.value + slice_, size),
                 ctypes.addressof(step),
-                address(control),
+                address(settings),
                 judge,
                 ctypes.addressof(filled),
             )
@@ -120,35 +125,21 @@ class NativeLoop:
                 self.judge.raise_again()
         return filled.value, step.value, status
 
-    def points(
-        self,
-        what: int,
-        chord: np.ndarray,
-        stretch: tuple[float, float],
-        places: np.ndarray,
-        border: np.ndarray,
-        along: np.ndarray,
-        max_sweeps: int,
-        found: Found,
-        aim: Aim,
-    ) -> int:
-        """See :func:`contvines.continuation.corrector.points`."""
+    def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:
+        """The points at some places, or the one that is aimed at; see :mod:`contvines.continuation.corrector`."""
         columns = np.ascontiguousarray(aim.columns, dtype=np.int64)
         aimed = pack(aim.what, len(columns), columns, aim.count, aim.kind, aim.sort, aim.rank, aim.anyway)
         return _points()(
             self.at,
-            what,
-            place(chord),
-            *stretch,
+            place(way.chord),
+            way.start,
+            way.length,
             place(places),
             len(places),
-            place(border),
-            place(along),
-            max_sweeps,
-            address(found.u),
-            address(found.tangents),
-            address(found.rows),
-            address(found.numbers),
+            place(way.border),
+            place(way.along),
+            way.sweeps,
+            *map(address, found),
             address(aimed),
         )
 
@@ -164,5 +155,5 @@ def _march() -> Callable[..., int]:
 def _points() -> Callable[..., int]:
     arrays = [POINTER] * 4
     return function(
-        "core_points", WHOLE, POINTER, WHOLE, POINTER, NUMBER, NUMBER, POINTER, WHOLE, POINTER, POINTER, WHOLE, *arrays, POINTER
+        "core_points", WHOLE, POINTER, POINTER, NUMBER, NUMBER, POINTER, WHOLE, POINTER, POINTER, WHOLE, *arrays, POINTER
     )  # fmt: skip

@@ -11,52 +11,8 @@ from contvines.shared.near_names import did_you_mean
 
 from .step_rule import BY_ANGLE, StepRule
 
-#: settings that are numbers between 0 and 1, and whole ones of at least 1
-BETWEEN = (
-    "tolerance",
-    "angle",
-    "first_step",
-    "min_step",
-    "max_step",
-    "amplitude",
-    "crooked",
-    "null",
-    "isolated",
-    "creep",
-    "resolution",
-    "upright",
-    "rounding",
-    "aside",
-    "close",
-    "near",
-    "shown",
-    "inside",
-    "sliver",
-    "exact",
-    "together",
-    "steep",
-    "tied",
-    "at_end",
-    "critical",
-    "marginal",
-    "located",
-    "stationary",
-    "one_place",
-    "offset",
-    "symmetric",
-    "same",
-)
-WHOLE = (
-    "max_iterations",
-    "max_points",
-    "first_chunk",
-    "chunk",
-    "max_branches",
-    "halvings",
-    "parts",
-    "longest",
-    "completion",
-)
+#: settings that may be any positive number; other numbers lie between 0 and 1, whole ones are 1 at least
+POSITIVE = ("escape", "mesh_caution")
 
 
 @near_names.hinted
@@ -203,18 +159,21 @@ class Settings:
     step_rule: StepRule = BY_ANGLE
 
     def __post_init__(self) -> None:
-        for name in BETWEEN:
+        for name, kind in self.__annotations__.items():
             value = getattr(self, name)
-            if not (isinstance(value, (int, float)) and 0.0 < value < 1.0):
-                raise ValueError(f"settings: {name} = {value!r} must be a number between 0 and 1")
-        for name in WHOLE:
-            value = getattr(self, name)
-            if not (isinstance(value, int) and value >= 1):
-                raise ValueError(f"settings: {name} = {value!r} must be a whole number of at least 1")
-        for name in ("escape", "mesh_caution"):
-            value = getattr(self, name)
-            if not value > 0.0:
-                raise ValueError(f"settings: {name} = {value!r} must be a positive number")
+            if name in POSITIVE:
+                right, wanted = value > 0.0, "a positive number"
+            elif kind == "float":
+                right, wanted = (
+                    isinstance(value, (int, float)) and 0.0 < value < 1.0,
+                    "a number between 0 and 1",
+                )
+            elif kind == "int":
+                right, wanted = isinstance(value, int) and value >= 1, "a whole number of at least 1"
+            else:
+                continue
+            if not right:
+                raise ValueError(f"settings: {name} = {value!r} must be {wanted}")
         if not isinstance(self.step_rule, StepRule):
             raise ValueError(f"settings: step_rule = {self.step_rule!r} must be a contvines.StepRule")
         if self.min_step >= self.max_step:
@@ -239,20 +198,19 @@ class Settings:
     @classmethod
     def kept(cls, values: Mapping[str, Any]) -> Settings:
         """The settings of a run, from what its graph keeps of them: the numbers; a rule of the user's own has to be given again."""
-        names = {field.name for field in fields(cls)} - {"step_rule"}
-        return cls(**{name: value for name, value in values.items() if name in names})
+        return cls(
+            **{name: values[name] for name in cls.__annotations__.keys() & values if name != "step_rule"}
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """As a JSON-able dict; of a step rule of the user's own the name."""
-        values = {
-            field.name: getattr(self, field.name) for field in fields(self) if field.name != "step_rule"
-        }
+        values = {name: value for name, value in vars(self).items() if name != "step_rule"}
         return values if self.step_rule is BY_ANGLE else {**values, "step_rule": self.step_rule.name}
 
 
 @dataclass(frozen=True)
 class SolutionSettings:
-    """What counts as a solution; no user's business. native/march.hpp has the same numbers for compiled problems.
+    """What counts as a solution; no user's business. The native core is handed these numbers, in this order (`Solution` in native/march.hpp).
 
     Attributes
     ----------

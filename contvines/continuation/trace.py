@@ -14,7 +14,7 @@ from ..journal import NullJournal
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from . import layout
-from .chunk import Chunk, Status
+from .chunk import OF_SOLVED, Chunk, Status, packed
 from .closing import Closing
 from .engine import Engine, Solved
 from .reach import Reach
@@ -87,11 +87,10 @@ def _chunks(
     retrace: Retrace | None = None
     problem = engine.problem
     adaptive = problem if engine.adaptive and isinstance(problem, Adaptive) else None
-    engine.control[layout.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
     if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
         start.p <= engine.lower and start.tangent[n] < 0.0
     ):
-        yield _pack([start], Status.LEFT_INTERVAL)
+        yield packed([start], Status.LEFT_INTERVAL)
         return
     history = [start] if adaptive is None else _anchored(engine, adaptive, [start])
     h = settings.first_step if first_step is None else first_step
@@ -198,15 +197,11 @@ def _march(
         np.zeros(size),
         np.zeros(size),
     )
-    for i, point in enumerate(history):
-        for array, known in zip(
-            arrays, (point.u, point.p, point.tangent, point.row, point.sign, point.correction)
-        ):
-            array[i] = known
-    engine.control[layout.STOP_AT_BORDER] = 1.0 if stop_at_border else 0.0
-    engine.control[layout.MAX_STEP] = longest
+    for array, name in zip(arrays, OF_SOLVED, strict=True):
+        array[:first] = [getattr(point, name) for point in history]
+    control = engine.control._replace(stop_at_border=stop_at_border, max_step=longest)
     with engine.section:
-        filled, h, status = engine.loop.march(arrays, first, float(h), engine.control)
+        filled, h, status = engine.loop.march(arrays, first, float(h), control)
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
 
 
@@ -216,18 +211,6 @@ def _apart(engine: Engine, longest: float) -> float:
     The rule allows an error of angle < 1 times the length, and the step to the end of the interval may be 1.5^2 times as long.
     """
     return 4.5 * longest if engine.settings.step_rule is BY_ANGLE else np.inf
-
-
-def _pack(solved: list[Solved], status: Status) -> Chunk:
-    return Chunk(
-        np.array([s.u for s in solved]),
-        np.array([s.p for s in solved]),
-        np.array([s.tangent for s in solved]),
-        np.array([s.row for s in solved]),
-        np.array([s.sign for s in solved]),
-        np.array([s.correction for s in solved]),
-        status,
-    )
 
 
 class Point(NamedTuple):

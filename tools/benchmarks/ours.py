@@ -5,8 +5,7 @@ import numpy as np
 import contvines as cv
 from contvines.command.compose import first_orbit, run_diagram
 from contvines.command.study import read_study
-from contvines.continuation import layout as source
-from contvines.continuation.layout import SIZE, Metric, Scratch
+from contvines.continuation.layout import SIZE, Control, Metric, Points, Scratch
 from contvines.continuation.native import NativeLoop
 from contvines.continuation.step_rule import BY_ANGLE
 from orbits import Absorber
@@ -45,14 +44,10 @@ class Core:
         self.points, self.values = np.empty((count, n)), np.empty(count)
         self.tangents, self.rows = np.empty((count, n + 1)), np.zeros((count, rows))
         self.points[0], self.values[0], self.tangents[0] = case.start(l)
-        control = np.zeros(source.CONTROL_SIZE)
-        control[source.ANGLE], control[source.MIN_STEP], control[source.MAX_STEP] = case.ANGLE, 1e-9, step
-        control[source.TOLERANCE], control[source.SWEEPS] = case.TOLERANCE, 8
-        control[source.LOWER], control[source.UPPER] = case.INTERVAL
-        control[source.ROW_MARGINS] = 2 * self.problem.n_multipliers
-        chunk = source.Points(
-            self.points, self.values, self.tangents, self.rows, np.zeros(count), np.zeros(count)
+        control = Control(
+            case.ANGLE, 1e-9, step, case.TOLERANCE, *case.INTERVAL, 0, 8, 2 * self.problem.n_multipliers, 0.0
         )
+        chunk = Points(self.points, self.values, self.tangents, self.rows, np.zeros(count), np.zeros(count))
         metric = Metric(np.ones(n + 1), np.ones(n + 1), *map(float, case.metric(l)))
         scratch = Scratch(np.zeros(n), *np.zeros((4, n + 1)))
         made = self.problem
