@@ -15,6 +15,7 @@ from ..graph.shortening import short_word
 from ..problems.abilities import Gauged, notation_of
 from ..shared.number_text import figures
 from ..shared.plot_options import PlotOptions
+from .census import attractors_of
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of
 
@@ -277,13 +278,7 @@ def basins(
         window = np.array([limits[across], limits[up]])
         curves = stable_manifolds(saddles, float(at), window, most=most)
     motions, index, mirrored = population.settle(starts, float(at))
-    attractors = [
-        Attractor(
-            float(at), m.word, int(m.periods), m.kind, None, float((index == k).mean()),
-            float(((index == k) & mirrored).mean()), index.size, float(m.exponent), float(m.error),
-        )
-        for k, m in enumerate(motions)
-    ]  # fmt: skip
+    attractors = attractors_of(motions, index, mirrored, float(at))
     shape = (rows, columns)
     return Basins(
         population.parameter,

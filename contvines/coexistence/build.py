@@ -114,18 +114,11 @@ def atlas(
     where = check_values(values, within)
     if starts is None:
         starts = max(2 * FEW, round(STARTS / population.price))
-    if not (isinstance(starts, int) and starts >= 1):
-        raise ValueError(f"starts = {starts!r} must be a whole number, 1 or more")
-    if not (isinstance(seed, int) and seed >= 0):
-        raise ValueError(f"seed = {seed!r} must be a whole number, 0 or more")
-    if budget is None:
-        budget = BUDGET
-    if not (isinstance(budget, int) and budget >= 1):
-        raise ValueError(f"budget = {budget!r} must be a whole number, 1 or more")
-    if scan is None:
-        scan = -(-len(where) * starts // FEW)
-    if not (isinstance(scan, int) and scan >= 0):
-        raise ValueError(f"scan = {scan!r} must be a whole number, 0 or more")
+    budget = BUDGET if budget is None else budget
+    _check_whole("starts", starts, 1)
+    scan = -(-len(where) * starts // FEW) if scan is None else scan
+    for name, value, least in (("seed", seed, 0), ("budget", budget, 1), ("scan", scan, 0)):
+        _check_whole(name, value, least)
     asked = {"values": len(where), "starts": starts, "seed": seed, "scan": scan, "budget": budget}
 
     def begun(kept: Journal, tell: Tell | None) -> tuple[Graph, Callable[[], None]]:
@@ -166,6 +159,11 @@ def _work(looking: _Looking, where: list[float], starts: int, scan: int) -> None
     everything.sort(key=lambda counted: counted.attractor.value)
     run.graph.attractors = [counted.attractor for counted in everything]
     finish(run)
+
+
+def _check_whole(name: str, value: object, least: int) -> None:
+    if not (isinstance(value, int) and value >= least):
+        raise ValueError(f"{name} = {value!r} must be a whole number, {least} or more")
 
 
 def check_values(values: int | Sequence[float], within: tuple[float, float]) -> list[float]:

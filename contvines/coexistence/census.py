@@ -10,7 +10,7 @@ import numpy as np
 
 from ..graph.attractor import Attractor
 from ..graph.run import Run
-from .population import Population
+from .population import Motion, Population
 
 if TYPE_CHECKING:
     from ..journal import Journal
@@ -81,25 +81,24 @@ def _settled(
         return recalled
     starts, before = starts_of(), population.work
     motions, index, mirrored = population.settle(starts, p)
-    found = []
-    for k, motion in enumerate(motions):
-        here = index == k
-        attractor = Attractor(
-            float(p),
-            motion.word,
-            int(motion.periods),
-            motion.kind,
-            None,
-            float(here.mean()),
-            float((here & mirrored).mean()),
-            len(starts),
-            float(motion.exponent),
-            float(motion.error),
-        )
-        found.append(Counted(attractor, motion.problem, motion.u, motion.state))
+    attractors = attractors_of(motions, index, mirrored, p)
+    found = [Counted(a, m.problem, m.u, m.state) for a, m in zip(attractors, motions, strict=True)]
     work = population.work - before
     journal.record(key, {**_recorded(found), "work": work})
     return found
+
+
+def attractors_of(
+    motions: Sequence[Motion], index: np.ndarray, mirrored: np.ndarray, p: float
+) -> list[Attractor]:
+    """What starts have settled on, with shares of them; see `contvines.coexistence.population`."""
+    return [
+        Attractor(
+            float(p), m.word, int(m.periods), m.kind, None, float((index == k).mean()),
+            float(((index == k) & mirrored).mean()), index.size, float(m.exponent), float(m.error),
+        )
+        for k, m in enumerate(motions)
+    ]  # fmt: skip
 
 
 def _recorded(found: Sequence[Counted]) -> dict[str, Any]:

@@ -45,20 +45,13 @@ class Windows:
         self.run, self.population, self.apart, self.effort = run, population, apart, effort
         self.left = 0  # searches that have not begun, or were not completed
 
-    def beside(self, found: Sequence[Counted]) -> int:
+    def beside(self, found: Sequence[Counted]) -> None:
         """Add to the graph the branches that are stable somewhere and hold an unstable cycle of a chaotic motion.
 
         A window opens at a fold with a stable and an unstable cycle; the stable one doubles and is lost in chaos, the unstable one
         lives on in it (E. Ott, Chaos in Dynamical Systems, 2002, on periodic windows). So it leads back, through the fold, into a window that may be too
         narrow for starts to meet.
-
-        Returns
-        -------
-        int
-            How many branches were added.
         """
-        before = len(self.run.graph.branches)
-        parameter = self.population.parameter
         chaotic = [
             (c.state, c.attractor.value)
             for c in found
@@ -66,39 +59,39 @@ class Windows:
         ]
         self.effort.expect(CYCLES, self.effort.waiting.get(CYCLES, 0) + len(chaotic))
         for state, p in chaotic:
-            if self.effort.over:
-                self.left += 1
-                continue
-            self.run.tell(f"unstable cycles in the chaos at {parameter} = {p:.6g}", p)
-            with self.effort.piece(CYCLES):
-                self._add(f"cycles/{p!r}", p, partial(self.population.embedded, state, p))
-        return len(self.run.graph.branches) - before
+            self._search(
+                f"cycles/{p!r}",
+                p,
+                "unstable cycles in the chaos",
+                partial(self.population.embedded, state, p),
+            )
 
-    def around(self, values: Sequence[float], count: int, seed: int) -> int:
+    def around(self, values: Sequence[float], count: int, seed: int) -> None:
         """Add to the graph the branches that are stable somewhere and hold a cycle that Newton's method reaches from starts.
 
         What settles on a narrow or rare motion is hard to meet; the cycles that its branch turns into, unstable ones, reach far beyond.
-
-        Returns
-        -------
-        int
-            How many branches were added.
         """
-        before = len(self.run.graph.branches)
         for p in values:
-            if self.effort.over:
-                self.left += 1
-                continue
-            starts = self.population.starts(count, seed, p)
-            self.run.tell(f"cycles from {count} starts at {self.population.parameter} = {p:.6g}", p)
-            with self.effort.piece(CYCLES):
-                self._add(f"cycles/{p!r}/{count}/{seed}", p, partial(self.population.returning, starts, p))
-        return len(self.run.graph.branches) - before
+            starts = partial(self.population.starts, count, seed, p)
+            self._search(
+                f"cycles/{p!r}/{count}/{seed}",
+                p,
+                f"cycles from {count} starts",
+                lambda p=p, starts=starts: self.population.returning(starts(), p),
+            )
 
-    def _add(self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Problem, np.ndarray]]]) -> None:
-        for problem, u, at in self._stable(key, p, cycles):
-            if self.run.register.find(problem, u, at, True) is None:
-                add_root(self.run, problem, u, at, max(self.run.depth - 1, 0))
+    def _search(
+        self, key: str, p: float, what: str, cycles: Callable[[], Sequence[tuple[Problem, np.ndarray]]]
+    ) -> None:
+        """Add to the graph what cycles at a value lead to, unless the work is over."""
+        if self.effort.over:
+            self.left += 1
+            return
+        self.run.tell(f"{what} at {self.population.parameter} = {p:.6g}", p)
+        with self.effort.piece(CYCLES):
+            for problem, u, at in self._stable(key, p, cycles):
+                if self.run.register.find(problem, u, at, True) is None:
+                    add_root(self.run, problem, u, at, max(self.run.depth - 1, 0))
 
     def _stable(
         self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Problem, np.ndarray]]]

@@ -13,6 +13,7 @@ from .kinds import Look
 from .linear import Null
 from .on_mesh import on_mesh
 from .plane import Plane
+from .probing import position_of
 from .problem import LocusProblem
 from .touching import slope_along_branch
 
@@ -35,17 +36,8 @@ class References:
         self.reference = locus.reference
         self.second = 0.0
         if plane.m >= 2:
-            self.reference = plane.pair(self._nearest(plane))[1]
+            self.reference = plane.pair(position_of(plane.spectrum, plane.flow, self.reference))[1]
             self.second = self._other(plane)
-
-    def _nearest(self, plane: Plane) -> float:
-        spectrum = plane.spectrum
-        upper = spectrum[spectrum.imag > 0.0]
-        if not len(upper):
-            return self.reference
-        if plane.flow:
-            return float(np.abs(upper[np.argmin(np.abs(upper.real))]) ** 2)
-        return float(upper[np.argmin(np.abs(np.abs(upper) - 1.0))].real)
 
     def _other(self, plane: Plane) -> float:
         spectrum = plane.spectrum

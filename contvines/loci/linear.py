@@ -76,18 +76,20 @@ class Linearisation:
             self._linearise()
         self.overwritten = True
 
-    def solve(self, side: np.ndarray, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
-        """(x, s) with F_u x + b s = side and c.x = 0."""
+    def _solved(self, side: np.ndarray | float, b: np.ndarray, c: np.ndarray) -> None:
+        """Solve with F_u, bordered by b and c: (side, 0) on the right, into `step`, and (0, 1), into `tangent`."""
         self._matrix()
         self.F[:], self.Q[:], self.line[:-1], self.line[-1] = -side, b, c, 0.0
         self.kernels.bordered(self.data, self.work, self.line, 0.0, self.step, self.tangent)
+
+    def solve(self, side: np.ndarray, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
+        """(x, s) with F_u x + b s = side and c.x = 0."""
+        self._solved(side, b, c)
         return self.step[:-1].copy(), float(self.step[-1])
 
     def null(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:
         """(v, g) with F_u v + b g = 0 and c.v = 1."""
-        self._matrix()
-        self.F[:], self.Q[:], self.line[:-1], self.line[-1] = 0.0, b, c, 0.0
-        self.kernels.bordered(self.data, self.work, self.line, 0.0, self.step, self.tangent)
+        self._solved(0.0, b, c)
         return self.tangent[:-1].copy(), float(self.tangent[-1])
 
     def left(self, b: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, float]:

@@ -45,9 +45,9 @@ def _of_period(
     problem: OnMesh, u: np.ndarray, p: float, period: float
 ) -> tuple[OnMesh, np.ndarray, float] | None:
     """The cycle of a given period near a guess, on a mesh that suits it."""
-    border = np.zeros(problem.dimension + 1)
-    border[problem.period_place] = 1.0
     while True:
+        border = np.zeros(problem.dimension + 1)
+        border[problem.period_place] = 1.0
         width = 1.0 + abs(p)
         engine = Engine(problem, (p - width, p + width), Settings())
         found = engine.solve(u, p, border, period)
@@ -62,5 +62,3 @@ def _of_period(
             return problem, found.u, found.p
         u, p = problem.halved(found.u), found.p
         problem = problem.with_unknowns(u, p, 2 * problem.intervals, problem.copies)
-        border = np.zeros(problem.dimension + 1)
-        border[problem.period_place] = 1.0

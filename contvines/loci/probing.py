@@ -6,6 +6,7 @@ native/loci.hpp has the same for compiled problems.
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..bifurcation.settings import LOCATING
 from ..shared.floating_point import ROUNDED
@@ -48,6 +49,15 @@ def pair_of(row, multipliers, flow, reference, found):
                 best = distance
                 found[0] = test
                 found[1] = place
+
+
+def position_of(spectrum: NDArray[np.complex128], flow: bool, other: float = 0.0) -> float:
+    """Position of the complex pair nearest to the stability boundary, see `pair_of`; `other` where there is none."""
+    upper = spectrum[spectrum.imag > 0.0]
+    if not len(upper):
+        return other
+    nearest = upper[np.argmin(np.abs(upper.real if flow else np.abs(upper) - 1.0))]
+    return float(np.abs(nearest) ** 2 if flow else nearest.real)
 
 
 def tests(data, work, u, p, q, values):

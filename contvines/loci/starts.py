@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
@@ -18,7 +17,7 @@ from .kinds import condition
 from .layout import APART, MARGIN, PAIR, PERIOD
 from .linear import Linearisation
 from .on_mesh import on_mesh
-from .probing import pair_of
+from .probing import pair_of, position_of
 from .problem import LocusProblem, has_natural_units
 from .settings import VANISHING
 
@@ -74,7 +73,7 @@ def begin(
     if wanted == PAIR:
         found = np.zeros(2)
         row = line.row()
-        nearest = _critical_pair(line.spectrum(), problem.spectrum == "flow")
+        nearest = position_of(line.spectrum(), problem.spectrum == "flow")
         pair_of(row, int(problem.n_multipliers), problem.spectrum == "flow", nearest, found)
         locus.reference = float(found[1])
     return locus
@@ -122,17 +121,6 @@ def singularity(problem: Problem, u: np.ndarray, p: float) -> float:
     line = Linearisation(problem)
     line.at(u, p)
     return abs(line.null_vectors().test)
-
-
-def _critical_pair(spectrum: NDArray[np.complex128], flow: bool) -> float:
-    """Position of the complex pair nearest to the stability boundary; see ``pair_of``."""
-    upper = spectrum[spectrum.imag > 0.0]
-    if not len(upper):
-        return 0.0
-    if flow:
-        return float(np.abs(upper[np.argmin(np.abs(upper.real))]) ** 2)
-    nearest = upper[np.argmin(np.abs(np.abs(upper) - 1.0))]
-    return float(nearest.real)
 
 
 def first_point(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -153,6 +152,10 @@ def checked_ends(problem: Problem, over: str, within: tuple[float, float]) -> No
         problem.check_value(over, value)
 
 
+class TooCoarse(Exception):
+    """A locus asks for more intervals."""
+
+
 def trace_locus(
     problem: LocusProblem,
     u: np.ndarray,
@@ -165,40 +168,13 @@ def trace_locus(
     virtual: bool = False,
     journal: Journal | None = None,
     progress: Callable[[str, int, float], None] | None = None,
+    finer: int = 0,
 ) -> Locus | None:
     """The locus through a special point, both ways; None if its equations do not converge there.
 
-    Where a mesh is too coarse all is done again with twice as many intervals.
+    Where a mesh is too coarse all is done again with twice as many intervals, `finer` times so far.
     """
-    for level in count(0):
-        name = f"locus/{label}" if level == 0 else f"locus/{label}/finer {level}"
-        try:
-            return _traced(problem, u, p, q, within, settings, label, seed, virtual, journal, progress, name)
-        except TooCoarse:
-            assert isinstance(problem, AdaptiveLocus)
-            u = problem.mesh.halved(u)
-            problem = problem.refined()
-    raise AssertionError("meshes are refined a few times at most")
-
-
-class TooCoarse(Exception):
-    """A locus asks for more intervals."""
-
-
-def _traced(
-    problem: LocusProblem,
-    u: np.ndarray,
-    p: float,
-    q: float,
-    within: tuple[float, float],
-    settings: Settings,
-    label: str,
-    seed: str | None,
-    virtual: bool,
-    journal: Journal | None,
-    progress: Callable[[str, int, float], None] | None,
-    name: str,
-) -> Locus | None:
+    name = f"locus/{label}/finer {finer}" if finer else f"locus/{label}"
     engine, start = first_point(problem, u, p, q, within, settings)
     if start is None:
         return None
@@ -231,16 +207,23 @@ def _traced(
 
     if start.tangent[-1] < 0.0:
         start = start._replace(tangent=-start.tangent, sign=-start.sign)
-    ahead, ahead_real, ahead_ended, last = go(start, "ahead")
     first = None
-    if ahead.status == Status.CLOSED:
-        whole, flags, ended = ahead, ahead_real, (ahead_ended, ahead_ended)
-    else:
-        turned = start._replace(tangent=-start.tangent, sign=-start.sign)
-        back, back_real, back_ended, first = go(turned, "back")
-        whole = back.reversed().extended(ahead, skip=1)
-        flags = np.append(back_real[::-1], ahead_real[1:])
-        ended = (back_ended, ahead_ended)
+    try:
+        ahead, ahead_real, ahead_ended, last = go(start, "ahead")
+        if ahead.status == Status.CLOSED:
+            whole, flags, ended = ahead, ahead_real, (ahead_ended, ahead_ended)
+        else:
+            turned = start._replace(tangent=-start.tangent, sign=-start.sign)
+            back, back_real, back_ended, first = go(turned, "back")
+            whole = back.reversed().extended(ahead, skip=1)
+            flags = np.append(back_real[::-1], ahead_real[1:])
+            ended = (back_ended, ahead_ended)
+    except TooCoarse:
+        assert isinstance(problem, AdaptiveLocus)
+        u, problem = problem.mesh.halved(u), problem.refined()
+        return trace_locus(
+            problem, u, p, q, within, settings, label, seed, virtual, journal, progress, finer + 1
+        )
     endings = (Ending.said(ended[0]), Ending.said(ended[1]))
     branch = make_branch(label, engine, whole, real, endings, ahead.status == Status.CLOSED, seed)
     branch.description["unfolded"] = problem.unfolded

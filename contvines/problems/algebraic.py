@@ -183,20 +183,9 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             return image
         return lambda u: np.append(image(u[: self.node]), u[self.node :])
 
-    @property
-    def lengths(self) -> np.ndarray:
-        """Length over which the equations bend in each unknown; the multipliers of conditions have 1."""
-        return np.append(super().lengths, np.ones(self.dimension - self.node))
-
-    @property
-    def bends(self) -> np.ndarray:
-        """Whether they bend in each unknown at all."""
-        return np.append(super().bends, np.ones(self.dimension - self.node, dtype=bool))
-
-    @property
-    def known(self) -> np.ndarray:
-        """Whether the length of each unknown comes from the equations or from the start."""
-        return np.append(super().known, np.ones(self.dimension - self.node, dtype=bool))
+    def _of_unknowns(self, each: np.ndarray) -> np.ndarray:
+        """The multipliers of conditions have the length 1."""
+        return np.append(each, np.ones(self.dimension - self.node, dtype=each.dtype))
 
     # ------------------------------------------------------------------ numerics
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:

@@ -206,20 +206,24 @@ class CallableProblem(ProblemDefaults, ABC):
         """Length of a direction as normal forms measure it: Euclidean, over the unknowns (over the first point of a cycle)."""
         return float(np.linalg.norm(direction[: self.node]))
 
+    def _of_unknowns(self, each: np.ndarray) -> np.ndarray:
+        """What `functions` know of each of their arguments, of each unknown."""
+        return each
+
     @property
     def lengths(self) -> np.ndarray:
         """Length over which the equations bend in each unknown."""
-        return self.functions.lengths
+        return self._of_unknowns(self.functions.lengths)
 
     @property
     def bends(self) -> np.ndarray:
         """Whether they bend in each unknown at all."""
-        return self.functions.bends
+        return self._of_unknowns(self.functions.bends)
 
     @property
     def known(self) -> np.ndarray:
         """Whether the length of each unknown comes from the equations or from the start; else it is 1."""
-        return self.functions.known
+        return self._of_unknowns(self.functions.known)
 
     @property
     def noise(self) -> float:

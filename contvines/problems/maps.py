@@ -154,20 +154,8 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         self._find_symmetries()
         return self
 
-    @property
-    def lengths(self) -> np.ndarray:
-        """Length over which the map bends in each unknown."""
-        return np.tile(self.functions.lengths, self.cycle)
-
-    @property
-    def bends(self) -> np.ndarray:
-        """Whether it bends in each unknown at all."""
-        return np.tile(self.functions.bends, self.cycle)
-
-    @property
-    def known(self) -> np.ndarray:
-        """Whether the length of each unknown comes from the map or from the start."""
-        return np.tile(self.functions.known, self.cycle)
+    def _of_unknowns(self, each: np.ndarray) -> np.ndarray:
+        return np.tile(each, self.cycle)
 
     def _with_cycle(self, u: np.ndarray, p: float, pieces: Pieces) -> MapProblem:
         """The same map's cycles of another length, or in other pieces; scales are kept."""

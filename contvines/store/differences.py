@@ -168,19 +168,9 @@ def _loci(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
 def of_graph(graph: Graph) -> dict[str, Any]:
     """Branches, special points and links of a graph, from its documented JSON."""
     data = graph.to_dict()
+    kept = ("word", "periods", "symmetric", "real", "range", "stable", "closed")
     return {
-        "branches": {
-            entry["label"]: {
-                "word": entry["word"],
-                "periods": entry["periods"],
-                "symmetric": entry["symmetric"],
-                "real": entry["real"],
-                "range": entry["range"],
-                "stable": entry["stable"],
-                "closed": entry["closed"],
-            }
-            for entry in data["branches"]
-        },
+        "branches": {entry["label"]: {name: entry[name] for name in kept} for entry in data["branches"]},
         "points": {
             entry["label"]: {
                 "kind": entry["kind"],
