@@ -68,9 +68,7 @@ class Manifold:
         }
 
 
-def stable_manifolds(
-    graph: Graph, at: float, limits: np.ndarray, *, longest: float = LENGTH, most: int = MOST
-) -> list[Manifold]:
+def stable_manifolds(graph: Graph, at: float, limits: np.ndarray, *, most: int = MOST) -> list[Manifold]:
     """Both halves of the stable manifolds of all real saddles, and their images, that a graph has at a value of its parameter.
 
     Parameters
@@ -79,8 +77,6 @@ def stable_manifolds(
     at : float
     limits : float array (2, 2)
         Smallest and largest coordinates of the plane.
-    longest : float
-        Sizes of the plane.
     most : int
         Periods that are simulated for all curves together, of which those that are left have equal parts: many saddles have short curves.
 
@@ -108,7 +104,7 @@ def stable_manifolds(
     found: list[Manifold] = []
     for k, (label, word, section, place, periods) in enumerate(wanted):
         counted = _Counted(section.step, most // (len(wanted) - k) // periods)
-        for points, ended in _halves(section, counted, place, limits, longest):
+        for points, ended in _halves(section, counted, place, limits):
             found.append(Manifold(label, word, points, ended))
         most -= counted.steps * periods
     return found
@@ -169,7 +165,7 @@ def _saddles(branch: Branch, at: float) -> list[np.ndarray]:
 
 
 def _halves(
-    section: Section, step: _Counted, place: np.ndarray, limits: np.ndarray, longest: float
+    section: Section, step: _Counted, place: np.ndarray, limits: np.ndarray
 ) -> list[tuple[np.ndarray, str]]:
     """The pieces of both halves, and how each ends."""
     size = float(np.ptp(limits, axis=1).max())
@@ -186,7 +182,7 @@ def _halves(
     pieces = []
     for side, most in ((1.0, (step.most + step.steps) // 2), (-1.0, step.most)):
         half = _Half(image, struck, place, side * ray, first, limits)
-        pieces += half.grown(longest, lambda most=most: step.steps < most)
+        pieces += half.grown(lambda most=most: step.steps < most)
     return pieces
 
 
@@ -233,12 +229,12 @@ class _Half:
         self.heading, self.at, self.length = ray, 0, first
         self.smallest = min(MANIFOLDS.smallest * self.size, 0.01 * first)
 
-    def grown(self, longest: float, more: Callable[[], bool]) -> list[tuple[np.ndarray, str]]:
+    def grown(self, more: Callable[[], bool]) -> list[tuple[np.ndarray, str]]:
         """The pieces, and how each ends."""
         self.more = more
-        ends = [self._on(self.length, TURN, longest * self.size)]
+        ends = [self._on(self.length, TURN)]
         while ends[-1] == "leaves" and self._through():
-            ended = self._on(MANIFOLDS.corner * self.size, INWARD, longest * self.size)
+            ended = self._on(MANIFOLDS.corner * self.size, INWARD)
             if len(self.pieces[-1]) == 1:  # it does not come out of the wall
                 self.pieces.pop()
                 break
@@ -246,10 +242,10 @@ class _Half:
             ends.append("long" if len(ends) + 1 == PIECES else ended)
         return [(np.array(points), end) for points, end in zip(self.pieces, ends, strict=True)]
 
-    def _on(self, radius: float, widest: float, longest: float) -> str:
+    def _on(self, radius: float, widest: float) -> str:
         """Grow the last piece as far as it goes."""
         points, size, limits = self.pieces[-1], self.size, self.limits
-        while self.length < longest and self.more():
+        while self.length < LENGTH * size and self.more():
             starts, ends = self._segments()
             known = (starts, ends, self.at)
             found = next_point(self.image, known, points[-1], self.heading, radius, widest)

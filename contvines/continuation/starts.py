@@ -100,7 +100,7 @@ def _is_complete(problem: object) -> TypeGuard[Problem]:
     return all(hasattr(problem, name) for name in MEMBERS)
 
 
-def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | None = None) -> Solved:
+def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
     """The first point of a branch.
 
     Raises
@@ -118,7 +118,7 @@ def solve_start(engine: Engine, u: ArrayLike, p: float, tangent: np.ndarray | No
         )
     if len(u) != engine.n or not np.all(np.isfinite(u)):
         raise ValueError(f"the start must be {engine.n} finite numbers, not {u}")
-    found = engine.start(u, p, tangent)
+    found = engine.start(u, p)
     if found is None:
         residual = engine.residual(u, p)
         if stuck := getattr(engine.problem, "stuck", ""):

@@ -112,7 +112,6 @@ def chart_of_one(
     over: str,
     within: tuple[float, float],
     virtual: bool = False,
-    settings: Settings | Mapping[str, Any] | None = None,
     progress: Callable[[ChartProgress], None] | None = None,
 ) -> Chart:
     """The locus of one special point of a graph with the points of codimension two on it, as a chart.
@@ -122,7 +121,7 @@ def chart_of_one(
     graph : Graph
     label : str
         Of the special point.
-    over, within, virtual, settings, progress
+    over, within, virtual, progress
         As for :func:`chart`.
 
     Raises
@@ -136,7 +135,7 @@ def chart_of_one(
         check_interval(within),
         check_interval(graph.within),
         virtual,
-        Settings.of(settings),
+        Settings(),
         None,
         progress,
     )
@@ -146,7 +145,6 @@ def chart_of_one(
         within,
         bounds=graph.within,
         virtual=virtual,
-        settings=settings,
         progress=lambda name, count, value: run.tell(f"{name}: {count} points"),
     )
     run.chart.loci[label] = found

@@ -49,14 +49,11 @@ class References:
         return float(np.abs(other) ** 2 if plane.flow else other.real)
 
 
-def test_of(look: Look, locus: LocusProblem, at: References, rough: bool = False) -> Test | None:
-    """The test function of something to look for; None where it cannot be asked here.
-
-    Coefficients are computed to a few digits with ``rough``.
-    """
+def test_of(look: Look, locus: LocusProblem, at: References) -> Test | None:
+    """The test function of something to look for; None where it cannot be asked here."""
     plus, minus = at.plus, at.minus
     if look.test in COEFFICIENTS:
-        return lambda x: coefficient_of(look, at, x, rough).value
+        return lambda x: coefficient_of(look, at, x).value
     if look.test == "plus":
         return lambda x: x.singular_test(plus.column, plus.row)
     if look.test == "minus":

@@ -91,7 +91,7 @@ def name_of(found: dict[str, Any]) -> str:
 
 
 def divide(
-    curves: Iterable[np.ndarray], within: tuple[tuple[float, float], tuple[float, float]], cells: int = CELLS
+    curves: Iterable[np.ndarray], within: tuple[tuple[float, float], tuple[float, float]]
 ) -> list[Region]:
     """The regions between curves, largest first, without what is stable there.
 
@@ -101,22 +101,20 @@ def divide(
         (p, q) along each.
     within : ((float, float), (float, float))
         Intervals of p and q.
-    cells : int
-        Of the raster, each way.
     """
     from scipy.ndimage import distance_transform_edt, label
 
-    free = np.ones((cells, cells), dtype=bool)
+    free = np.ones((CELLS, CELLS), dtype=bool)
     lows = np.array([within[0][0], within[1][0]])
     widths = np.array([within[0][1] - within[0][0], within[1][1] - within[1][0]])
     for curve in curves:
-        scaled = (np.asarray(curve) - lows) / widths * cells
+        scaled = (np.asarray(curve) - lows) / widths * CELLS
         for a, b in pairwise(scaled):
             if not (np.isfinite(a).all() and np.isfinite(b).all()):
                 continue
             steps = int(np.ceil(2.0 * np.abs(b - a).max())) + 1
             places = np.floor(a + np.linspace(0.0, 1.0, steps + 1)[:, None] * (b - a)).astype(int)
-            inside = ((places >= 0) & (places < cells)).all(axis=1)
+            inside = ((places >= 0) & (places < CELLS)).all(axis=1)
             free[places[inside, 0], places[inside, 1]] = False
     marked, count = label(free)  # type: ignore[misc]
     padded = np.pad(free, 1, constant_values=False)
@@ -128,9 +126,9 @@ def divide(
         if size < SMALLEST:
             continue
         inner = np.where(own, depth, -1.0)
-        (p, q), *more = lows + (_places(inner, size / cells**2) + 0.5) / cells * widths
+        (p, q), *more = lows + (_places(inner, size / CELLS**2) + 0.5) / CELLS * widths
         further = [{"at": [float(a), float(b)], "attractors": []} for a, b in more]
-        regions.append(Region((float(p), float(q)), size / cells**2, [], own, further))
+        regions.append(Region((float(p), float(q)), size / CELLS**2, [], own, further))
     return sorted(regions, key=lambda region: -region.share)
 
 

@@ -23,6 +23,7 @@ MANY = 64  # rows of fewer are asked one by one
 CLOSER = 20  # halvings after which a continuous function has hardly changed any more
 REACH = 9  # of them on either side of the guess: sixteen orders of magnitude
 
+CLOSER_TABLES = 5  # of differences, each a thousand times closer than the one before
 # stretches over which samples are compared with polynomials, as parts of a length; samples on each; degree
 STRETCHES, SAMPLES, DEGREE = (0.1, 0.02, 0.004, 0.0008), 20, 8
 
@@ -214,7 +215,7 @@ def _bend_of_row(
     return np.inf
 
 
-def noise_of(f: Line, spacing: float, tries: int = 5) -> np.ndarray:
+def noise_of(f: Line, spacing: float) -> np.ndarray:
     """Noise of each entry of f: its standard deviation, from tables of differences.
 
     More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33 (2011) 1292: the k-th difference of noise of
@@ -227,12 +228,10 @@ def noise_of(f: Line, spacing: float, tries: int = 5) -> np.ndarray:
         t -> ndarray.
     spacing : float
         Between the samples at first.
-    tries : int
-        How often it is made smaller.
     """
     before, _ = _table(f, spacing)
     found, falling = before, np.ones(before.shape, dtype=bool)
-    for _ in range(tries):
+    for _ in range(CLOSER_TABLES):
         spacing *= 0.001
         here, still = _table(f, spacing)
         falling &= ~still  # between two stairs, or two numbers of the machine, there is nothing to be seen
@@ -306,7 +305,7 @@ def _continuous(f: Line, t: float, r: int, felt: float) -> bool:
     return True
 
 
-def coupling(f: Callable[[float, float], np.ndarray], guess: float, enough: int = REACH) -> float | None:
+def coupling(f: Callable[[float, float], np.ndarray], guess: float) -> float | None:
     """Size of an unknown that decides how f changes with another one, though f is linear in either; None if it does not.
 
     The change of f with the other unknown grows linearly with this one; the size is where it has doubled, or gone to zero.
@@ -317,8 +316,6 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float, enough: int 
         (t, s) -> ndarray; this unknown is changed by t, the other one by the length over which f bends in it if s = 1.
     guess : float
         Sizes around this one are tried.
-    enough : int
-        How many on either side.
     """
     with np.errstate(all="ignore"):
         here, there = f(0.0, 0.0), f(0.0, 1.0)
@@ -330,7 +327,7 @@ def coupling(f: Callable[[float, float], np.ndarray], guess: float, enough: int 
             floor = DERIVATIVES.mixed * EPSILON * np.max([np.abs(low), np.abs(high), direct], axis=0)
             return np.abs((high - low) - (there - here)), floor
 
-        for t in guess * FACTOR ** np.arange(-enough, enough + 1.0):
+        for t in guess * FACTOR ** np.arange(-REACH, REACH + 1.0):
             mixed, floor = both(t)
             seen = plain & (mixed > floor) & np.isfinite(mixed)
             if seen.any():

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from _typeshed import SupportsRichComparison
     from numpy.typing import ArrayLike
 
+MOST = 400  # elements of a group
+
 Image = Callable[[np.ndarray], np.ndarray]
 
 
@@ -65,22 +67,18 @@ def image_map(
     )
 
 
-def images_of(
-    generators: list[Callable[[np.ndarray], np.ndarray]], n: int, most: int = 400
-) -> list[Callable]:
+def images_of(generators: list[Callable[[np.ndarray], np.ndarray]], n: int) -> list[Callable]:
     """All elements, but for the identity, of the finite group that some images generate.
 
     Parameters
     ----------
     generators : list of callable
     n : int
-    most : int
-        Larger groups are refused.
 
     Raises
     ------
     ValueError
-        If there are more elements than `most`: the group is not finite, or too large to be listed.
+        If there are more than `MOST` elements: the group is not finite, or too large to be listed.
     """
     probe = np.modf(np.sqrt(2.0) * np.arange(1.0, n + 1.0))[0]
     known, elements = [probe], []
@@ -92,9 +90,9 @@ def images_of(
             continue
         known.append(image)
         elements.append(element)
-        if len(elements) > most:
+        if len(elements) > MOST:
             raise ValueError(
-                f"symmetries generate more than {most} images; give generators of a finite group"
+                f"symmetries generate more than {MOST} images; give generators of a finite group"
             )
         todo += [lambda u, f=element, g=g: g(f(u)) for g in generators]
     return elements

@@ -10,6 +10,12 @@ LARGE, SMALL = 2.0**200, 2.0**-200  # a running product is rescaled outside this
 LARGEST, LEAST = 2.0**1023, 2.0**-1021  # multipliers beyond these are clamped (never to 0 or infinity)
 
 
+def in_range(size):
+    """(factor, exponent): the power of two by which a number of this size is divided, where it is very large or small; 0 is left."""
+    shift = 0 if size == 0.0 or SMALL < size < LARGE else math.frexp(size)[1]
+    return math.ldexp(1.0, -shift), shift
+
+
 def scaled(mantissa, exponent):
     """mantissa * 2**exponent, clamped away from 0 and infinity (an exact 0 stays 0)."""
     if mantissa == 0.0 or not math.isfinite(mantissa):

@@ -12,11 +12,10 @@ import math
 import numpy as np
 
 from .factors import (
-    LARGE,
-    SMALL,
     UNIT_ROUNDOFF,
     deficiency,
     factors,
+    in_range,
     scaled,
     sort_eigenvalues,
 )
@@ -95,11 +94,8 @@ def _shift(T, hi):
         norm = abs(a) + abs(b) + abs(d)
         if norm == 0.0:
             return 0j, 0
-        if not SMALL < norm < LARGE:
-            shift = math.frexp(norm)[1]
-            factor = math.ldexp(1.0, -shift)
-            a, b, d = a * factor, b * factor, d * factor
-            power += shift
+        factor, shift = in_range(norm)
+        a, b, d, power = a * factor, b * factor, d * factor, power + shift
     H = T[last]
     p00, p01 = H[hi - 1, hi - 1] * a, H[hi - 1, hi - 1] * b + H[hi - 1, hi] * d
     p10, p11 = H[hi, hi - 1] * a, H[hi, hi - 1] * b + H[hi, hi] * d
@@ -124,8 +120,7 @@ def _iterate(T, turns):
         while lo > 0:
             size = abs(H[lo - 1, lo - 1]) + abs(H[lo, lo])
             if size == 0.0:
-                for j in range(hi + 1):
-                    size += abs(H[lo - 1, j])
+                size = np.abs(H[lo - 1, : hi + 1]).sum()
             if abs(H[lo, lo - 1]) <= UNIT_ROUNDOFF * size:
                 H[lo, lo - 1] = 0.0
                 break
@@ -138,20 +133,13 @@ def _iterate(T, turns):
         ratio, power = 1.0 + 0j, 0  # the scale of the product's first column
         for i in range(last):
             for k in range(lo, hi + 1):
-                size = 0.0
-                for j in range(k, hi + 1):
-                    size += abs(T[i, k, j])
-                for j in range(lo, k):
-                    size += abs(T[i, j, k])
+                size = np.abs(T[i, k, k : hi + 1]).sum() + np.abs(T[i, lo:k, k]).sum()
                 if abs(T[i, k, k]) <= UNIT_ROUNDOFF * size:
                     T[i, k, k] = 0.0
                     singular = True
             ratio *= T[i, lo, lo]
-            size = abs(ratio)
-            if not SMALL < size < LARGE and size != 0.0:
-                shift = math.frexp(size)[1]
-                ratio *= math.ldexp(1.0, -shift)
-                power += shift
+            factor, shift = in_range(abs(ratio))
+            ratio, power = ratio * factor, power + shift
         if singular or tries < 2 or tries % 8 == 7:
             # a step without shift, explicit: it sorts the moduli and sweeps exact zeros down
             for k in range(lo, hi):
@@ -165,12 +153,8 @@ def _iterate(T, turns):
             target, own = _shift(T, hi)
             if tries % 10 == 9:
                 target *= 1.0 + 0.5j
-            gap = own - power
-            if gap > 900:
-                gap = 900
-            if gap < -900:
-                target, gap = 0j, 0
-            first = H[lo, lo] - target / ratio * math.ldexp(1.0, gap)
+            gap = min(own - power, 900)
+            first = H[lo, lo] - (target / ratio * math.ldexp(1.0, gap) if gap >= -900 else 0.0)
             second = H[lo + 1, lo]
             c, s = _rotation(first, second)
             _rows(H, lo, c, s, lo, hi)
@@ -201,13 +185,8 @@ def _diagonal(T, re, im, value, power):
         product, raised = 1.0 + 0j, 0
         for i in range(length):
             product *= T[i, k, k]
-            size = abs(product)
-            if size == 0.0:
-                break
-            if not SMALL < size < LARGE:
-                shift = math.frexp(size)[1]
-                product *= math.ldexp(1.0, -shift)
-                raised += shift
+            factor, shift = in_range(abs(product))
+            product, raised = product * factor, raised + shift
         size = abs(product)
         if size > 0.0:
             shift = math.frexp(size)[1]

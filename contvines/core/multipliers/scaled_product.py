@@ -7,11 +7,10 @@ import math
 import numpy as np
 
 from .factors import (
-    LARGE,
-    SMALL,
     UNIT_ROUNDOFF,
     deficiency,
     factors,
+    in_range,
     scaled,
     sort_eigenvalues,
 )
@@ -23,10 +22,8 @@ def _in_range(matrix):
     norm = float(np.abs(matrix).sum())
     if not norm < math.inf:
         return None
-    if norm == 0.0 or SMALL < norm < LARGE:
-        return matrix, 0
-    shift = math.frexp(norm)[1]
-    return matrix * math.ldexp(1.0, -shift), shift
+    factor, shift = in_range(norm)
+    return matrix * factor, shift
 
 
 def scaled_product(A, D, twist, re, im):
