@@ -27,9 +27,10 @@ def eliminate(
     rows: np.ndarray,
     foot: np.ndarray,
     d: int,
+    closure: float = 1.0,
 ) -> Eliminated:
     """Solve ``blocks[i] x_i + columns[i] (e, -1) = 0``, ``sum rows[i] x_i + foot (e, -1) = 0``, where the last node of an interval is the
-    first one of the next, and the last one of all is the first.
+    first one of the next, and the last one of all is ``closure`` times the first.
 
     Parameters
     ----------
@@ -40,6 +41,7 @@ def eliminate(
     rows : ndarray, shape (N, k, m d)
     foot : ndarray, shape (k, k + s)
     d : int
+    closure : float
     """
     count, size, _ = blocks.shape
     k, s = foot.shape[0], foot.shape[1] - foot.shape[0]
@@ -50,7 +52,7 @@ def eliminate(
         np.empty((k, s)),
         np.empty(_room(count, size - d, d, k, s)),
     )
-    system = pack(count, size - d, d, k, s, 1.0, *arrays, left, right, states, shared, room)
+    system = pack(count, size - d, d, k, s, float(closure), *arrays, left, right, states, shared, room)
     sign = function("core_collocation", NUMBER, POINTER)(address(system))
     return Eliminated(states, shared, left, right, sign)
 

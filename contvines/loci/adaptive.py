@@ -13,8 +13,7 @@ from ..problems.registry import rebuild
 from .borders import borders_at
 from .layout import FOLD, GROWTH, KNOWN, PERIOD
 from .on_mesh import OnMesh, on_mesh
-from .problem import LocusProblem, described
-from .work import Work
+from .problem import LocusProblem, Work, described
 
 
 class AdaptiveLocus(LocusProblem):

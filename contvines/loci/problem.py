@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from typing import Any, TypedDict
+from typing import Any, NamedTuple, TypedDict
 
 import numpy as np
 
@@ -12,19 +12,80 @@ from contvines.shared.near_names import did_you_mean
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
-from ..problems.protocol import Kernels, Problem, ProblemDefaults
+from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, array_of
 from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
-from .layout import BRANCH, FLIP, MARGIN, PAIR
+from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
 from .settings import SCALING
-from .work import Data, Work
 
 FURTHER = 100.0  # times the sizes along the branch: no locus is measured with more
 
 
 TABLE = 3  # of loci, in the native core
 IN_PYTHON = Kernels(locus_linearise, locus_bordered, locus_inspect)
+
+
+NOTHING = np.zeros(0)
+
+
+class Data(NamedTuple):
+    """What the kernels know of a locus; ``memory`` is the struct `Data` of native/loci.hpp."""
+
+    first: object
+    second: object
+    calls: KernelFunctions
+    kind: int
+    which: int
+    multipliers: int
+    flow: bool
+    unit: float
+    memory: np.ndarray = NOTHING
+
+
+class Work:
+    """Arrays of the kernels, in the order of the struct `Work` of native/loci.hpp, which is ``memory``."""
+
+    memory = NOTHING
+
+    def __init__(self, locus: LocusProblem) -> None:
+        problem, n, size = locus.base, locus.size, locus.dimension
+        column, tests = problem.kernels.column, max(size - n, 2)
+        self.base, self.trial = locus.first.workspace(), locus.first.workspace()
+        self.residual = np.zeros(size)
+        self.base_F, self.base_Q = array_of(self.base).reshape(-1), array_of(self.base, column).reshape(-1)
+        self.trial_F, self.trial_Q = (
+            array_of(self.trial).reshape(-1),
+            array_of(self.trial, column).reshape(-1),
+        )
+        self.point = np.zeros(size + 1)
+        self.columns = np.zeros((2, n))
+        self.solutions = np.zeros((6, n + 1))
+        self.directions = np.zeros((4, size + 1))
+        self.borders = locus.borders.copy()
+        self.row = np.zeros(2 * problem.n_multipliers + problem.n_margins)
+        self.shifted = np.zeros(n + 1)
+        self.scales = locus.sizes
+        self.values, self.slopes = np.zeros((2, tests))
+        self.lines = np.zeros((2, n + 1))
+        self.reference = np.array(
+            [locus.reference, 0.0, 0.0, *(bound / locus.unit for bound in locus.bounds)]
+        )
+        self.small = np.zeros((3, 5))
+        self.masked = np.array(locus.masked, np.int64).reshape(-1)
+        self.rows = locus.rows
+        self.frozen = np.zeros(size + 1)
+        self.steep = np.zeros((3, tests))
+        self.state = np.array([-1.0, 1.0, 0.0, LONGEST])
+        self.frame = np.random.default_rng(7).standard_normal(n + 1) / np.sqrt(n)
+        self.kept = np.zeros(size)
+        if locus.compiled:
+            arrays = [part for part in vars(self).values() if isinstance(part, np.ndarray)]
+            places = memory_of(self.base), memory_of(self.trial)
+            self.memory = pack(n, size, len(self.masked), *places, *arrays, len(self.row))
+
+    def __getitem__(self, place: int) -> np.ndarray:
+        return (self.residual,)[place]
 
 
 class LocusProblem(ProblemDefaults):

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
     from .dense import DenseWork
     from .images import Image
-    from .interpreted import Linearised
     from .large.sparse_work import SparseWork
     from .protocol import Kernels
 
@@ -180,16 +179,6 @@ class CallableProblem(ProblemDefaults, ABC):
     @abstractmethod
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
         """F alone."""
-
-    @abstractmethod
-    def equations(
-        self, u: np.ndarray, p: float
-    ) -> tuple[np.ndarray, np.ndarray | csc_array | Operator, np.ndarray]:
-        """F, dF/du, dF/dp."""
-
-    @abstractmethod
-    def raw_spectrum(self, work: Linearised) -> np.ndarray:
-        """What tells stability, or is watched for branch points."""
 
     @abstractmethod
     def margins(self, u: np.ndarray, p: float) -> np.ndarray:

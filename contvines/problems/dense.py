@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from scipy.linalg import get_lapack_funcs
@@ -20,8 +20,7 @@ from .protocol import Kernels
 from .spectra import reference_of, watched
 
 if TYPE_CHECKING:
-    from .callables import CallableProblem
-    from .maps import MapProblem
+    from .interpreted import Equations
     from .protocol import Problem
     from .scales import Scales
 
@@ -37,7 +36,7 @@ class Units:
         self.scales: Scales | Units | None = self  # none yet
         self.table = self.columns = self.negative = self.rows = np.ones(0)
 
-    def take(self, data: CallableProblem, work: DenseWork) -> None:
+    def take(self, data: Equations, work: DenseWork) -> None:
         """Those of a problem as it is now; the right-hand side that is watched comes with them."""
         size = len(work.last)
         scales = self.scales = data.scales
@@ -123,7 +122,7 @@ def row_sizes(work: DenseWork, scale: np.ndarray) -> np.ndarray:
     return (np.abs(work.jacobian) * scale).max(axis=1)
 
 
-def linearise(data: CallableProblem, u: np.ndarray, p: float, work: DenseWork) -> float:
+def linearise(data: Equations, u: np.ndarray, p: float, work: DenseWork) -> float:
     """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
     units = work.units
     if units.scales is not data.scales:
@@ -146,12 +145,7 @@ def linearise(data: CallableProblem, u: np.ndarray, p: float, work: DenseWork) -
 
 
 def bordered(
-    data: CallableProblem,
-    work: DenseWork,
-    border: np.ndarray,
-    n: float,
-    step: np.ndarray,
-    tangent: np.ndarray,
+    data: Equations, work: DenseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant.
 
@@ -202,12 +196,12 @@ def _equilibrate(work: DenseWork, border: np.ndarray, n: float) -> None:
         np.multiply(work.matrix, factors[:, None], out=work.matrix)
 
 
-def distance_to_singular(data: CallableProblem, work: DenseWork) -> float:
+def distance_to_singular(data: Equations, work: DenseWork) -> float:
     """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`.nearness`."""
     return distance(work.image)
 
 
-def nearest_eigenvalues(data: CallableProblem, work: DenseWork) -> np.ndarray:
+def nearest_eigenvalues(data: Equations, work: DenseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
     if not isinstance(data.reference, np.ndarray):
         rows, units = data.sizes()
@@ -215,17 +209,23 @@ def nearest_eigenvalues(data: CallableProblem, work: DenseWork) -> np.ndarray:
     return nearest(watched(work.jacobian, data.reference))
 
 
-def matrix(data: CallableProblem, work: DenseWork) -> np.ndarray:
+def matrix(data: Equations, work: DenseWork) -> np.ndarray:
     """F_u as it stands in a workspace."""
     return work.jacobian.copy()
 
 
-def flip(data: MapProblem, work: DenseWork, sign: float) -> None:
+class Cyclic(Protocol):
+    """What `flip` reads of the problem of the cycles of a map."""
+
+    def turn_closure(self, jacobian: np.ndarray, sign: float) -> None: ...
+
+
+def flip(data: Cyclic, work: DenseWork, sign: float) -> None:
     """Turn the closure of a cycle round (sign = -1), and back (sign = 1); see the protocol."""
     data.turn_closure(work.jacobian, sign)
 
 
-def transpose(data: CallableProblem, work: DenseWork, column: np.ndarray, other: DenseWork) -> None:
+def transpose(data: Equations, work: DenseWork, column: np.ndarray, other: DenseWork) -> None:
     """The transposed Jacobian, with another last column, into another workspace."""
     other.jacobian[:] = work.jacobian.T
     other.derivative[:] = column

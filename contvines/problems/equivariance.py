@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Hashable, Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from .images import Image, linear_part
 from .settings import IDENTITY
 
 if TYPE_CHECKING:
-    from .callables import CallableProblem
+    from .derivatives import Differentiated
+    from .parameters import ParameterSet
+    from .pieces import Pieces
 
 REACHES = (0.01, 0.1, 0.4, 1.0)  # of the states tried, in lengths over which the equations bend
 ALIKE = 2  # in so many more states all unknowns move alike: random ones of a field are all stiffness
@@ -38,7 +40,31 @@ class Asymmetry(NamedTuple):
     p: float
 
 
-def refuse_asymmetry(problem: CallableProblem) -> None:
+class Symmetrical(Protocol):
+    """A problem whose images are said to be symmetries of it."""
+
+    @property
+    def values(self) -> ParameterSet: ...
+    @property
+    def functions(self) -> Differentiated: ...
+    @property
+    def pieces(self) -> Pieces: ...
+    @property
+    def generators(self) -> Sequence[tuple[str, Image]]: ...
+    @property
+    def symmetric_for(self) -> set[tuple[Hashable, ...]]: ...
+    @property
+    def mixed_rows(self) -> bool: ...
+    @property
+    def node(self) -> int: ...
+    @property
+    def u0(self) -> np.ndarray: ...
+    @property
+    def p0(self) -> float: ...
+    def functions_in(self, pieces: Pieces) -> Differentiated: ...
+
+
+def refuse_asymmetry(problem: Symmetrical) -> None:
     """Refuse a mirror or a symmetry of which the equations know nothing, once for each choice of parameters.
 
     Parameters
@@ -139,7 +165,7 @@ def _tried(
     return tried, lost
 
 
-def _in_pieces(problem: CallableProblem) -> Values:
+def _in_pieces(problem: Symmetrical) -> Values:
     """The equations, each state in its own piece."""
     pieces = problem.pieces
     if not pieces.count:

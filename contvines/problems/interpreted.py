@@ -9,8 +9,9 @@ import numpy as np
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-    from .callables import CallableProblem
     from .functions import Operator
+    from .parameters import ParameterSet
+    from .scales import Scales
 
 
 @runtime_checkable
@@ -25,7 +26,29 @@ class Linearised(Protocol):
     def derivative(self) -> np.ndarray: ...
 
 
-def inspect(data: CallableProblem, u: np.ndarray, p: float, work: Linearised, row: np.ndarray) -> None:
+class Equations(Protocol):
+    """What the kernels read of a problem made of Python callables, their `data`."""
+
+    values: ParameterSet
+    scales: Scales | None
+    reference: np.ndarray | csc_array | None
+    trouble: str
+    unsolved: bool
+
+    @property
+    def parameter(self) -> str: ...
+    @property
+    def side(self) -> np.ndarray: ...
+    def preconditioner_at(self) -> np.ndarray | Operator | None: ...
+    def equations(
+        self, u: np.ndarray, p: float
+    ) -> tuple[np.ndarray, np.ndarray | csc_array | Operator, np.ndarray]: ...
+    def sizes(self) -> tuple[np.ndarray, np.ndarray]: ...
+    def raw_spectrum(self, work: Linearised) -> np.ndarray: ...
+    def margins(self, u: np.ndarray, p: float) -> np.ndarray: ...
+
+
+def inspect(data: Equations, u: np.ndarray, p: float, work: Linearised, row: np.ndarray) -> None:
     """Raw spectrum of the linearisation, then the margins of problems that have any."""
     spectrum = data.raw_spectrum(work)
     m = 2 * len(spectrum)
@@ -48,6 +71,6 @@ def not_finite(residual: np.ndarray, jacobian: np.ndarray, derivative: np.ndarra
     return ""
 
 
-def assign(data: CallableProblem, other: CallableProblem, value: float) -> None:
+def assign(data: Equations, other: Equations, value: float) -> None:
     """Give the parameter that varies in ``other`` a value in ``data``, in place."""
     data.values.assign(other.parameter, value)

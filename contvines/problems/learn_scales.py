@@ -7,19 +7,20 @@ but the sizes.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from contvines.shared.floating_point import TINY
 
-from .approach import approach
+from .approach import RoughProblem, approach
 from .extents import of_parameter, of_rounding
 from .scales import Scales, in_fields
 from .settings import SCALES
 
 if TYPE_CHECKING:
-    from .callables import CallableProblem
+    from .dense import DenseWork
+    from .large.sparse_work import SparseWork
 
 STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
 FEW = 6
@@ -31,19 +32,42 @@ MOST = 64  # unknowns of which is asked whether rounding has moved them
 SAMPLES = 4  # points at which eigenvalues are looked at
 
 
+class Unscaled(RoughProblem, Protocol):
+    """A problem whose scales are to be learned.
+
+    ``bends`` tells whether the equations bend in each unknown, ``known`` whether its length says anything.
+    """
+
+    @property
+    def u0(self) -> np.ndarray: ...
+    @property
+    def p0(self) -> float: ...
+    @property
+    def bends(self) -> np.ndarray: ...
+    @property
+    def known(self) -> np.ndarray: ...
+    def workspace(self) -> DenseWork | SparseWork: ...
+    def row_sizes(self, work: DenseWork | SparseWork, scale: np.ndarray, width: float) -> np.ndarray: ...
+    def rates(self, work: DenseWork | SparseWork) -> list[float]: ...
+    def noise_at(self, work: DenseWork | SparseWork, scale: np.ndarray, border: np.ndarray) -> float: ...
+    def weighed(
+        self, work: DenseWork | SparseWork, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]: ...
+
+
 class Scout:
     """A coarse predictor-corrector whose scales grow with the unknowns.
 
     Parameters
     ----------
-    problem : CallableProblem
+    problem : Unscaled
     within : (float, float)
     given : ndarray, optional
         Scales of the unknowns where the user has given them.
     """
 
     def __init__(
-        self, problem: CallableProblem, within: tuple[float, float], given: np.ndarray | None = None
+        self, problem: Unscaled, within: tuple[float, float], given: np.ndarray | None = None
     ) -> None:
         self.problem, self.within, self.n = problem, within, int(problem.dimension)
         self.width = within[1] - within[0]
@@ -233,12 +257,12 @@ class Scout:
         return Scales(unknowns, unit, rows, rate, self.noise, tuple(int(i) for i in untold))
 
 
-def learn(problem: CallableProblem, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:
+def learn(problem: Unscaled, within: tuple[float, float], given: np.ndarray | None = None) -> Scales:
     """Scales of a problem within an interval.
 
     Parameters
     ----------
-    problem : CallableProblem
+    problem : Unscaled
     within : (float, float)
     given : ndarray, optional
         Scales of the unknowns where the user has given them.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -13,8 +13,23 @@ from .settings import SIMULATION
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .maps import MapProblem
+    from .derivatives import Differentiated
+    from .pieces import Pieces
     from .populations import Population
+
+
+class Iterated(Protocol):
+    """What is read of the problem of a map's cycles."""
+
+    @property
+    def functions(self) -> Differentiated: ...
+    @property
+    def pieces(self) -> Pieces: ...
+    @property
+    def node(self) -> int: ...
+    @property
+    def cycle(self) -> int: ...
+    def functions_in(self, pieces: Pieces) -> Differentiated: ...
 
 
 class MapSection:
@@ -26,7 +41,7 @@ class MapSection:
     p : float
     """
 
-    def __init__(self, problem: MapProblem, p: float) -> None:
+    def __init__(self, problem: Iterated, p: float) -> None:
         self.problem, self.p = problem, float(p)
         self.pieces = problem.pieces.repeated(1, 1)
         self.functions = problem.functions

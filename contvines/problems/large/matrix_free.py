@@ -18,8 +18,7 @@ from ..settings import LINEAR
 from .nearest_eigenvalues import nearest_sparse
 
 if TYPE_CHECKING:
-    from ..algebraic import AlgebraicProblem
-    from ..interpreted import Linearised
+    from ..interpreted import Equations, Linearised
 
 RESTART, ALL = 80, 300  # vectors kept; as many as there are unknowns where these are few
 CYCLES = 40  # restarts at most
@@ -88,7 +87,7 @@ class Bordered:
     border : ndarray, shape (N + 1,)
     """
 
-    def __init__(self, data: AlgebraicProblem, work: Linearised, border: np.ndarray) -> None:
+    def __init__(self, data: Equations, work: Linearised, border: np.ndarray) -> None:
         rows, units = data.sizes()
         width = 1.0 if data.scales is None else data.scales.parameter
         self.work, self.inverse = work, data.preconditioner_at()
@@ -138,7 +137,7 @@ class Bordered:
 
 
 def iterate(
-    data: AlgebraicProblem,
+    data: Equations,
     work: Linearised,
     border: np.ndarray,
     sides: np.ndarray,
@@ -174,7 +173,7 @@ def _like_before(tangent: np.ndarray | None, border: np.ndarray, sides: np.ndarr
     return tangent * (sides[-1, 1] / along) if along != 0.0 else None
 
 
-def distance_to_singular(data: AlgebraicProblem, matrix: Bordered) -> float | None:
+def distance_to_singular(data: Equations, matrix: Bordered) -> float | None:
     """How near the bordered matrix of the last solution is to a singular one: |M^-1 b| / |M^-1 M^-1 b|; see :mod:`contvines.problems.nearness`.
 
     Without a sign of the determinant this is all that tells a branch point, so that one application of the inverse, in which a null
@@ -194,7 +193,7 @@ def distance_to_singular(data: AlgebraicProblem, matrix: Bordered) -> float | No
 class Inverse:
     """(F_u - shift)^-1, by GMRES, in the place of factors; the shift in units of rows and unknowns, or as eigenvalues of F_u have it."""
 
-    def __init__(self, data: AlgebraicProblem, work: Linearised, shift: float, plain: bool = False) -> None:
+    def __init__(self, data: Equations, work: Linearised, shift: float, plain: bool = False) -> None:
         self.rows, self.columns = data.sizes()
         self.jacobian, self.inverse = work.jacobian, data.preconditioner_at()
         self.shift = shift * (self.columns if plain else self.rows)
@@ -217,7 +216,7 @@ class Inverse:
         return found * self.columns
 
 
-def nearest_eigenvalues(data: AlgebraicProblem, work: Linearised) -> np.ndarray:
+def nearest_eigenvalues(data: Equations, work: Linearised) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to the sizes of rows and unknowns; shifted where it is singular."""
     rows, units = data.sizes()
     values = np.zeros(0)

@@ -29,7 +29,7 @@ from .sparse_loci import flip, matrix, transpose
 from .sparse_work import Elimination, SparseWork
 
 if TYPE_CHECKING:
-    from ..algebraic import AlgebraicProblem
+    from ..interpreted import Equations
     from ..protocol import Problem
 
 SWEEPS = 8  # of refinement with the factors of an earlier Jacobian
@@ -49,7 +49,7 @@ def row_sizes(work: SparseWork, scale: np.ndarray) -> np.ndarray:
     return np.asarray(abs(work.matrix).multiply(scale[None, :]).max(axis=1).todense()).reshape(-1)
 
 
-def linearise(data: AlgebraicProblem, u: np.ndarray, p: float, work: SparseWork) -> float:
+def linearise(data: Equations, u: np.ndarray, p: float, work: SparseWork) -> float:
     """Evaluate ``data.equations(u, p)`` -> (F, F_u, F_p) into the work arrays; the residual is relative to its rows."""
     with np.errstate(all="ignore"):
         try:
@@ -192,12 +192,7 @@ def _direct(work: SparseWork, border: np.ndarray, sides: np.ndarray) -> tuple[np
 
 
 def bordered(
-    data: AlgebraicProblem,
-    work: SparseWork,
-    border: np.ndarray,
-    n: float,
-    step: np.ndarray,
-    tangent: np.ndarray,
+    data: Equations, work: SparseWork, border: np.ndarray, n: float, step: np.ndarray, tangent: np.ndarray
 ) -> float:
     """Solve [[F_u, F_p], [border]] x = (-F, n) and (0, 1); returns the sign of the determinant (1: not known)."""
     sides = np.zeros((len(border), 2))
@@ -216,7 +211,7 @@ def bordered(
 
 
 # ---------------------------------------------------------------------- eigenvalues
-def distance_to_singular(data: AlgebraicProblem, work: SparseWork) -> float:
+def distance_to_singular(data: Equations, work: SparseWork) -> float:
     """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`contvines.problems.nearness`. Without refinement: it is a rough number."""
     if work.iterated is not None:
         found = matrix_free.distance_to_singular(data, work.iterated)
@@ -233,7 +228,7 @@ def distance_to_singular(data: AlgebraicProblem, work: SparseWork) -> float:
     return work.distance
 
 
-def nearest_eigenvalues(data: AlgebraicProblem, work: SparseWork) -> np.ndarray:
+def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
     """The eigenvalues of F_u next to zero, relative to its value where that was asked for the first time."""
     if isinstance(work.jacobian, Operator):
         return matrix_free.nearest_eigenvalues(data, work)
@@ -246,7 +241,7 @@ def nearest_eigenvalues(data: AlgebraicProblem, work: SparseWork) -> np.ndarray:
     return nearest_sparse(factors, reference, len(work.residual))
 
 
-def leading(data: AlgebraicProblem, work: SparseWork, count: int, shift: float) -> np.ndarray:
+def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.ndarray:
     """The eigenvalues of F_u nearest to a shift, by ARPACK; with the factors at hand where the shift is 0.
 
     Without a matrix they are obtained by solving with the preconditioner; without that, too, the rightmost ones are looked for.

@@ -10,15 +10,15 @@ from ..functions import Operator
 from ..nearness import LARGEST
 
 if TYPE_CHECKING:
-    from ..algebraic import AlgebraicProblem
+    from ..interpreted import Equations
     from .sparse_work import SparseWork
 
 
-def flip(data: AlgebraicProblem, work: SparseWork, sign: float) -> None:
+def flip(data: Equations, work: SparseWork, sign: float) -> None:
     """Nothing: what has a sparse Jacobian is no map."""
 
 
-def transpose(data: AlgebraicProblem, work: SparseWork, column: np.ndarray, other: SparseWork) -> None:
+def transpose(data: Equations, work: SparseWork, column: np.ndarray, other: SparseWork) -> None:
     """The transposed Jacobian, with another last column, into another workspace."""
     if isinstance(work.jacobian, Operator):
         raise ValueError(
@@ -28,7 +28,7 @@ def transpose(data: AlgebraicProblem, work: SparseWork, column: np.ndarray, othe
     other.derivative[:] = column
 
 
-def matrix(data: AlgebraicProblem, work: SparseWork) -> np.ndarray:
+def matrix(data: Equations, work: SparseWork) -> np.ndarray:
     """F_u as it stands in a workspace, dense."""
     if len(work.residual) > LARGEST or isinstance(work.jacobian, Operator):
         raise ValueError(f"it needs the matrix of F_u, of up to {LARGEST} unknowns")
