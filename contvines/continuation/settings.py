@@ -144,7 +144,7 @@ class Settings:
     together: float = 1e-3
     steep: float = 0.25
     tied: float = 1e-9
-    at_end: float = 1e-7
+    at_end: float = 1e-8
     critical: float = 1e-4
     marginal: float = 1e-9
     located: float = 1e-9

@@ -75,7 +75,7 @@ class BesideBorder(Spectrum):
     _inspect, margin_kind, places = staticmethod(Bordered._inspect), Bordered.margin_kind, Bordered.places
 
 
-@pytest.mark.parametrize("place", [-8e-7, -3e-7, -1.5e-7])
+@pytest.mark.parametrize("place", [-8e-7, -3e-7, -1.5e-7, -5e-8])
 def test_a_doubling_close_before_a_border(place):
     """Between the border and the place close before it from which one-sided limits are taken."""
     graph = BesideBorder(place).graph()
