@@ -6,16 +6,16 @@ A symmetric cycle is solved for on half its word, closed by the mirror. The empt
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from orbits.arguments import Workspace, cycle_data, workspace
+from orbits.flows.against import Against
 from orbits.flows.native.kernels import assemble
 from orbits.flows.protocol import PLAIN, Approach
 from orbits.machines.base import Model
-from orbits.machines.path import along
 from orbits.words import Word
 from orbits.words.alphabet import LEFT, Watch
 from orbits.words.margins import index_of, margin_name
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _shared = lru_cache(maxsize=64)(workspace)
 
 
-class Equations:
+class Equations(Against):
     """Closed chains of elementary maps, against one parameter.
 
     Attributes
@@ -106,15 +106,6 @@ class Equations:
         """linearise, bordered, inspect, newton, examine of the model."""
         return assemble(self.model)
 
-    @property
-    def began(self) -> float:
-        """The value of the parameter that varies in the parameter vector."""
-        return self._began
-
-    @cached_property
-    def _began(self) -> float:
-        return self.value(self.params)
-
     def workspace(self) -> Workspace:
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
@@ -123,14 +114,6 @@ class Equations:
     def scratch(self) -> Workspace:
         """A workspace for single calls, whose contents nobody relies on; cycles of one length share it."""
         return _shared(self.length, self.model.node, self.params.size)
-
-    def values(self, p: float | np.ndarray) -> np.ndarray:
-        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
-        return along(self.path, self.params, p)
-
-    def value(self, params: np.ndarray) -> float:
-        """The value of the parameter that varies in a parameter vector."""
-        return self.model.amount(self.parameter, params)
 
     def smooth_margin(self, j: int) -> int:
         """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
@@ -187,11 +170,6 @@ class Equations:
         A, D = self.scratch.A, self.scratch.D.copy()
         D[-1, :, 1:] *= self.twist
         return A, D
-
-    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
-        """Multipliers of the full period from those of the closure map (half maps: squared)."""
-        spectrum = np.asarray(spectrum, dtype=complex)
-        return spectrum**2 if self.twist < 0.0 else spectrum
 
 
 class _Frame(NamedTuple):

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from orbits.flows.against import Against
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.flows.protocol import PLAIN, Approach
 from orbits.machines.base import Model
-from orbits.machines.path import along, assign
+from orbits.machines.path import assign
 from orbits.settings import SOLVING
 
 RestWork = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Residual, Jacobian and derivative by the parameter."""
 
 
-class RestEquations:
+class RestEquations(Against):
     """What `orbits.flows.native.cycle_equations.Equations` is for the other words; the unknowns are those of the machine's `rest`."""
 
     length, n_margins = 0, 1
@@ -34,11 +35,6 @@ class RestEquations:
         self.data = self
 
     @property
-    def began(self) -> float:
-        """The value of the parameter that varies in the parameter vector."""
-        return self.value(self.params)
-
-    @property
     def kernels(self) -> RestKernels:
         """In plain Python: there are three equations."""
         return KERNELS
@@ -52,18 +48,6 @@ class RestEquations:
     def scratch(self) -> RestWork:
         """A workspace for single calls."""
         return self.workspace()
-
-    def values(self, p: float | np.ndarray) -> np.ndarray:
-        """The parameter vector at parameter value `p`."""
-        return along(self.path, self.params, p)
-
-    def value(self, params: np.ndarray) -> float:
-        """The value of the parameter that varies in a parameter vector."""
-        return self.model.amount(self.parameter, params)
-
-    def smooth_margin(self, j: int) -> int:
-        """The margin itself: there is one."""
-        return j
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
         """There are no impacts."""
@@ -79,10 +63,6 @@ class RestEquations:
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """The unknowns, which follow from the parameters alone."""
         return self.model.rest.solved(self.params)
-
-    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
-        """Multipliers of the forcing period."""
-        return np.asarray(spectrum, dtype=complex)
 
 
 class RestKernels(PlainKernels[RestEquations, RestWork]):

@@ -12,7 +12,6 @@ from orbits.flows.page.margins import fill_margins
 from orbits.flows.page.pieces import Pieces
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.flows.protocol import Approach
-from orbits.machines.path import along
 from orbits.settings import SOLVING
 
 
@@ -94,21 +93,9 @@ class PageEquations(Pieces):
         """A workspace for single calls, whose contents nobody relies on."""
         return self.workspace()
 
-    def smooth_margin(self, j: int) -> int:
-        """The margin to follow where margin `j` vanishes: itself."""
-        return j
-
     def workspace(self) -> flights.Work:
         """Arrays for the kernels."""
         return flights.workspace(self.length, self.size, self.base_numbers.shape[1])
-
-    def values(self, p: float | np.ndarray) -> np.ndarray:
-        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
-        return along(self.path, self.params, p)
-
-    def value(self, params: np.ndarray) -> float:
-        """The value of the parameter that varies in a parameter vector."""
-        return float(params[self.index])
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
         """Of the impact at a place: the rate of its wall's gap; the wall's push changes it."""
@@ -125,11 +112,6 @@ class PageEquations(Pieces):
             return None
         with np.errstate(all="ignore"):
             return flights.factors(self, self.scratch), None
-
-    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
-        """Multipliers of the full period from those of the closure map (half maps: squared)."""
-        spectrum = np.asarray(spectrum, dtype=complex)
-        return spectrum**2 if self.symmetric else spectrum
 
     # ------------------------------------------------------------------ shapes
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:

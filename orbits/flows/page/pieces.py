@@ -10,6 +10,7 @@ import numpy as np
 
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
+from orbits.flows.against import Against
 from orbits.flows.protocol import PLAIN
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
@@ -66,7 +67,7 @@ def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
     return tuple(j for j, name in enumerate(names) if name not in known)
 
 
-class Pieces:
+class Pieces(Against):
     """Periodic orbits with a given word, against one parameter of a declared machine.
 
     Parameters
@@ -104,7 +105,8 @@ class Pieces:
             raise ValueError(
                 f"the machine {machine.name!r} has no mirror image along {parameter}, so no symmetric orbits"
             )
-        self.machine, self.word, self.periods = machine, word, int(periods)
+        self.model = self.machine = machine
+        self.word, self.periods = word, int(periods)
         self.parameter, self.params = parameter, np.array(params, dtype=float)
         self.symmetric, self.forced = bool(symmetric), machine.forced
         self.mirrored = machine.has_mirror(self.params, parameter)
@@ -123,7 +125,6 @@ class Pieces:
             PLAIN,
             machine.path(parameter, self.params),
         )
-        self.began = float(self.params[self.index])
         stuck = [
             j
             for j, contact in enumerate(machine.contacts)
