@@ -35,7 +35,7 @@ from orbits.borders.sticking import from_rest, to_rest
 from orbits.contacts.letters import HIT, SLIP
 from orbits.cycles.identity import canonical, size_of_one
 from orbits.cycles.rounds import MOST, choices, escape
-from orbits.flows.solving import solved_at
+from orbits.flows.solving import newton, solved_at
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem, Seed
 from orbits.settings import BORDERING, REPLAYING, SOLVING
@@ -222,22 +222,17 @@ def _real_part(
     Solutions a little ahead and behind are solved for: where a stick vanishes in a flight the branch turns back at the
     border, so its tangent does not tell.
     """
-    kernels, work = problem.equations.kernels, problem.scratch
-    step, along = np.empty(u.size + 1), np.empty(u.size + 1)
     tangent = tangent / float(np.abs(tangent).max())
     sides, found = (1.0, -1.0), []
     for length in BORDERING.beside:
         best = None
         for side in sides:
-            there = u + side * length * tangent[:-1]
-            q = p + side * length * float(tangent[-1])
-            residual, _, q = kernels.newton(
-                problem.data, there, q, work, tangent, step, along, SOLVING.last_step, 40
-            )
+            ahead, q = u + side * length * tangent[:-1], p + side * length * float(tangent[-1])
+            there, q, residual, _ = newton(problem.equations, ahead, q, tangent)
             if residual < SOLVING.residual:
                 margin = float(margins_of(problem, there, q)[index])
                 if best is None or margin > best[0]:
-                    best = margin, side, (there, float(q))
+                    best = margin, side, (there, q)
         found.append(best and best[2])
         sides = sides if best is None else (best[1],)
     return found

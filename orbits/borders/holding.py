@@ -8,6 +8,7 @@ import numpy as np
 
 from orbits.contacts.changes import Change, Grows, What
 from orbits.contacts.letters import STICK
+from orbits.flows.solving import newton
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, SOLVING
 
@@ -47,8 +48,7 @@ def hold(
     """Solve with what grows beyond the border at p held at a size; None where there is no such solution near the border."""
     size = other.dimension
     n = size // other.length
-    kernels, work = other.equations.kernels, other.scratch
-    step, tangent, border = np.empty(size + 1), np.empty(size + 1), np.zeros(size + 1)
+    border = np.zeros(size + 1)
     u, here, following = guess.copy(), first * n, (first + 1) * n % size
     if change.grows is Grows.GAP and not other.forced:
         border[here], u[here] = 1.0, wanted
@@ -74,7 +74,7 @@ def hold(
             clock = here if not other.forced else following
             since = u[following] - u[here] if other.forced else u[here]
             u[clock] += since * (wanted / speed - 1.0)
-    residual, _, q_new = kernels.newton(other.data, u, q, work, border, step, tangent, SOLVING.last_step, 40)
+    u, q, residual, tangent = newton(other.equations, u, q, border)
     if not residual < SOLVING.residual:
         return None
-    return Held(u, float(q_new), tangent, wanted)
+    return Held(u, q, tangent, wanted)

@@ -14,6 +14,7 @@ from orbits.borders.holding import Held, climb, hold, parameter_unit
 from orbits.borders.rewriting import durations_after, edits_at, rewritten
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, SLIP, STICK
+from orbits.flows.solving import newton
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING, SOLVING
@@ -319,14 +320,8 @@ def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: 
 
 def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, steady: bool) -> Grown | None:
     """Solve a regular word at fixed parameter values on both sides of the border; the side where it is real."""
-    size = other.dimension
-    kernels, work = other.equations.kernels, other.scratch
-    border, step, tangent = np.zeros(size + 1), np.empty(size + 1), np.empty(size + 1)
-    border[-1] = 1.0
-    at_border, unit = guess.copy(), parameter_unit(other, p)
-    residual, _, _ = kernels.newton(
-        other.data, at_border, p, work, border, step, tangent, SOLVING.last_step, 40
-    )
+    unit = parameter_unit(other, p)
+    at_border, _, residual, tangent = newton(other.equations, guess, p)
     if not residual < SOLVING.residual:
         return None
     # where the branch turns back, or its period halves, close by, solutions at a given value may be those of another one
@@ -337,10 +332,7 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
         for side in (1.0, -1.0):
             q = p + side * away * unit
             ahead = at_border + (q - p) * tangent[:-1]
-            u, along = ahead.copy(), tangent.copy()
-            residual, _, _ = kernels.newton(
-                other.data, u, q, work, border, step, along, SOLVING.last_step, 40
-            )
+            u, _, residual, along = newton(other.equations, ahead, q)
             astray = np.abs(u - ahead).max() > ASTRAY * np.abs(ahead - at_border).max() + BORDERING.shown
             if residual < SOLVING.residual and not astray:
                 sides.append((float(margins_of(other, u, q).min()), u, q, side * along))
@@ -360,20 +352,12 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
 
 def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
     """The same where the new word's branch turns back close to the border: both ways along its tangent."""
-    kernels, work = other.equations.kernels, other.scratch
-    step, scratch = np.empty_like(tangent), np.empty_like(tangent)
     length = np.hypot(np.linalg.norm(tangent[:-1]), tangent[-1] / parameter_unit(other, p))
     for away in BORDERING.turning:
         for side in (1.0, -1.0):
             direction = side * tangent / length
-            u = at_border + away * direction[:-1]
-            guess = p + away * direction[-1]
-            residual, _, q = kernels.newton(
-                other.data, u, guess, work, direction, step, scratch, SOLVING.last_step, 40
-            )
-            if (
-                residual < SOLVING.residual
-                and margins_of(other, u, float(q)).min() > BORDERING.growing * away
-            ):
-                return Grown(other, u, float(q), direction)
+            ahead = at_border + away * direction[:-1]
+            u, q, residual, _ = newton(other.equations, ahead, p + away * direction[-1], direction)
+            if residual < SOLVING.residual and margins_of(other, u, q).min() > BORDERING.growing * away:
+                return Grown(other, u, q, direction)
     return None

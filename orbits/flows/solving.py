@@ -13,7 +13,6 @@ def newton(
     guess: np.ndarray,
     p: float,
     border: np.ndarray | None = None,
-    tolerance: float = SOLVING.last_step,
     limit: int = 40,
 ) -> tuple[np.ndarray, float, float, np.ndarray]:
     """Solve F(u, p) = 0 at fixed p, or in the hyperplane of `border` through the guess.
@@ -34,7 +33,7 @@ def newton(
     step, tangent = np.empty_like(row), np.empty_like(row)
     u = np.array(guess, dtype=float)
     residual, _, p = system.kernels.newton(
-        system.data, u, p, system.scratch, row, step, tangent, tolerance, limit
+        system.data, u, p, system.scratch, row, step, tangent, SOLVING.last_step, limit
     )
     return u, float(p), float(residual), tangent
 
