@@ -119,40 +119,10 @@ class Symbol:
     def __pos__(self) -> Symbol:
         return self
 
-    def __bool__(self) -> bool:
-        return _refuse("the truth value")
-
-    def __abs__(self) -> NoReturn:
-        return _refuse("the absolute value")
-
     def __float__(self) -> float:
         raise NotAnalytic(
             "a function that wants a number was given a symbol; take cos, sin, sqrt, exp ... from orbits.symbols"
         )
-
-    def __eq__(self, other: object) -> NoReturn:
-        return _refuse("a comparison (==)")
-
-    def __ne__(self, other: object) -> NoReturn:
-        return _refuse("a comparison (!=)")
-
-    def __lt__(self, other: object) -> NoReturn:
-        return _refuse("a comparison (<)")
-
-    def __le__(self, other: object) -> NoReturn:
-        return _refuse("a comparison (<=)")
-
-    def __gt__(self, other: object) -> NoReturn:
-        return _refuse("a comparison (>)")
-
-    def __ge__(self, other: object) -> NoReturn:
-        return _refuse("a comparison (>=)")
-
-    def __mod__(self, other: object) -> NoReturn:
-        return _refuse("a remainder (%)")
-
-    def __floordiv__(self, other: object) -> NoReturn:
-        return _refuse("a whole quotient (//)")
 
     def __repr__(self) -> str:
         if self.operation in ("variable", "number"):
@@ -211,6 +181,21 @@ for _name in ("cos", "sin", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh")
     setattr(Symbol, _name, _method(_name))  # numpy's functions look for these
 for _name in ("sin", "cos", "tan"):
     setattr(Symbol, f"arc{_name}", _method(f"a{_name}"))
+
+
+def _refusing(what: str) -> Callable[..., NoReturn]:
+    return lambda self, *other: _refuse(what)
+
+
+for _name, _sign in {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}.items():
+    setattr(Symbol, f"__{_name}__", _refusing(f"a comparison ({_sign})"))
+for _name, _what in {
+    "bool": "the truth value",
+    "abs": "the absolute value",
+    "mod": "a remainder (%)",
+    "floordiv": "a whole quotient (//)",
+}.items():
+    setattr(Symbol, f"__{_name}__", _refusing(_what))
 
 
 class Elementary(Protocol):

@@ -14,6 +14,7 @@ import numpy as np
 
 from orbits.attractors import find_attractor
 from orbits.attractors.observation import described
+from orbits.contacts.changes import Mode
 from orbits.design.swept_responses import swept_responses
 from orbits.flows.protocol import SimulationError
 from orbits.machines.conditions import Table, resolved
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 PLACES = 5  # where an orbit is looked for in the interval
 NARROW = 1.0 / 64.0  # the least part of the way that is tried
 
-Near = tuple[np.ndarray, np.ndarray, tuple[str, ...], tuple[int, ...], int]
+Near = tuple[np.ndarray, np.ndarray, tuple[str, ...], tuple[Mode, ...], int]
 """What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from orbits.contacts.letters import HIT
 from orbits.design.record import recorded
-from orbits.design.references import tuning
+from orbits.design.references import compliance, tuning
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.protocol import SimulationError
 from orbits.integrators.expressions import variables_of
@@ -190,14 +190,8 @@ def random_base(
 
 def transfer(omega: np.ndarray, rate: float, mass: float) -> np.ndarray:
     """Displacement of the oscillator from its base per acceleration of the base; with `mass` > 0 it carries Den Hartog's absorber."""
-    drag = 1j * rate * omega
-    if mass == 0.0:
-        return -1.0 / (1.0 - omega**2 + drag)
-    f, zeta = tuning(mass)
-    link = f * f + 2.0j * zeta * omega  # of spring and damper, over the absorber's mass
-    # -mass w^2 y + mass link (y - x) = -mass a,   (1 + drag - w^2) x + mass link (x - y) = -a
-    own = link - omega**2
-    return (-1.0 - mass * link / own) / (1.0 + drag - omega**2 + mass * link - mass * link * link / own)
+    x, carried = compliance(omega, rate, mass, tuning(mass))
+    return -(1.0 + mass * carried) * x
 
 
 def random_page(

@@ -24,6 +24,27 @@ NAMES = {
 }
 
 
+def compliance(
+    omega: np.ndarray, rate: float, mass: float = 0.0, tuned_to: tuple[float, float] = (1.0, 0.0)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Complex displacement of the oscillator per force on it (over its mass), and of the tuned absorber of this mass ratio per that of the oscillator.
+
+    Parameters
+    ----------
+    omega : float array
+    rate : float
+        Damping coefficient over the oscillator's mass, eps lambda.
+    mass : float
+        0 without an absorber.
+    tuned_to : (float, float)
+        As for `tuned`.
+    """
+    f, zeta = tuned_to
+    link = f * f + 2.0j * zeta * omega  # of spring and damper, over the absorber's mass
+    carried = link / (link - omega**2) if mass else np.zeros_like(link)
+    return 1.0 / (1.0 - omega**2 + 1j * rate * omega - mass * omega**2 * carried), carried
+
+
 def bare(
     frequency: ArrayLike, forcing: float, damping: float, mass_ratio: float, excitation: float = 1.0
 ) -> np.ndarray:
@@ -38,9 +59,9 @@ def bare(
     forcing, damping, mass_ratio, excitation : float
         G, lambda, eps and chi, as in `orbits.Coupled`.
     """
-    omega = np.asarray(frequency, dtype=float)
-    drag = 1j * mass_ratio * damping * omega
-    return np.abs(mass_ratio * forcing * (1.0 + excitation * drag) / (1.0 - omega**2 + drag))
+    omega, rate = np.asarray(frequency, dtype=float), mass_ratio * damping
+    force = mass_ratio * forcing * (1.0 + 1j * excitation * rate * omega)
+    return np.abs(force * compliance(omega, rate)[0])
 
 
 def tuning(mass_ratio: float) -> tuple[float, float]:
@@ -81,13 +102,9 @@ def tuned(
         Frequency over the oscillator's, and damping coefficient over twice the absorber's mass times the oscillator's frequency;
         Den Hartog's (`tuning`) by default.
     """
-    omega = np.asarray(frequency, dtype=float)
-    f, zeta = tuning(mass_ratio) if tuned_to is None else tuned_to
-    link = f * f + 2.0j * zeta * omega  # of spring and damper, over the absorber's mass
-    carried = link / (link - omega**2)  # absorber's displacement over the oscillator's
-    drag = 1j * mass_ratio * damping * omega
-    stiffness = 1.0 - omega**2 + drag - mass_ratio * omega**2 * carried
-    return np.abs(mass_ratio * forcing * (1.0 + excitation * drag) / stiffness)
+    omega, rate = np.asarray(frequency, dtype=float), mass_ratio * damping
+    force = mass_ratio * forcing * (1.0 + 1j * excitation * rate * omega)
+    return np.abs(force * compliance(omega, rate, mass_ratio, tuned_to or tuning(mass_ratio))[0])
 
 
 def friction_damper(

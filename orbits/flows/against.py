@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
@@ -12,11 +12,13 @@ from orbits.machines.path import along
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
+ModelOf = TypeVar("ModelOf", bound="Varying")
 
-class Against:
+
+class Against(Generic[ModelOf]):
     """Equations against a parameter of a machine; see `orbits.flows.protocol.Equations`."""
 
-    model: Varying
+    model: ModelOf
     parameter: str
     params: np.ndarray
     path: np.ndarray

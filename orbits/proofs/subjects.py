@@ -85,7 +85,7 @@ def of_orbit(orbit: Cycle, bits: int | None = None, **parameters: Given) -> Proo
     return prove_orbit(
         orbit.model.name,
         word.events,
-        word.modes,
+        word.mode_codes.tolist(),
         orbit.periods,
         orbit.nodes,
         given,
@@ -125,7 +125,7 @@ def of_point(
     word, periods, nodes, half = orbit.word, orbit.periods, orbit.nodes, problem.symmetric
     if kind in CRITICAL or kind == "branch-point":
         kind, word, periods, nodes, half = _critical(kind, word, periods, nodes, half, orbit.symmetric)
-    motif = motif_of(machine, word.events, word.modes, periods, half, word.frictionless)
+    motif = motif_of(machine, word.events, word.mode_codes.tolist(), periods, half, word.frictionless)
     vanishing = None
     if kind not in CRITICAL:
         if margin is None:
@@ -173,7 +173,9 @@ def of_branch(
     machine, word = orbit.model.name, problem.word
     varying = _moved(problem)
     given = _parameters(machine, _numbers(orbit), {})
-    motif = motif_of(machine, word.events, word.modes, problem.periods, problem.symmetric, word.frictionless)
+    motif = motif_of(
+        machine, word.events, word.mode_codes.tolist(), problem.periods, problem.symmetric, word.frictionless
+    )
     turns = 1 + np.flatnonzero(np.diff(np.sign(np.diff(values))))
     cuts = sorted({0, len(values) - 1, *(int(i) for i in turns), *(int(i) for i in marks)})
     known: dict[int, Proof | None] = {}
@@ -266,7 +268,14 @@ def _mirrored(orbit: Cycle, given: Mapping[str, Given]) -> bool:
     word = orbit.word
     try:
         check_symmetry(
-            motif_of(orbit.model.name, word.events, word.modes, orbit.periods, True, word.frictionless),
+            motif_of(
+                orbit.model.name,
+                word.events,
+                word.mode_codes.tolist(),
+                orbit.periods,
+                True,
+                word.frictionless,
+            ),
             {name: decimal(value) for name, value in given.items()},
         )
     except ProofError:

@@ -297,7 +297,7 @@ class PageSimulator:
 
     def begin(self, word: Word, node: np.ndarray) -> None:
         """Just after the first event of a cycle."""
-        self.stepper.start(node[1:], float(node[0]) if self.forced else 0.0, word.modes[0])
+        self.stepper.start(node[1:], float(node[0]) if self.forced else 0.0, word.entries(0))
 
     def follow(self, until: float) -> None:
         """Move on."""

@@ -76,7 +76,7 @@ class Section:
     def _later(self, x: np.ndarray, index: int | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         simulator, n = self.simulator, len(x)
         try:
-            simulator.start(x, 0.0, None if simulator.forced else self.word.modes[0])
+            simulator.start(x, 0.0, None if simulator.forced else self.word.entries(0))
             by_state, by_value = simulator.go_round(self.word, self.periods, index)
         except SimulationError:
             return np.full(n, np.nan), np.full((n, n), np.nan), np.full(n, np.nan)

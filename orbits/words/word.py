@@ -61,7 +61,7 @@ class Word:
     """
 
     events: tuple[str, ...]
-    modes: tuple[Any, ...]
+    modes: tuple[Mode, ...]
     alphabet: Alphabet = field(default=SHAKEN, compare=False, repr=False)
 
     # ------------------------------------------------------------------ making
@@ -105,7 +105,7 @@ class Word:
         # files of version 0.1 keep no events for the absorber at rest
         return cls(tuple(about.get("events", "")), modes, alphabet or shaken(bool(about.get("frictionless"))))
 
-    def like(self, events: Sequence[str], modes: Sequence[Any]) -> Word:
+    def like(self, events: Sequence[str], modes: Sequence[Mode]) -> Word:
         """A word over the same alphabet."""
         return _word(tuple(events), tuple(modes), self.alphabet)
 
@@ -140,7 +140,7 @@ class Word:
 
     def _written(self, signed: bool, noted: Sequence[int] = ()) -> str:
         if not self.events:
-            return bracket(self.modes[0], self.alphabet) if noted else ""
+            return bracket(self.entries(0), self.alphabet) if noted else ""
         parts: list[str] = []
         n = len(self.events)
         joined = len(noted) < n
@@ -154,7 +154,7 @@ class Word:
                 mark = "+" if self.alphabet.entry(self.modes[i], own) > 0 else "-"
             elif signed and joined and letter.kind == STICK and following.kind == SLIP and i + 1 < n:
                 mark = "+" if self.alphabet.entry(self.modes[i + 1], own) > 0 else "-"
-            parts.append(text + mark + (bracket(self.modes[i], self.alphabet) if i in noted else ""))
+            parts.append(text + mark + (bracket(self.entries(i), self.alphabet) if i in noted else ""))
         joint = " " if any(len(text) > 1 for text in self.events) else ""
         return joint.join(parts)
 
@@ -170,7 +170,7 @@ class Word:
     def describe(self) -> dict[str, Any]:
         """Events and modes, ready for JSON."""
         if self.alphabet.alone is None:
-            return {"events": list(self.events), "modes": [list(mode) for mode in self.modes]}
+            return {"events": list(self.events), "modes": [list(mode) for mode in self.contact_modes]}
         return {
             "events": "".join(self.events),
             "modes": list(self.modes),
@@ -208,6 +208,11 @@ class Word:
     def entries(self, place: int) -> tuple[int, ...]:
         """What every contact does after an event."""
         return self.alphabet.entries(self.mode(place))
+
+    @property
+    def contact_modes(self) -> tuple[tuple[int, ...], ...]:
+        """What every contact does after each event."""
+        return tuple(map(self.alphabet.entries, self.modes))
 
     @cached_property
     def impacts(self) -> int:
@@ -293,7 +298,7 @@ class Word:
 
 
 @lru_cache(maxsize=4096)
-def _word(events: tuple[str, ...], modes: tuple[Any, ...], alphabet: Alphabet) -> Word:
+def _word(events: tuple[str, ...], modes: tuple[Mode, ...], alphabet: Alphabet) -> Word:
     """A word, the same one every time: what is worked out of it is kept."""
     return Word(events, modes, alphabet)
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _shared = lru_cache(maxsize=64)(workspace)
 
 
-class Equations(Against):
+class Equations(Against[Model]):
     """Closed chains of elementary maps, against one parameter.
 
     Attributes

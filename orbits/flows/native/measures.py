@@ -29,9 +29,9 @@ def measure(
     return gauged(model, params, dimensionless(model, word, periods, nodes, params, wanted))
 
 
-def gauged(model: Model, params: np.ndarray, found: dict[str, Any]) -> dict[str, Any]:
+def gauged(model: Model, params: np.ndarray, values: dict[str, Any]) -> dict[str, Any]:
     """Dimensionless measures by name, in the machine's units; params (..., P), measures (...)."""
-    return {name: value * model.gauge(KINDS.get(name, ""), params) for name, value in found.items()}
+    return {name: value * model.gauge(KINDS.get(name, ""), params) for name, value in values.items()}
 
 
 def dimensionless(

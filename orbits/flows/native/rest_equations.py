@@ -15,7 +15,7 @@ RestWork = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Residual, Jacobian and derivative by the parameter."""
 
 
-class RestEquations(Against):
+class RestEquations(Against[Model]):
     """What `orbits.flows.native.cycle_equations.Equations` is for the other words; the unknowns are those of the machine's `rest`."""
 
     length, n_margins = 0, 1

@@ -23,7 +23,7 @@ def _begins(motion: Motion[Model], segment: int) -> np.ndarray:
     word = motion.word
     engine = stepper(motion.model.name)
     return state_of(
-        engine, motion.params, int(word.codes[segment]), int(word.modes[segment]), motion.nodes[segment]
+        engine, motion.params, int(word.codes[segment]), int(word.mode_codes[segment]), motion.nodes[segment]
     )
 
 
@@ -133,7 +133,7 @@ def slowest(motion: Motion[Model], segment: int) -> tuple[float, np.ndarray]:
     """Where s w' is smallest inside a flight: the phase ahead of its event, and (w, w', v, v') there."""
     length, mode, state = (
         float(motion.durations[segment]),
-        motion.word.modes[segment],
+        float(motion.word.mode_codes[segment]),
         _begins(motion, segment),
     )
     ahead = np.linspace(0.0, length, 402)[1:-1]

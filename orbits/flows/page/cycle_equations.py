@@ -101,7 +101,7 @@ class PageEquations(Pieces):
         """Of the impact at a place: the rate of its wall's gap; the wall's push changes it."""
         compiled, d = self.machine.compiled, self.size + 1
         node = u[place * d : (place + 1) * d]
-        numbers = compiled.numbers(self.values(p), self.word.modes[place])
+        numbers = compiled.numbers(self.values(p), self.word.entries(place))
         clock = node[:1] if self.forced else np.zeros(1)
         row = compiled.approach(self.letters[place].contact)(node[None, 1:], clock, numbers[None])[0]
         return Approach(float(row[0]), np.append(0.0, row[1:d]), 0.0, np.append(0.0, row[d:]))

@@ -134,7 +134,7 @@ class PageFlow:
             table = sampling.sample(motion, 4000)
             states = np.column_stack([table[name] for name in motion.model.states])
             e = motion.model.equations
-            first = moving(e, e.pattern(e.pattern_key(motion.word.modes[-1])).rates)
+            first = moving(e, e.pattern(e.pattern_key(motion.word.entries(-1))).rates)
             return np.array([[motion.durations.sum(), *states[int(np.argmax(states[:, first]))]]])
         phases = 2.0 * np.pi * np.arange(motion.periods)
         return np.column_stack([phases, sampling.states_at(motion, phases)])

@@ -124,7 +124,7 @@ def _loads(
         rubbed = zero.copy()
         for k, rows in enumerate(nodes if machine.equations.limit else ()):
             for i, (begin, end) in enumerate(zip(*_spans(machine, periods, rows))):
-                mode = word.modes[i % len(word.modes)]
+                mode = word.entries(i)
                 rubbed[k] += friction_work(machine, mode, rows[i, 1:], begin, end, params[k])
         found |= {"friction_loss": rubbed, "work_rate": (found["impact_loss"] + rubbed) / period}
     return found
@@ -148,7 +148,7 @@ def _extremes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Largest and smallest value of every state over the period: at the events, and where a rate is zero between them."""
     compiled, e = machine.compiled, machine.equations
-    keys = [e.pattern_key(word.modes[i % len(word.modes)]) for i in range(nodes.shape[1])]
+    keys = [e.pattern_key(word.entries(i)) for i in range(nodes.shape[1])]
     watches = [compiled.extremes(key) for key in keys]
     largest, smallest = nodes[:, :, 1:].max(axis=1), nodes[:, :, 1:].min(axis=1)
     for k in range(len(nodes)):
@@ -156,7 +156,7 @@ def _extremes(
         for i, watch in enumerate(watches):
             if not 0.0 < end[i] - begin[i] < SOLVING.longest_flight:
                 continue
-            numbers = compiled.numbers(params[k], word.modes[i % len(word.modes)])
+            numbers = compiled.numbers(params[k], word.entries(i))
             found = [state for _, _, state in watch(nodes[k, i, 1:], begin[i], end[i], numbers)]
             found.append(watch.final)
             table = np.array(found)
@@ -173,7 +173,7 @@ def _strobed(machine: Machine, word: Word, periods: int, nodes: np.ndarray, para
         begin, end = _spans(machine, periods, nodes[k])
         target = 2.0 * np.pi * np.ceil(begin[0] / (2.0 * np.pi) - EVENTS.zero)
         i = int(np.clip(np.searchsorted(begin, target, side="right") - 1, 0, len(begin) - 1))
-        mode = word.modes[i % len(word.modes)]
+        mode = word.entries(i)
         state = nodes[k, i, 1:].copy()
         compiled.extremes(e.pattern_key(mode)).move(
             state, begin[i], max(target, begin[i]), compiled.numbers(params[k], mode)

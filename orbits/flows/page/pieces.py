@@ -56,7 +56,7 @@ def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
     walls while another one hits its own)."""
     e, names = machine.equations, machine.equations.layout.states
     known: set[str] = set()
-    for i, mode in enumerate(word.modes):
+    for i, mode in enumerate(word.contact_modes):
         pattern = e.pattern(e.pattern_key(mode))
         known |= set().union(*(variables_of(rate) for rate in pattern.rates))
         for guard in pattern.guards:
@@ -67,7 +67,7 @@ def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
     return tuple(j for j, name in enumerate(names) if name not in known)
 
 
-class Pieces(Against):
+class Pieces(Against[Machine]):
     """Periodic orbits with a given word, against one parameter of a declared machine.
 
     Parameters
@@ -128,7 +128,7 @@ class Pieces(Against):
         stuck = [
             j
             for j, contact in enumerate(machine.contacts)
-            if isinstance(contact, DryFriction) and all(mode[j] == STUCK for mode in word.modes)
+            if isinstance(contact, DryFriction) and all(mode[j] == STUCK for mode in word.contact_modes)
         ]
         self.trivial = len(self.loose) + len(stuck)
         self.still = () if symmetric else self._still(stuck)
@@ -153,14 +153,14 @@ class Pieces(Against):
             places = [k for k, name in enumerate(e.layout.states) if name in known and k not in taken]
             taken.add(places[-1])
             letter = Letter("", j, STICK)
-            key = e.pattern_key(self.word.modes[0])
+            key = e.pattern_key(self.word.entries(0))
             found.append((places[-1], self.machine.compiled.event(letter, 0, key, (self.index,))))
         return tuple(found)
 
     def _anywhere(self, frictions: Sequence[int]) -> tuple[str, ...]:
         """Names of the frictions that stick for ever where nothing says at which place: its rate is a velocity that is zero all along."""
         e, names = self.machine.equations, self.machine.equations.layout.states
-        patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.modes)]
+        patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.contact_modes)]
         found = []
         for j in frictions:
             velocity = variables_of(e.velocity[j]) & set(names)
@@ -172,14 +172,14 @@ class Pieces(Against):
     def _assign(self) -> None:
         """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
         compiled, e, word = self.machine.compiled, self.machine.equations, self.word
-        modes = [word.modes[i % len(word.modes)] for i in range(self.length)]
+        modes = [word.entries(i) for i in range(self.length)]
         keys = [e.pattern_key(mode) for mode in modes]
         active = (self.index,)
         self.base_numbers = np.array([compiled.numbers(self.params, mode) for mode in modes])
         self.letters = [word.letter(i) if len(word) else STROBED for i in range(self.length + 1)]
         self.owned = [owned(word, i) for i in range(self.length + 1)]
         self.slips = [
-            word.modes[i % len(word.modes)][letter.contact] if letter.contact >= 0 else 0
+            word.entries(i)[letter.contact] if letter.contact >= 0 else 0
             for i, letter in enumerate(self.letters)
         ]
         self.flight_groups = []

@@ -14,7 +14,7 @@ from orbits.words import Word
 
 def strobed(machine: Machine, word: Word, periods: int, node: np.ndarray, params: np.ndarray) -> np.ndarray:
     """Nodes of a motion without events, once per forcing period from one of them on to its return, shape (periods + 1, n + 1)."""
-    clocks, mode = node[0] + 2.0 * np.pi * np.arange(periods + 1), word.modes[0]
+    clocks, mode = node[0] + 2.0 * np.pi * np.arange(periods + 1), word.entries(0)
     watch = machine.compiled.watch(machine.equations.pattern_key(mode))
     return np.column_stack([clocks, watch.path(node[1:], clocks, machine.compiled.numbers(params, mode))])
 
@@ -37,7 +37,7 @@ def sample(motion: Motion[Machine], points: int = 400) -> dict[str, np.ndarray]:
         count = max(2, round(points * duration / total))
         begin = float(motion.nodes[i, 0]) if motion.model.forced else 0.0
         grid = begin + np.linspace(0.0, max(float(duration), 0.0), count)
-        mode = motion.word.modes[i % len(motion.word.modes)]
+        mode = motion.word.entries(i)
         watch = compiled.watch(e.pattern_key(mode))
         states.append(watch.path(motion.nodes[i, 1:], grid, compiled.numbers(motion.params, mode)))
         clocks.append(passed + grid - begin)
@@ -63,7 +63,9 @@ def states_at(motion: Motion[Machine], phases: np.ndarray) -> np.ndarray:
     wanted = (phases - first) % whole
     wanted[wanted >= whole] = 0.0  # of a phase just below zero
     begins = first + np.maximum.accumulate(motion.nodes[:, 0] - first)
-    return along(motion.model, motion.params, motion.word.modes, motion.nodes[:, 1:], begins, first + wanted)
+    return along(
+        motion.model, motion.params, motion.word.contact_modes, motion.nodes[:, 1:], begins, first + wanted
+    )
 
 
 def along(

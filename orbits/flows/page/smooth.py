@@ -138,7 +138,11 @@ class WithoutEvents(FlowProblem):
 
     def described(self) -> dict[str, Any]:
         """The machine and the mode."""
-        return {"machine": self.machine.settings(), "modes": list(self.word.modes[0]), "x0": self.x0.tolist()}
+        return {
+            "machine": self.machine.settings(),
+            "modes": list(self.word.entries(0)),
+            "x0": self.x0.tolist(),
+        }
 
     def rebuilt_by(self, importable: bool) -> str:
         """Files keep the machine's page."""
@@ -223,7 +227,7 @@ def function_of_one(f: Callable) -> Callable:
 def extreme_of(machine: Machine, word: Word, states: np.ndarray, period: float) -> np.ndarray:
     """The node of a motion without events, next to which Newton's method finds it: where the first state that moves is largest."""
     e = machine.equations
-    first = moving(e, e.pattern(e.pattern_key(word.modes[0])).rates)
+    first = moving(e, e.pattern(e.pattern_key(word.entries(0))).rates)
     return np.append(period, states[int(np.argmax(states[:, first]))])
 
 
@@ -295,7 +299,7 @@ def cycles_of(orbit: Motion):
     assert isinstance(machine, Machine)
     table = sampling.sample(orbit, SAMPLES)
     states = np.column_stack([table[name] for name in machine.states])
-    flow = smooth(machine, orbit.word.modes[0], orbit.params, states[0])
+    flow = smooth(machine, orbit.word.entries(0), orbit.params, states[0])
     values: dict[str, Any] = dict(orbit.parameters)
     return flow.cycle(table["time"], states, **values)
 
@@ -303,7 +307,7 @@ def cycles_of(orbit: Motion):
 def cycle_near(machine: Machine, word: Word, params: np.ndarray, state: np.ndarray) -> np.ndarray | None:
     """The node of the cycle without events on which a motion settles, shape (n + 1,); None where it does not."""
     try:
-        flow = smooth(machine, word.modes[0], params, state)
+        flow = smooth(machine, word.entries(0), params, state)
         values: dict[str, Any] = dict(zip(machine.parameter_names, map(float, params), strict=True))
         orbit = flow.attractor(state, **values)
     except ValueError:  # it comes to rest, goes on to an event, or does not recur

@@ -201,8 +201,8 @@ def start_nodes(word: Word, periods: int, params: np.ndarray) -> Iterator[np.nda
                 nodes = symmetric_nodes(params, stable)
                 yield nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0]])
         elif events == "tt":
-            yield sliding_nodes(params, word.modes[0])
-        elif events == "susu" and word.modes[1] == -word.modes[3]:
-            yield stick_slip_nodes(params, word.modes[1])
+            yield sliding_nodes(params, int(word.mode_codes[0]))
+        elif events == "susu" and word.mode_codes[1] == -word.mode_codes[3]:
+            yield stick_slip_nodes(params, int(word.mode_codes[1]))
     except ParameterError:
         return

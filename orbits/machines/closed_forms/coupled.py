@@ -242,6 +242,6 @@ def start_nodes(word: Word, periods: int, params: np.ndarray) -> Iterator[np.nda
         for nodes in symmetric_nodes(params):
             yield (nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]]))
     elif events == "tt":
-        nodes = sliding_nodes(params, int(word.modes[0]))
+        nodes = sliding_nodes(params, int(word.mode_codes[0]))
         if nodes is not None:
             yield nodes

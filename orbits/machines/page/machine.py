@@ -313,7 +313,7 @@ class Machine(Varying):
             if letter.kind != HIT:
                 continue
             clock = float(nodes[i, 0]) if self.forced else 0.0
-            numbers = self.compiled.numbers(params, word.modes[i])
+            numbers = self.compiled.numbers(params, word.entries(i))
             row = self.compiled.approach(letter.contact).one(nodes[i, 1:], clock, numbers)
             rate, slope, push = row[0], row[1 : self.size + 1], row[self.size + 1 :]
             if rate < 0.0:
