@@ -1,4 +1,4 @@
-"""Endings of names: a file must not claim to hold what it does not."""
+"""Names of files: where one can be written, and that it does not claim to hold what it does not."""
 
 from pathlib import Path
 
@@ -46,3 +46,27 @@ def refuse_ending(path: Path, ending: str) -> None:
         raise ValueError(
             f"{path}: this is not a .{ending} file by its name; use -o {path.with_suffix('.' + ending)}."
         )
+
+
+def refuse_place(path: Path) -> None:
+    """Refuse, before any work, a place at which no file can be.
+
+    Raises
+    ------
+    ValueError
+    """
+    if path.is_dir():
+        raise ValueError(f"{path}: this is a folder; give the name of a file.")
+    if not path.parent.is_dir():
+        raise ValueError(
+            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
+        )
+
+
+def is_database(path: str | Path) -> bool:
+    """Whether a file starts like a SQLite database."""
+    try:
+        with Path(path).open("rb") as file:
+            return file.read(16) == b"SQLite format 3\x00"
+    except OSError:
+        return False

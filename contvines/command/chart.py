@@ -153,7 +153,8 @@ def _diagram(
     file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, fresh: bool
 ) -> tuple["Graph", Path, str, tuple[float, float]]:
     """The diagram to chart, made first if a study is given, its file, and what to chart it over."""
-    from contvines.command.study import is_database, read_study
+    from contvines.command.study import read_study
+    from contvines.file_names import is_database
 
     if is_database(file):
         graph = load_file(file, trust)

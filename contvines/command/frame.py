@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import typer
 
 from contvines.command.options import MANY
+from contvines.file_names import refuse_ending, refuse_place
 from contvines.text_table import fitted
 
 if TYPE_CHECKING:
@@ -34,15 +35,8 @@ def beside(path: Path, ending: str) -> Path:
 
 def place_of(output: Path | None, source: Path, ending: str) -> Path:
     """Where a .vines file goes: the place that was asked for, or the default; refused before any work if it will not do."""
-    from contvines.file_names import refuse_ending
-
     path = output or beside(source, ending)
-    if path.is_dir():
-        raise ValueError(f"{path}: this is a folder; give the name of a file with -o.")
-    if not path.parent.is_dir():
-        raise ValueError(
-            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
-        )
+    refuse_place(path)
     refuse_ending(path, "vines")
     refuse_source(path, source)
     return path

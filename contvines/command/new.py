@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from contvines.command.options import argument, option
+from contvines.file_names import refuse_ending, refuse_place
 
 
 class Kind(StrEnum):
@@ -45,8 +46,6 @@ def new(
     contvines new absorber, then contvines diagram absorber.toml --plot
     absorber.png. A file that is there is never overwritten.
     """
-    from contvines.file_names import refuse_ending
-
     target = output or Path(f"{kind.value}.toml")
     refuse_ending(target, "toml")
     texts = {target: _template(f"{kind.value}.toml")}
@@ -58,10 +57,7 @@ def new(
     for path in texts:
         if path.exists():
             raise ValueError(f"{path}: this file is there already; choose another name with -o")
-        if not path.parent.is_dir():
-            raise ValueError(
-                f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place"
-            )
+        refuse_place(path)
     for path, text in texts.items():
         path.write_text(text, encoding="utf-8")
         typer.echo(str(path))

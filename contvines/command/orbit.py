@@ -53,7 +53,8 @@ def orbit(
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> object:
-    from contvines.command.study import is_database, read_study
+    from contvines.command.study import read_study
+    from contvines.file_names import is_database
 
     if not is_database(file) and file.suffix == ".toml":
         from contvines.command.compose import first_orbit

@@ -127,7 +127,7 @@ def _proved(
 
 def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
     """The certificates kept in a file, by label."""
-    from contvines.command.study import is_database
+    from contvines.file_names import is_database
     from contvines.store import printable
 
     if is_database(file):

@@ -13,6 +13,7 @@ from contvines.command.conditions import check_varied, without_tables
 from contvines.command.study_data import Study
 from contvines.command.study_errors import StudyError as StudyError
 from contvines.command.toml_text import TomlError, toml_data
+from contvines.file_names import is_database
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.catalogue import PAGES, STRUCTURE
 
@@ -102,12 +103,3 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     except (ValueError, OSError) as error:
         raise StudyError(str(error)) from error
     return study
-
-
-def is_database(path: str | Path) -> bool:
-    """Whether a file starts like a SQLite database."""
-    try:
-        with Path(path).open("rb") as file:
-            return file.read(16) == b"SQLite format 3\x00"
-    except OSError:
-        return False

@@ -25,12 +25,7 @@ def graph_columns(graph: Graph) -> dict[str, list[Any]]:
     """
     branches = list(graph.branches.values())
     parts = [branch_columns(branch, graph.units) for branch in branches]
-    heads: list[dict[str, None]] = [
-        {},
-        {},
-        {},
-        {},
-    ]  # facts, unknowns, multipliers, word and measures: kept together
+    heads: list[dict[str, None]] = [{}, {}, {}, {}]  # facts, unknowns, multipliers, word and measures
     for columns in parts:
         for name in columns:
             group = 1 if _numbered(name, "u") else 2 if name.startswith("multiplier") else 3
@@ -60,23 +55,23 @@ def branch_columns(branch: Branch, units: dict[str, str] | None = None) -> dict[
     columns: dict[str, list[Any]] = {
         "branch": [branch.label] * n,
         "index": list(range(n)),
-        with_unit(branch.parameter, units.get(branch.parameter)): [float(v) for v in branch.values],
-        "stable": [undefined] * n if branch.stable is None else [bool(v) for v in branch.stable],
+        with_unit(branch.parameter, units.get(branch.parameter)): branch.values.tolist(),
+        "stable": [undefined] * n if branch.stable is None else branch.stable.tolist(),
         "real": [bool(branch.real)] * n,
-        "margin": [float(v) for v in branch.margin],
+        "margin": branch.margin.tolist(),
         "special": [marks.get(i, "") for i in range(n)],
     }
     # values on the mesh of a cycle of a flow say nothing in a table
     meshed = isinstance(branch.description.get("cycle"), Mapping)
     for j in range(0 if meshed else branch.points.shape[1]):
-        columns[f"u{j}"] = [float(v) for v in branch.points[:, j]]
+        columns[f"u{j}"] = branch.points[:, j].tolist()
     for j in range(branch.multipliers.shape[1]):
-        columns[f"multiplier{j}_re"] = [float(v) for v in np.real(branch.multipliers[:, j])]
-        columns[f"multiplier{j}_im"] = [float(v) for v in np.imag(branch.multipliers[:, j])]
+        columns[f"multiplier{j}_re"] = branch.multipliers[:, j].real.tolist()
+        columns[f"multiplier{j}_im"] = branch.multipliers[:, j].imag.tolist()
     columns["word"] = [branch.description.get("word", "")] * n
     columns["periods"] = [branch.description.get("periods", "")] * n
     for name, values in measures_of(branch).items():
-        columns.setdefault(with_unit(name, units.get(name)), [float(v) for v in values])
+        columns.setdefault(with_unit(name, units.get(name)), values.tolist())
     return columns
 
 

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..file_names import refuse_ending
+from ..file_names import is_database, refuse_ending, refuse_place
 from ..provenance import provenance
 from ..shared.extras import needed
 from .auto import places, write_auto
@@ -77,18 +77,13 @@ def check_target(path: Path, ending: str) -> None:
     ValueError
         With a sentence that names the file and a valid name, or the package that such files need.
     """
-    if path.is_dir():
-        raise ValueError(f"{path}: cannot be written: this is a folder; give the name of a file with -o.")
-    if not path.parent.is_dir():
-        raise ValueError(
-            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
-        )
+    refuse_place(path)
     own = path.suffix.lower()
     other = path.with_suffix(f".{ending}")
     if own in (".vines", ".toml"):
         kind = "graphs" if own == ".vines" else "studies"
         raise ValueError(f"{path}: names in {own} are kept for {kind}; use -o {other}.")
-    if path.is_file() and (own != f".{ending}" or _is_database(path)):
+    if path.is_file() and (own != f".{ending}" or is_database(path)):
         raise ValueError(
             f"{path}: this file exists and is no .{ending} file, it is left untouched; use -o {other}."
             if own != f".{ending}"
@@ -97,14 +92,6 @@ def check_target(path: Path, ending: str) -> None:
     refuse_ending(path, ending)
     if ending == "nc":
         needed("xarray", "tables")
-
-
-def _is_database(path: Path) -> bool:
-    try:
-        with path.open("rb") as file:
-            return file.read(16) == b"SQLite format 3\x00"
-    except OSError:
-        return False
 
 
 def _csv(graph: "Graph", path: Path) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.file_names import refuse_place
 from contvines.shared.figures import new_figure, styled, windows
 
 from .settings import DRAWING
@@ -226,7 +227,4 @@ def check_picture(path: str | Path) -> None:
     path = Path(path)
     if path.suffix.lower().lstrip(".") not in FORMATS:
         raise ValueError(f"{path}: a picture's name must end in .{', .'.join(FORMATS)}; use {path.stem}.png.")
-    if not path.parent.is_dir():
-        raise ValueError(
-            f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."
-        )
+    refuse_place(path)

@@ -8,6 +8,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contvines.file_names import refuse_place
+
 from ..export import json_text
 from ..shared.extras import pip_install
 
@@ -105,10 +107,7 @@ def check_page(place: Path, plotly: bool = True) -> None:
     """
     if place.suffix.lower() not in (".html", ".htm"):
         raise ValueError(f"{place}: a report is a page, its name must end in .html; use {place.stem}.html.")
-    if place.is_dir() or not place.parent.is_dir():
-        raise ValueError(
-            f"{place}: there is no folder {str(place.parent)!r}; make it first, or choose another place."
-        )
+    refuse_place(place)
     if plotly:
         _plotly()
 
