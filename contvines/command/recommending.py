@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -17,6 +16,7 @@ import numpy as np
 from contvines.command.recommendation import AGREES, MET, Curve, Jump, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
 from contvines.command.survey_study import asked_of, options_of
+from contvines.shared.digests import digest_of
 from contvines.shared.modulation import BAND, modulation_of
 from contvines.shared.number_text import figures
 from contvines.survey.outcomes import stretches
@@ -715,11 +715,5 @@ def _duration(seconds: float) -> str:
 
 def digest(study: Study, cost: float, target: float | None) -> str:
     """What decides a recommendation."""
-    said = {
-        "of": asked_of(study),
-        "vary": study.survey.vary,
-        "cost": cost,
-        "target": target,
-        "places": [PLACES, *LATER],
-    }
-    return hashlib.sha256(json.dumps(said, sort_keys=True, default=str).encode()).hexdigest()
+    vary, places = study.survey.vary, [PLACES, *LATER]
+    return digest_of({"of": asked_of(study), "vary": vary, "cost": cost, "target": target, "places": places})

@@ -1,6 +1,5 @@
 """A checked study, and the checks of what several fields say together."""
 
-import hashlib
 import json
 import os
 from collections.abc import Callable
@@ -18,6 +17,7 @@ from contvines.command.schema import (
     SurveySection,
     SweepSection,
 )
+from contvines.shared.digests import digest_of
 
 if TYPE_CHECKING:
     from contvines.flows.problem import FlowProblem
@@ -187,8 +187,7 @@ class Study:
     def fingerprint(self, command: str = "diagram") -> str:
         """Digest of `describe()` and the command: two runs that must give the same graph share it, and those that go on from one another."""
         more = {"atlas": self.atlas.of_results()} if command == "atlas" else {}
-        text = json.dumps({"command": command, **more, **self.describe()}, sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()
+        return digest_of({"command": command, **more, **self.describe()})
 
 
 def without_word(study: Study, refusal: object) -> str:

@@ -1,7 +1,6 @@
 """The rows of a sweep: the CSV, and beside it the journal from which an unfinished sweep goes on."""
 
 import csv
-import hashlib
 import json
 import math
 from dataclasses import dataclass, field
@@ -13,6 +12,7 @@ from contvines.command.compose import machine
 from contvines.command.study_data import Study
 from contvines.graph.table import with_unit
 from contvines.shared import row_journal
+from contvines.shared.digests import digest_of
 from contvines.shared.modulation import BAND, SILENT
 
 if TYPE_CHECKING:
@@ -183,7 +183,5 @@ class Rows:
 
 def header_of(study: Study, down: bool) -> dict[str, str]:
     """First line of a sweep's journal, with a digest of all that decides its rows: runs that must give the same CSV share it."""
-    text = json.dumps(
-        {"study": study.describe(), "sweep": study.sweep.model_dump(), "down": down}, sort_keys=True
-    )
-    return {"contvines": "unfinished sweep", "of": hashlib.sha256(text.encode()).hexdigest()}
+    decides = {"study": study.describe(), "sweep": study.sweep.model_dump(), "down": down}
+    return {"contvines": "unfinished sweep", "of": digest_of(decides)}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
@@ -19,6 +17,7 @@ from ..interruptible import OnInterrupt, check_interrupt
 from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of
 from ..progress import counted
+from ..shared import digests
 from ..shared.row_journal import Rows
 from . import pools
 from .family import Carrying, Family
@@ -181,10 +180,7 @@ def survey(
 
 def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, object] | None) -> str:
     """What decides a survey's rows: surveys that must give the same share it."""
-    text = json.dumps(
-        {"rows": MEANING, **_description(plan, over, within, about)}, sort_keys=True, default=str
-    )
-    return hashlib.sha256(text.encode()).hexdigest()
+    return digests.digest_of({"rows": MEANING, **_description(plan, over, within, about)})
 
 
 def _description(
