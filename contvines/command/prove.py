@@ -58,9 +58,11 @@ def prove(
     if check:
         _check(file, names, json)
         return
-    proofs = (
-        _of_study(file, names, bits) if file.suffix == ".toml" else _of_file(file, names, bits, trust, within)
-    )
+    if file.suffix == ".toml":
+        proofs = _of_study(file, names, bits)
+    else:
+        with held(file, quiet=False):
+            proofs = _of_file(file, names, bits, trust, within)
     if json:
         about = {label: {"label": label, **proof.to_dict()} for label, proof in proofs.items()}
         alone = len(names) == 1 or file.suffix == ".toml"
@@ -92,13 +94,6 @@ def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]
 def _of_file(
     file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[str, str] | None
 ) -> dict[str, Any]:
-    with held(file, quiet=False):
-        return _proved(file, labels, bits, trust, within)
-
-
-def _proved(
-    file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[str, str] | None
-) -> dict[str, Any]:
     from contvines.graph.proving import prove as prove_labels
     from contvines.graph.proving import subject
     from contvines.store import Store
@@ -110,8 +105,7 @@ def _proved(
         raise ValueError(
             f"--within {within[0]} {within[1]} is for branches; name them, {next(iter(graph.branches))} for one."
         )
-    ends = None if within is None else interval("--within", within, graph.parameter, graph.units)
-    options = {} if ends is None else {"within": ends}
+    options = {} if within is None else {"within": interval("--within", within, graph.parameter, graph.units)}
     for label in labels:
         subject(graph, label)
     proofs: dict[str, Any] = {}
