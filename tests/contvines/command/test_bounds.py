@@ -5,7 +5,6 @@ import re
 import numpy as np
 import pytest
 
-from contvines.command.cli import main
 from contvines.store import load
 from tests.contvines.studies import PAPER_MACHINE
 
@@ -16,18 +15,11 @@ STUDY = (
 )
 
 
-def call(*words):
-    with pytest.raises(SystemExit) as end:
-        main(list(words))
-    return end.value.code
-
-
-def test_branches_end_where_a_measure_leaves_its_interval(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_branches_end_where_a_measure_leaves_its_interval(run, tmp_path):
     (tmp_path / "free.toml").write_text(STUDY)
     (tmp_path / "s.toml").write_text(STUDY + "bounds = { B = [-inf, 1.1] }\n")
     for name in ("free", "s"):
-        assert not call("diagram", f"{name}.toml", "--quiet", "--no-look")
+        assert run("diagram", f"{name}.toml", "--quiet", "--no-look")[0] == 0
     free, graph = load("free.vines")["B1"], load("s.vines")["B1"]
     assert free.measure("B").max() > 1.2
     assert graph.measure("B").max() == pytest.approx(1.1, abs=1e-9)
@@ -48,8 +40,7 @@ def test_branches_end_where_a_measure_leaves_its_interval(tmp_path, monkeypatch)
         ("{ B = [7.0, 8.0] }", "at the start B = .* is outside of its bounds"),
     ],
 )
-def test_bounds_that_are_none_are_refused(bounds, said, tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_bounds_that_are_none_are_refused(run, bounds, said, tmp_path):
     (tmp_path / "s.toml").write_text(STUDY + f"bounds = {bounds}\n")
-    assert call("diagram", "s.toml", "--no-look")
-    assert re.search(said, " ".join(capsys.readouterr().err.split()))
+    status, _, err = run("diagram", "s.toml", "--no-look")
+    assert status and re.search(said, " ".join(err.split()))

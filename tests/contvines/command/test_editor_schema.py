@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from contvines.command.cli import main
 from contvines.command.editor_schema import study_schema
 from contvines.command.study import StudyError, check_study
 
@@ -27,11 +26,9 @@ def test_every_example_is_valid(path):
     assert list(VALIDATOR.iter_errors(tomllib.loads(path.read_text(encoding="utf-8")))) == []
 
 
-def test_the_file_beside_the_documentation_is_what_the_command_writes(tmp_path, capsys):
-    with pytest.raises(SystemExit) as end:
-        main(["schema", "-o", str(tmp_path / "a.json")])
-    assert not end.value.code
-    assert "#:schema a.json" in capsys.readouterr().out
+def test_the_file_beside_the_documentation_is_what_the_command_writes(run, tmp_path):
+    status, out, _ = run("schema", "-o", "a.json")
+    assert not status and "#:schema a.json" in out
     assert (tmp_path / "a.json").read_text() == (TOP / "docs/study.schema.json").read_text()
 
 

@@ -4,8 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from contvines.command.cli import main
-
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
@@ -18,9 +16,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
         ("machines/impact_oscillator", "approach_speed"),
     ],
 )
-def test_the_default_of_y_is_the_machines(study, measure, capsys):
+def test_the_default_of_y_is_the_machines(run, study, measure):
     path = EXAMPLES / f"{study}.toml"
-    with pytest.raises(SystemExit) as end:
-        main(["diagram", str(path), "--help"])
-    assert not end.value.code
-    assert capsys.readouterr().out.endswith(f"For {path} the default of -y is {measure}.\n")
+    status, out, _ = run("diagram", path, "--help")
+    assert not status and out.endswith(f"For {path} the default of -y is {measure}.\n")

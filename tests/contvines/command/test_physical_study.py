@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-from contvines.command.cli import main
 from contvines.command.compose import machine
 from contvines.command.study import StudyError, check_study
 from contvines.command.survey_study import outcomes_of, plan_and_machine
@@ -143,28 +142,21 @@ def test_bad_studies_get_a_sentence(change, says):
     assert says in str(caught.value)
 
 
-def test_tables_json_and_csv_speak_the_study_s_units(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_tables_json_and_csv_speak_the_study_s_units(run, tmp_path):
     (tmp_path / "case.toml").write_text(STUDY)
 
-    def run(*words):
-        with pytest.raises(SystemExit) as ended:
-            main(list(words))
-        assert ended.value.code == 0
-        return capsys.readouterr().out
-
-    assert "frequency [Hz]" in run("diagram", "case.toml")
-    about = json.loads(run("show", "case.vines", "--json"))
+    assert "frequency [Hz]" in run("diagram", "case.toml")[1]
+    about = json.loads(run("show", "case.vines", "--json")[1])
     assert about["units"]["frequency"] == "Hz" and about["units"]["max_abs_q1"] == "mm"
     assert about["within"] == pytest.approx([7.5, 8.2])
     fold = next(p for p in about["special"] if p["kind"] == "fold")
     assert 7.5 < fold["value"]["frequency"] < 8.2
-    shown = run("orbit", "case.vines", fold["label"])
+    shown = run("orbit", "case.vines", fold["label"])[1]
     assert "half_width = 15 mm" in shown and "B_pre [mm/s]" in shown
-    run("export", "case.vines", "--to", "csv")
+    assert run("export", "case.vines", "--to", "csv")[0] == 0
     head = (tmp_path / "case.csv").read_text().splitlines()[0].split(",")
     assert "frequency [Hz]" in head and "max_abs_q1 [mm]" in head
-    run("sweep", "case.toml")
+    assert run("sweep", "case.toml")[0] == 0
     rows = (tmp_path / "case-sweep.csv").read_text().splitlines()
     assert "value [Hz]" in rows[0] and "max_abs_q1 [mm]" in rows[0]
     assert [float(row.split(",")[0]) for row in rows[1:]] == pytest.approx([7.5, 7.85, 8.2])

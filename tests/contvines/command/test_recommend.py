@@ -12,7 +12,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from contvines.command import recommending
-from contvines.command.cli import main
 from contvines.command.recommendation import Place, Recommendation
 from contvines.command.recommending import recommend
 from contvines.command.study import read_study
@@ -45,12 +44,6 @@ samples = 2
 """
 
 
-def run(*words):
-    with pytest.raises(SystemExit) as ended:
-        main(list(words))
-    return ended.value.code
-
-
 def written(tmp_path, text):
     path = tmp_path / "machine.toml"
     path.write_text(text)
@@ -75,13 +68,12 @@ def test_theory_begins_with_the_linear_peak(tmp_path):
         ('[survey]\nvary.half_width = { within = [60, 80], count = 3 }', "vary.half_width.within[0] = 60 has no unit"),
     ],
 )  # fmt: skip
-def test_refusals(tmp_path, survey, says, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert run("recommend", str(written(tmp_path, MODEL + survey))) == 1
-    assert says in capsys.readouterr().err
+def test_refusals(run, tmp_path, survey, says):
+    status, _, err = run("recommend", written(tmp_path, MODEL + survey))
+    assert status == 1 and says in err
     (tmp_path / "machine-recommend.json").write_text("{}")
-    assert run("recommend", str(written(tmp_path, MODEL + SURVEY))) == 1
-    assert "this is not a file of contvines recommend" in capsys.readouterr().err
+    status, _, err = run("recommend", written(tmp_path, MODEL + SURVEY))
+    assert status == 1 and "this is not a file of contvines recommend" in err
 
 
 def test_what_is_not_known_stays_unknown_in_a_file():
@@ -228,8 +220,7 @@ def test_without_a_browser_the_answer_is_set_on_two_sheets(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(run, tmp_path, monkeypatch):
     path = written(tmp_path, MODEL + SURVEY)
     kept = [tmp_path / f"{k}.rows" for k in range(9)]
 
@@ -257,20 +248,20 @@ def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(tmp_path
         rows = sweep(model.with_(half_width=place.value), "frequency", grid)
         met = max(row.measures["max_abs_q1"] for row in rows)
         assert met <= 1.01 * place.worst or math.isnan(place.worst)
-    assert run("recommend", str(path), "-q") == 0
-    assert run("recommend", str(path), "--plot", "choice.png") == 0
-    told = capsys.readouterr().out
+    assert run("recommend", path, "-q")[0] == 0
+    status, told, _ = run("recommend", path, "--plot", "choice.png")
+    assert status == 0
     assert (
         "Recommended: half width" in told
         and "tuned absorber of the same mass" in told
         and (tmp_path / "choice.png").exists()
     )
-    assert run("report", "machine-recommend.json") == 0
+    assert run("report", "machine-recommend.json")[0] == 0
     page = (tmp_path / "machine-recommend.html").read_text()
     assert "<svg" in page and "tuned absorber of the same mass" in page and "3.2 kg" in page
     monkeypatch.setattr("contvines.report.answer.BROWSERS", ())
-    assert run("report", "machine-recommend.json", "--pdf", "a.pdf") == 0
-    assert "a.pdf (set by matplotlib, as no browser" in capsys.readouterr().out
+    status, out, _ = run("report", "machine-recommend.json", "--pdf", "a.pdf")
+    assert status == 0 and "a.pdf (set by matplotlib, as no browser" in out
     assert page.count("not known") <= 1 + len(found.unknown)  # nothing is hidden, nothing is dumped
 
 

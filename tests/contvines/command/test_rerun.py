@@ -6,7 +6,6 @@ import sqlite3
 
 import pytest
 
-from contvines.command.cli import main
 from contvines.store import load, save
 from tests.contvines import fakes
 from tests.contvines.studies import PAPER_MACHINE
@@ -27,15 +26,8 @@ within = [0.4, 0.5]
 )
 
 
-def call(*words):
-    with pytest.raises(SystemExit) as end:
-        main([str(word) for word in words])
-    return end.value.code
-
-
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def folder(run, tmp_path):
     (tmp_path / "s.toml").write_text(STUDY)
     return tmp_path
 
@@ -50,27 +42,28 @@ def edited(file, change):
     db.close()
 
 
-def test_a_result_is_the_same_again_though_its_study_has_been_edited(folder, capsys):
-    assert not call("diagram", "s.toml", "-q")
+def test_a_result_is_the_same_again_though_its_study_has_been_edited(run, folder):
+    assert run("diagram", "s.toml", "-q")[0] == 0
     (folder / "s.toml").unlink()
-    assert not call("rerun", "s.vines", "-q")
-    assert "no differences" in capsys.readouterr().out
+    status, out, _ = run("rerun", "s.vines", "-q")
+    assert not status and "no differences" in out
     first, second = load("s.vines"), load("s-rerun.vines")
     assert [p.value for p in first.special.values()] == [p.value for p in second.special.values()]
-    assert not call("rerun", "s.vines", "--json", "-q")
-    said = json.loads(capsys.readouterr().out)
+    status, out, _ = run("rerun", "s.vines", "--json", "-q")
+    said = json.loads(out)
+    assert not status
     assert (
         said["same_study"] and said["differences"] == [] and said["before"]["numpy"] == said["after"]["numpy"]
     )
 
 
-def test_what_differs_is_listed(folder, capsys):
+def test_what_differs_is_listed(run, folder):
     """With r = 0.75 the fold is where its closed form says: another place than that of r = 0.76."""
-    assert not call("diagram", "s.toml", "-q")
+    assert run("diagram", "s.toml", "-q")[0] == 0
     edited("s.vines", lambda source: source.update(text=source["text"].replace("0.76", "0.75")))
-    assert call("rerun", "s.vines", "--json", "-q") == 1
-    said = json.loads(capsys.readouterr().out)
-    assert not said["same_study"]
+    status, out, _ = run("rerun", "s.vines", "--json", "-q")
+    said = json.loads(out)
+    assert status == 1 and not said["same_study"]
     moved = next(text for text in said["differences"] if text.startswith("LP1 moved from "))
     ratio, height = 0.25 / 1.75, 0.5 * math.pi * 1.006 * 0.5 * 0.211
     beta = (2 * math.pi - 4 * ratio * height) / (math.pi**2 + 4 * ratio**2)
@@ -78,15 +71,15 @@ def test_what_differs_is_listed(folder, capsys):
     assert float(moved.split()[-1]) == pytest.approx(expected, abs=1e-9)
 
 
-def test_files_without_a_study_and_studies_with_code_are_refused(folder, capsys):
+def test_files_without_a_study_and_studies_with_code_are_refused(run, folder):
     save(fakes.pitchfork_graph(), "python.vines")
-    assert call("rerun", "python.vines") == 1
-    assert "keeps no study" in capsys.readouterr().err
-    assert not call("diagram", "s.toml", "-q")
+    status, _, err = run("rerun", "python.vines")
+    assert status == 1 and "keeps no study" in err
+    assert run("diagram", "s.toml", "-q")[0] == 0
     edited(
         "s.vines",
         lambda source: source.update(text=source["text"].replace('"absorber"', '"evil.py:machine"')),
     )
     (folder / "evil.py").write_text("raise SystemExit(99)")
-    assert call("rerun", "s.vines") == 1
-    assert "--trust" in capsys.readouterr().err
+    status, _, err = run("rerun", "s.vines")
+    assert status == 1 and "--trust" in err
