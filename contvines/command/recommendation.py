@@ -33,6 +33,15 @@ PLAIN = {
     "stuck": "stuck",
 }
 """The same of machines that are not known to have an absorber."""
+LOADS = {
+    "impact_speed": ("fastest impact", "of periodic and modulated motions"),
+    "approach_speed": ("fastest impact", "of periodic motions"),
+    "impulse": ("impulse of an impact", "largest; periodic motions"),
+    "mean_force": ("mean impact force", "over a period"),
+    "impact_rate": ("impacts per second", "noise: how often"),
+    "impact_energy": ("energy of an impact", "noise: how hard"),
+}
+"""Measures that say what impacts do, and what is said of them."""
 Number = Annotated[float, BeforeValidator(lambda value: math.nan if value is None else value)]
 """Not known where JSON has null."""
 
@@ -243,15 +252,12 @@ class Recommendation:
     @property
     def sentences(self) -> list[str]:
         """What there is to say beside the tables, the most important first."""
-        peak, place = "peak", self.chosen
-        found = self._beside()
+        peak, place, own = "peak", self.chosen, self._own()
+        found = [*self._beside(), *([own] if own else [])]
         if place is not None and self.simulated > place.worst:
             found.insert(
                 0, f"Simulation meets {self.shown(peak, self.simulated)} there, more than the diagrams know ({self.shown(peak, place.worst)}): the largest response is not known."
             )  # fmt: skip
-        own = self._own()
-        if own:
-            found.append(own)
         if self.theory:
             t = self.theory
             found.append(
@@ -260,18 +266,16 @@ class Recommendation:
             )
         if place is not None and "tuned" in self.compared:
             tuned = self.compared["tuned"][0]
-            better = tuned < place.worst
-            found.append(
-                f"A tuned absorber of the same mass would {'do better' if better else 'not do better'}: {self.shown(peak, tuned)}"
-                + (" while it stays in tune." if better else ".")
+            does, stays = (
+                ("do better", " while it stays in tune") if tuned < place.worst else ("not do better", "")
             )
-        idle = {kind: self.met.get(f"{kind}_peak", math.nan) for kind in MET if kind != "impacts"}
-        idle = {kind: top for kind, top in idle.items() if top > self.met.get("impacts_peak", math.nan)}
-        if idle:
-            kind = max(idle, key=lambda kind: idle[kind])
+            found.append(f"A tuned absorber of the same mass would {does}: {self.shown(peak, tuned)}{stays}.")
+        tops = {kind: self.met.get(f"{kind}_peak", -math.inf) for kind in MET}
+        kind = max(tops, key=lambda kind: tops[kind])
+        if tops["impacts"] > -math.inf and tops[kind] > tops["impacts"]:
             found.append(
                 f"The largest response is that of a motion {'in which the absorber does not do its work' if self.absorber else 'of another kind'} "
-                f"({self._kinds[kind]}): {self.shown(peak, idle[kind])}; "
+                f"({self._kinds[kind]}): {self.shown(peak, tops[kind])}; "
                 f"with impacts in every period it is at most {self.shown(peak, self.met['impacts_peak'])}."
             )
         engaged = self.engaged
@@ -320,18 +324,12 @@ class Recommendation:
         if place is not None and chosen is not None and place.worst < chosen.worst:
             return f"Whether the study's {self.shown(self.name, self.own)} is better is not known: {self.shown('peak', place.worst)}, not of all samples or not by diagrams."
         ratio = self.value / self.own
-        small, factor = ratio > 1.0, max(ratio, 1.0 / ratio)
-        by = (
-            f"about {round(factor)} times"
-            if factor >= 1.5
-            else f"{100.0 * abs(self.own / self.value - 1.0):.2g} %"
-        )
-        worst = (
-            ""
-            if place is None or not math.isfinite(place.worst)
-            else f": {self.shown('peak', place.worst)} at worst"
-        )
-        return f"The study's {self.shown(self.name, self.own)} is {by} too {'small' if small else 'large'}{worst}."
+        factor = max(ratio, 1.0 / ratio)
+        share = f"{100.0 * abs(self.own / self.value - 1.0):.2g} %"
+        by = f"about {round(factor)} times" if factor >= 1.5 else share
+        known = place is not None and math.isfinite(place.worst)
+        worst = f": {self.shown('peak', place.worst)} at worst" if known else ""
+        return f"The study's {self.shown(self.name, self.own)} is {by} too {'small' if ratio > 1.0 else 'large'}{worst}."
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:
@@ -341,22 +339,17 @@ class Recommendation:
         place, found = self.chosen, []
         if place is not None:
             over = f"worst of {place.samples} samples" if place.samples > 1 else "worst of all that coexists"
-            if self.simulated > place.worst:
+            met = self.simulated > place.worst
+            if met:
                 found.append(
                     ("recommended", f"at least {self.shown('peak', self.simulated)}", "by simulation")
                 )
-            found.append(
-                ("recommended" if len(found) == 0 else "by diagrams", self.shown("peak", place.worst), over)
-            )
+            found.append(("by diagrams" if met else "recommended", self.shown("peak", place.worst), over))
             if place.samples > 1:
                 found.append(("recommended, median", self.shown("peak", place.median), ""))
-            found.append(
-                (
-                    "absorber at work" if self.absorber else "lowest motion",
-                    self.shown("peak", place.engaged),
-                    "lowest of what coexists, worst of the samples",
-                )
-            )
+            name = "absorber at work" if self.absorber else "lowest motion"
+            lowest = "lowest of what coexists, worst of the samples"
+            found.append((name, self.shown("peak", place.engaged), lowest))
         for kind, (value, at) in self.compared.items():
             found.append((NAMES[kind], self.shown("peak", value), f"at {self.shown(self.parameter, at)}"))
         return found
@@ -384,17 +377,9 @@ class Recommendation:
     @property
     def load_rows(self) -> list[tuple[str, str, str]]:
         """Loads and noise."""
-        names = {
-            "impact_speed": ("fastest impact", "of periodic and modulated motions"),
-            "approach_speed": ("fastest impact", "of periodic motions"),
-            "impulse": ("impulse of an impact", "largest; periodic motions"),
-            "mean_force": ("mean impact force", "over a period"),
-            "impact_rate": ("impacts per second", "noise: how often"),
-            "impact_energy": ("energy of an impact", "noise: how hard"),
-        }
         return [
             (said, self.shown(name, self.loads[name]), why)
-            for name, (said, why) in names.items()
+            for name, (said, why) in LOADS.items()
             if name in self.loads
         ]
 
@@ -404,19 +389,17 @@ class Recommendation:
         start = self.start_up
         if start is None:
             return []
+
+        def settled(seconds: float) -> str:
+            return self.shown("time", seconds) if math.isfinite(seconds) else "does not"
+
+        peak, bare = self.shown("peak", start.peak), self.shown("peak", start.bare_peak)
         return [
-            (
-                "largest displacement",
-                self.shown("peak", start.peak),
-                f"bare: {self.shown('peak', start.bare_peak)}",
-            ),
-            ("settles after", self._settled(start.settled), f"bare: {self._settled(start.bare_settled)}"),
+            ("largest displacement", peak, f"bare: {bare}"),
+            ("settles after", settled(start.settled), f"bare: {settled(start.bare_settled)}"),
             ("fastest impact", self.shown("impact_speed", start.fastest_impact), ""),
             ("largest relative displacement", self.shown("peak", start.worst_relative), ""),
         ]
-
-    def _settled(self, value: float) -> str:
-        return self.shown("time", value) if math.isfinite(value) else "does not"
 
     @property
     def first_unknown(self) -> list[str]:
@@ -450,13 +433,11 @@ class Recommendation:
         for title, rows in self.tables:
             lines += ["", title, *Table(("", "value", ""), [*rows], (), ()).lines(width)[1:]]
         if self.checked is not None:
-            by, simulated = self.checked
-            lines += [
-                "",
-                fitted(
-                    f"Checked by simulation at the largest response: {self.shown('peak', simulated)}, beside {self.shown('peak', by)} of the diagram."
-                ),
-            ]
+            by, simulated = (self.shown("peak", value) for value in self.checked)
+            checked = (
+                f"Checked by simulation at the largest response: {simulated}, beside {by} of the diagram."
+            )
+            lines += ["", fitted(checked)]
         for head, said in (("assumed", self.assumed), ("not known", self.first_unknown)):
             lines += [fitted(f"{head}: {sentence}") for sentence in said]
         return "\n".join(lines)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from contvines.command.recommendation import AGREES, MET, Curve, Jump, Place, Recommendation, Start
+from contvines.command.recommendation import AGREES, LOADS, MET, Curve, Jump, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
 from contvines.command.survey_study import asked_of, options_of
 from contvines.shared.digests import digest_of
@@ -38,7 +38,6 @@ UNSEEN = "not looked at"  # a note
 LATER = (7, 5)  # of the later ones, between the neighbours of the best
 SAMPLES = 16  # where the study does not say
 QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
-LOADS = ("impact_speed", "approach_speed", "impulse", "mean_force", "impact_rate", "impact_energy")
 VALUES, STARTS = 9, 6  # of the parameter, and at each, from which it is told what is met at the choice
 FEW = 2  # starts where flights are integrated
 REPLAYED, LONGEST = (

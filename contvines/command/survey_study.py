@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contvines.command.conditions import check_range
 from contvines.command.own_code import own_code, run_file
+from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
 from contvines.flows.family import FlowFamily
 from contvines.flows.problem import FlowProblem
 from contvines.shared.near_names import did_you_mean
 from orbits.design import Family
 from orbits.machines.varying import Varying
+from orbits.words import Word
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
-    from contvines.survey.outcomes import Findings
+    from contvines.survey.outcomes import Findings, Outcome
     from contvines.survey.plan import Plan
     from orbits.machines.physical.machine import Physical
 
@@ -27,7 +27,7 @@ WRITTEN = (Sort.PAGE, Sort.FLOW)  # equations in a Python file
 TEXTS = ("within", "values", "normal", "uniform")
 
 
-def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tuple[Plan, Any]:
+def plan_and_machine(study: Study) -> tuple[Plan, Any]:
     """The plan of a study's survey, and its machine, which tells what varies.
 
     Raises
@@ -39,7 +39,7 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
     from contvines.survey import planned
     from orbits.machines.physical.quantities import near_quantity
 
-    said = dict(study.survey.vary if vary is None else vary)
+    said = dict(study.survey.vary)
     model = study.flow if study.sort is Sort.FLOW else machine(study)
     known = [*names_of(study), *study.conditions]
     follows = {table.parameter: table.condition for table in study.tables}
@@ -60,24 +60,16 @@ def plan_and_machine(study: Study, vary: Mapping[str, Any] | None = None) -> tup
         if study.sort is Sort.PHYSICAL and name not in study.conditions:
             model = model.given_by(name)
             said[name] = _numbers(model, name, said[name], f"{study.path}: [survey] vary.{name}")
-    try:
+    with refused(str(study.path)):
         plan = planned(said, study.survey.sampling, study.survey.samples, study.survey.seed)
         for name, values in {**plan.axes, **plan.samples}.items():
             check_range(study.tables, name, values.tolist(), f"[survey] vary.{name}")
         if study.sort is Sort.PAGE:
             for name, values in plan.axes.items():  # of samples, one that is impossible is a row that says so
                 for value in values.tolist() if name not in study.conditions else ():
-                    _check(model, name, value)
-        return plan, model
-    except ValueError as error:
-        raise ValueError(f"{study.path}: {str(error).rstrip('.')}.") from None
-
-
-def _check(model: Varying, name: str, value: float) -> None:
-    try:
-        model.check_value(name, value)
-    except ValueError as error:
-        raise ValueError(f"[survey] vary.{name}: {error}") from None
+                    with refused(f"[survey] vary.{name}"):
+                        model.check_value(name, value)
+    return plan, model
 
 
 def names_of(study: Study) -> Iterable[str]:
@@ -109,7 +101,7 @@ def machines_of(study: Study, model: Varying) -> Family:
     )  # fmt: skip
 
 
-def outcomes_of(study: Study) -> list[Any]:
+def outcomes_of(study: Study) -> list[Outcome]:
     """A survey's outcomes, the machine's own and the user's among them.
 
     Raises
@@ -117,43 +109,37 @@ def outcomes_of(study: Study) -> list[Any]:
     ValueError
         If a name or a file is unknown.
     """
+    return [_outcome(study, said) for said in _spelled(study)]
+
+
+def _outcome(study: Study, said: str) -> Outcome:
     from contvines.command.asked_measures import measures_of
     from contvines.command.machine_outcomes import OWN
     from contvines.survey.survey import outcome_named
     from orbits.machines.measures import way_out
 
-    found = []
-    for said in _spelled(study):
-        file, _, function = said.rpartition(":")
-        try:
-            if said.startswith("share:") and not (study.survey.atlas or study.survey.values):
-                raise ValueError(
-                    f"[survey] outcomes: {said!r} is a share of simulated starts, and there are none: with atlas = true an atlas of each "
-                    "machine is made, with values = 9 and starts = 16 each is simulated at nine values"
-                )
-            measure = said.removeprefix("largest:")
-            if measure != said and measure not in (known := measures_of(study)):
-                raise ValueError(
-                    f"[survey] outcomes: {said!r}: there is no such measure{way_out(measure) or did_you_mean(measure, known)}; "
-                    f"choose one of {', '.join(known)}"
-                )
-            if file.endswith(".py"):
-                place = own_code(study.path, file, f"[survey] outcomes: {said!r}")
-                found.append(UserOutcome.of(place, function))
-            elif (
-                study.sort in WRITTEN
-                and said in OWN
-                and not (said == "dissipation" and "impact_loss" in measures_of(study))
-            ):
-                raise ValueError(
-                    f"[survey] outcomes: {said!r} is known for the built-in machines (dissipation also by a declared machine with energy=); for equations of "
-                    'your own give a function of your own: "file.py:function"'
-                )
-            else:
-                found.append(outcome_named(said, OWN))
-        except ValueError as error:
-            raise ValueError(f"{study.path}: {error}.") from None
-    return found
+    place, known = f"[survey] outcomes: {said!r}", measures_of(study)
+    file, _, function = said.rpartition(":")
+    measure = said.removeprefix("largest:")
+    with refused(str(study.path)):
+        if said.startswith("share:") and not (study.survey.atlas or study.survey.values):
+            raise ValueError(
+                f"{place} is a share of simulated starts, and there are none: with atlas = true an atlas of each "
+                "machine is made, with values = 9 and starts = 16 each is simulated at nine values"
+            )
+        if measure != said and measure not in known:
+            raise ValueError(
+                f"{place}: there is no such measure{way_out(measure) or did_you_mean(measure, known)}; "
+                f"choose one of {', '.join(known)}"
+            )
+        if file.endswith(".py"):
+            return UserOutcome.of(own_code(study.path, file, place), function)
+        if study.sort in WRITTEN and said in OWN and not (said == "dissipation" and "impact_loss" in known):
+            raise ValueError(
+                f"{place} is known for the built-in machines (dissipation also by a declared machine with energy=); for equations of "
+                'your own give a function of your own: "file.py:function"'
+            )
+        return outcome_named(said, OWN)
 
 
 def _spelled(study: Study) -> list[str]:
@@ -164,23 +150,20 @@ def _spelled(study: Study) -> list[str]:
     ValueError
         If a motion that is to be stable has no word.
     """
-    from orbits.words import Word
 
     if study.sort in WRITTEN:
-        return list(study.survey.outcomes)
+        return study.survey.outcomes
+    model, params = study.model, study.model.vector(study.loose)
     found = []
     for said in study.survey.outcomes:
         kind, _, text = said.partition(":")
         if kind in ("stable", "share") and text:
-            model = study.model
-            params = model.vector(study.loose)
             try:
                 word = Word.parse(text, frictionless=model.frictionless(params))
-            except ValueError as error:
+                said = f"{kind}:{word.spelled(model.has_mirror(params, study.parameter))}"
+            except ValueError as error:  # a share may be that of a kind of motion
                 if kind == "stable":
                     raise ValueError(f"{study.path}: [survey] outcomes: {said!r}: {error}.") from None
-            else:
-                said = f"{kind}:{word.spelled(model.has_mirror(params, study.parameter))}"
         found.append(said)
     return found
 
@@ -211,13 +194,13 @@ def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
 
     if not isinstance(model, Varying) or not model.units:
         return {}
-    units = dict(model.units)
-    over, shown = units.get(study.parameter, ""), units.get(flow_of(model).default_measure(model), "")
-    bands = ("modulated_low", "modulated_mean", "modulated_high")
-    units |= dict.fromkeys(("peak", "lower_peak", *bands), shown) | UNITS
-    units |= dict.fromkeys(
-        ("peak_at", "lower_peak_at", "activation_from_below", "activation_from_above"), over
+    over, shown = (
+        model.units.get(study.parameter, ""),
+        model.units.get(flow_of(model).default_measure(model), ""),
     )
+    responses = "peak", "lower_peak", "modulated_low", "modulated_mean", "modulated_high"
+    places = "peak_at", "lower_peak_at", "activation_from_below", "activation_from_above"
+    units = model.units | dict.fromkeys(responses, shown) | UNITS | dict.fromkeys(places, over)
     for said in _spelled(study):
         kind, _, rest = said.partition(":")
         if kind == "stable":
@@ -247,17 +230,20 @@ class UserOutcome:
         """
         if not path.is_file():
             raise ValueError(f"[survey] outcomes: there is no file {path}")
-        if not callable(getattr(_module(path), function, None)):
+        found = cls(str(path.resolve()), function)
+        if not callable(found.loaded):
             raise ValueError(f"[survey] outcomes: {path} has no function {function!r}")
-        return cls(str(path.resolve()), function)
+        return found
+
+    @property
+    def loaded(self) -> Callable[[Findings], Mapping[str, float] | float] | None:
+        """The function itself."""
+        return getattr(run_file(Path(self.path), "[survey] outcomes"), self.function, None)
 
     def __call__(self, found: Findings) -> Mapping[str, float]:
-        value = getattr(_module(Path(self.path)), self.function)(found)
+        assert self.loaded is not None
+        value = self.loaded(found)
         return value if isinstance(value, Mapping) else {self.function: float(value)}
-
-
-def _module(path: Path) -> ModuleType:
-    return run_file(path, "[survey] outcomes")
 
 
 def _numbers(model: Physical, name: str, said: object, place: str) -> object:
@@ -267,17 +253,16 @@ def _numbers(model: Physical, name: str, said: object, place: str) -> object:
     def read(values: object, where: str, spread: int | None = None) -> object:
         if not isinstance(values, list):
             return values
-        found = []
-        for i, value in enumerate(values):
-            number, refusal = number_of(model, name, value, f"{where}[{i}]", i == spread)
-            if refusal:
-                raise ValueError(refusal)
-            found.append(number)
-        return found
+        pairs = [
+            number_of(model, name, value, f"{where}[{i}]", i == spread) for i, value in enumerate(values)
+        ]
+        if refusal := next((refusal for _, refusal in pairs if refusal), None):
+            raise ValueError(refusal)
+        return [number for number, _ in pairs]
 
-    if isinstance(said, dict):
-        return {
-            key: read(value, f"{place}.{key}", 1 if key == "normal" else None) if key in TEXTS else value
-            for key, value in said.items()
-        }
-    return read(said, place)
+    if not isinstance(said, dict):
+        return read(said, place)
+    return {
+        key: read(value, f"{place}.{key}", 1 if key == "normal" else None) if key in TEXTS else value
+        for key, value in said.items()
+    }
