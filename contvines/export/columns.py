@@ -66,8 +66,8 @@ def branch_columns(branch: Branch, units: dict[str, str] | None = None) -> dict[
     for j in range(0 if meshed else branch.points.shape[1]):
         columns[f"u{j}"] = branch.points[:, j].tolist()
     for j in range(branch.multipliers.shape[1]):
-        columns[f"multiplier{j}_re"] = branch.multipliers[:, j].real.tolist()
-        columns[f"multiplier{j}_im"] = branch.multipliers[:, j].imag.tolist()
+        columns[f"multiplier{j}_re"] = np.real(branch.multipliers[:, j]).tolist()
+        columns[f"multiplier{j}_im"] = np.imag(branch.multipliers[:, j]).tolist()
     columns["word"] = [branch.description.get("word", "")] * n
     columns["periods"] = [branch.description.get("periods", "")] * n
     for name, values in measures_of(branch).items():
