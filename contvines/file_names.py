@@ -56,7 +56,7 @@ def refuse_place(path: Path) -> None:
     ValueError
     """
     if path.is_dir():
-        raise ValueError(f"{path}: this is a folder; give the name of a file.")
+        raise ValueError(f"{path}: cannot be written: this is a folder; give the name of a file.")
     if not path.parent.is_dir():
         raise ValueError(
             f"{path}: there is no folder {str(path.parent)!r}; make it first, or choose another place."

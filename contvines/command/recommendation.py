@@ -327,8 +327,9 @@ class Recommendation:
         factor = max(ratio, 1.0 / ratio)
         share = f"{100.0 * abs(self.own / self.value - 1.0):.2g} %"
         by = f"about {round(factor)} times" if factor >= 1.5 else share
-        known = place is not None and math.isfinite(place.worst)
-        worst = f": {self.shown('peak', place.worst)} at worst" if known else ""
+        worst = ""
+        if place is not None and math.isfinite(place.worst):
+            worst = f": {self.shown('peak', place.worst)} at worst"
         return f"The study's {self.shown(self.name, self.own)} is {by} too {'small' if ratio > 1.0 else 'large'}{worst}."
 
     @property
