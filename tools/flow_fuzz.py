@@ -21,7 +21,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import contvines as cv
+from contvines import Settings
+from contvines.bifurcation.segment import Segment
 from contvines.coexistence.solutions import solutions_at
+from contvines.continuation.engine import Engine, Solved
 
 WITHIN = (-1.0, 1.0)
 BOX = 2.5
@@ -29,7 +32,8 @@ EACH = 3  # solutions of each branch
 PLACES, STARTS = 3, 4  # values at which motions are simulated, and motions at each
 SPAN = 50.0  # times after which a motion has settled, if it settles soon; up to 64 times that otherwise
 EDGE = 1e-5  # multipliers (eigenvalues) so near to the boundary are not judged
-PIECES = 40  # simulations along a cycle, each of which starts on it: their growths stay small beside a saddle
+PIECES = 40  # simulations along a cycle, each of which starts on it, to begin with ...
+GROWTH = 1e3  # ... and more, until none grows by more than that, as beside a saddle
 CLOSED = 1e-6  # distance of a simulation from a cycle, relative to its size, times the growth
 NEAR = 2e-3  # relative distance of a motion from the one on which it has settled
 RETURNS = 12  # after which a motion that has settled must have returned, to be periodic
@@ -131,9 +135,8 @@ def judge(salt: int, seed: int) -> Judged:
         if not branch.real or len(branch) < 2 or branch.stable is None:
             continue
         for i in rng.permutation(len(branch) - 1)[:EACH]:
-            first, last = branch.values[i], branch.values[i + 1]
-            if first != last and branch.stable[i] == branch.stable[i + 1]:
-                _stability(flow, branch, int(i), float(first + rng.uniform(0.2, 0.8) * (last - first)), done)
+            if branch.stable[i] == branch.stable[i + 1]:
+                _stability(flow, branch, int(i), float(rng.uniform(0.2, 0.8)), done)
     low, high = WITHIN
     for p in low + (high - low) * (np.arange(PLACES) + rng.uniform(0.0, 1.0, PLACES)) / PLACES:
         known = [
@@ -155,19 +158,16 @@ def _curve(u: np.ndarray, p: float, problem: Any) -> np.ndarray:
     return orbit(np.linspace(0.0, orbit.period, 4001))
 
 
-def _stability(flow: Drawn, branch: Any, i: int, p: float, done: Judged) -> None:
+def _stability(flow: Drawn, branch: Any, i: int, place: float, done: Judged) -> None:
     """Whether a solution between two points of a branch is as stable as these."""
-    points, stable = branch.points[i : i + 2], bool(branch.stable[i])
-    guess = points[0] + (p - branch.values[i]) / (branch.values[i + 1] - branch.values[i]) * (
-        points[1] - points[0]
-    )
-    found = [
-        s for s in solutions_at(branch, p)[1] if np.abs(s.u - guess).max() < 0.1 * (1.0 + np.abs(guess).max())
-    ]
-    if not found:
+    stable, none = bool(branch.stable[i]), (np.zeros(0), 0.0, 0.0, 0.0)
+    engine = Engine(branch.problem, WITHIN, Settings())
+    ends = [Solved(branch.points[k], float(branch.values[k]), branch.tangents[k], *none) for k in (i, i + 1)]
+    found = Segment(engine, *ends).at(place)
+    if found is None:
         done.tried["solutions not solved for"] += 1
         return
-    u = min(found, key=lambda s: float(np.abs(s.u - guess).max())).u
+    u, p = found.u, float(found.p)
     said = f"{branch.label} at p = {p:.12g} is said to be {'stable' if stable else 'unstable'}"
     if branch.problem.spectrum == "flow":
         done.tried["equilibria"] += 1
@@ -181,10 +181,16 @@ def _stability(flow: Drawn, branch: Any, i: int, p: float, done: Judged) -> None
     orbit = branch.problem.orbit(u, p)
     done.tried["cycles"] += 1
     nodes = orbit.times[:: branch.problem.rule.degree]
-    times = nodes[np.unique(np.linspace(0, len(nodes) - 1, PIECES + 1).astype(int))]
+    times = nodes[np.unique(np.linspace(0, len(nodes) - 1, PIECES + 1).astype(int))].tolist()
     maps, size, away = [], float(np.ptp(orbit.states, axis=0).max()), 0.0
-    for begin, end in pairwise(times):
+    pieces = list(pairwise(times))[::-1]
+    while pieces:
+        begin, end = pieces.pop()
         state, matrix = flow.monodromy(orbit(begin), p, end - begin)
+        if not np.abs(matrix).max() < GROWTH:
+            middle = 0.5 * (begin + end)
+            pieces += [(middle, end), (begin, middle)]
+            continue
         away = max(away, float(np.abs(state - orbit(end)).max()) / (size * (1.0 + np.abs(matrix).max())))
         maps.append(matrix)
     largest = _largest_multiplier(maps)

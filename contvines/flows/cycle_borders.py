@@ -53,6 +53,20 @@ class CycleBorders(CycleMesh):
             return np.array([np.inf, short])
         return np.array([float(np.log10(max(closeness / size, TINY) / s.homoclinic)), short])
 
+    def from_rest(self, u: np.ndarray, p: float) -> float:
+        """How near the cycle comes to an equilibrium, relative to its size in each direction: the same in all coordinates of the states, as beside Bogdanov-Takens
+        points, where cycles are flat."""
+        s, work = self.flow.settings, self.workspace()
+        self.evaluate(u, p, work)
+        _, _, jacobian, f = work.along
+        if work.sparse is not None:
+            return s.homoclinic * 10.0 ** float(self._from_homoclinic(u, work)[0])
+        x = u[: self.states].reshape(-1, self.node) / self.node_scale
+        axes = np.linalg.svd(x - x.mean(axis=0), full_matrices=False)[2]
+        sizes = np.ptp(x @ axes.T, axis=0)
+        back = self.node_scale[:, None] * axes.T * np.maximum(sizes, s.smallest * sizes.max())
+        return max(_distance_to_rest(jacobian @ back, f), TINY)
+
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
         """How far the parameter may be from that of an infinite period: of a saddle-node p - p* is as 1 / T^2 to first order, taken twice; of a saddle less is left."""
         change = abs(float(tangent[self.states]))

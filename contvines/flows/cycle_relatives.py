@@ -85,6 +85,16 @@ class CycleRelatives(CycleBorders):
         rounds = self.rounds if self.free_period else self.rounds // 2
         return self.with_unknowns(shorter, p, half, self.copies // 2, rounds), shorter
 
+    def center(self, u: np.ndarray) -> tuple[np.ndarray, float]:
+        """The mean state, and the mean square of the distance from it, in units of the scale."""
+        x = u[: self.states].reshape(-1, self.node)
+        mean = x.mean(axis=0)
+        return mean, float((((x - mean) / self.node_scale) ** 2).mean())
+
+    def resting(self, u: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """An equilibrium as a cycle with the period and the mesh of another."""
+        return np.concatenate([np.tile(x, self.states // self.node), u[self.states :]])
+
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:

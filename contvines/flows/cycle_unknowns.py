@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from ..problems.parameters import Parametrised
 from ..problems.protocol import ProblemDefaults, Symmetry
 from ..problems.scales import Scales
 from .collocation import Rule, rule
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from .flow import Flow
 
 
-class CycleUnknowns(ProblemDefaults, ABC):
+class CycleUnknowns(Parametrised, ProblemDefaults, ABC):
     """Values at the nodes of each interval of the mesh, shape (N, m, d), the period (autonomous flows), and the widths of the intervals in units of the period.
 
     Parameters
@@ -109,21 +110,6 @@ class CycleUnknowns(ProblemDefaults, ABC):
     def workspace(self) -> CycleWork:
         """Arrays for the kernels."""
         return CycleWork(self)
-
-    @property
-    def parameter(self) -> str:
-        """Name of the parameter that varies."""
-        return self.values.varying
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """All parameters by name."""
-        return dict(self.values.values)
-
-    @property
-    def p0(self) -> float:
-        """Value of the varying parameter at the start."""
-        return self.values.start
 
     def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Self:
         """The same cycles with another parameter varying, and with other values of some parameters."""

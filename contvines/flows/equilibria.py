@@ -186,7 +186,7 @@ def cycles_at(problem: Equilibria, u: np.ndarray, p: float, omega: float, q: np.
     field = flow.field.against(values)
     m = flow.degree
     still = np.concatenate([np.tile(u[:d], FIRST * m), [period], widths])
-    cycles = flow.cycles(field, still, FIRST, 1, 1, scale, period, unit)
+    cycles = flow.cycles(field, still, (FIRST, 1, 1), (scale, period, unit))
     scale = cycles.node_scale
     angles = 2.0 * np.pi * mesh.node_places(cycles.rule, widths)
     q = q / np.linalg.norm(q / scale)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from copy import copy
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 import numpy as np
 from scipy.sparse import issparse
@@ -25,6 +25,14 @@ if TYPE_CHECKING:
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so a hundredfold rounding of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
+
+
+class At(NamedTuple):
+    """States (n, d), parameters and times (n,) at which a function is asked."""
+
+    x: np.ndarray
+    parameters: Parameters | complex
+    t: np.ndarray | None
 
 
 class Field:
@@ -124,79 +132,51 @@ class Field:
         NotEvaluable
             If f fails or does not return d numbers.
         """
-        parameters = self.values.at(p)
+        at = At(x, self.values.at(p), t)
         if self.compiled is not None:
-            return self.compiled.at_points(self.compiled.f, x, parameters, t, (self.node,))
-        if self.many:
-            return self._stacked(self.f, x, parameters, t, (self.node,))
-        times = [None] * len(x) if t is None else t
-        return np.array(
-            [self._one(self.f, y, parameters, s, (self.node,)) for y, s in zip(x, times, strict=True)]
-        )
+            return self.compiled.at_points(self.compiled.f, *at, (self.node,))
+        return self._stacked(self.f, at, (self.node,)) if self.many else self._each(self.f, at, (self.node,))
 
-    def _arguments(
-        self, x: np.ndarray, parameters: Parameters | complex, t: float | np.ndarray | None
-    ) -> tuple[object, ...]:
-        return (x, parameters) if self.period is None else (x, parameters, t)
-
-    def _one(
-        self,
-        f: Callable,
-        x: np.ndarray,
-        parameters: Parameters | complex,
-        t: np.ndarray | None,
-        shape: tuple[int, ...],
+    def _asked(
+        self, f: Callable, x: np.ndarray, at: At, t: object, read: Callable[..., np.ndarray]
     ) -> np.ndarray:
+        """What a function returns for a state, or for many as columns, as an array."""
         try:
-            value = f(*self._arguments(x.copy(), parameters, t))
-            value = value.toarray() if issparse(value) else np.array(value)
+            return read(f(x, at.parameters) if self.period is None else f(x, at.parameters, t))
         except (ArithmeticError, ValueError, TypeError, IndexError, np.linalg.LinAlgError) as error:
             raise NotEvaluable(f"the right-hand side fails: {error}") from error
-        if value.shape != shape:
-            raise NotEvaluable(f"the right-hand side has shape {value.shape}; {shape} is needed")
-        return value
 
-    def _stacked(
-        self,
-        f: Callable,
-        x: np.ndarray,
-        parameters: Parameters | complex,
-        t: np.ndarray | None,
-        shape: tuple[int, ...],
-    ) -> np.ndarray:
-        try:
-            given = f(*self._arguments(x.T.copy(), parameters, t))
-            return _broadcast(given, len(x), shape)
-        except (ArithmeticError, ValueError, TypeError, IndexError, np.linalg.LinAlgError) as error:
-            raise NotEvaluable(f"the right-hand side fails: {error}") from error
+    def _each(self, f: Callable, at: At, shape: tuple[int, ...]) -> np.ndarray:
+        """Point by point."""
+        times = [None] * len(at.x) if at.t is None else at.t
+        found = [self._asked(f, x.copy(), at, t, _full) for x, t in zip(at.x, times, strict=True)]
+        for value in found:
+            if value.shape != shape:
+                raise NotEvaluable(f"the right-hand side has shape {value.shape}; {shape} is needed")
+        return np.array(found)
+
+    def _stacked(self, f: Callable, at: At, shape: tuple[int, ...]) -> np.ndarray:
+        """All points at once."""
+        return self._asked(f, at.x.T.copy(), at, at.t, lambda given: _broadcast(given, len(at.x), shape))
 
     def _find_vectorised(self, start: np.ndarray) -> None:
         """Whether many points can be handed over at once, tried at points beside the start."""
         noise = np.random.default_rng(5).uniform(-0.1, 0.1, (7, self.node))
         x, p = start + noise * self.lengths, self.values.start
         t = np.linspace(0.05, 0.95, 7) * self.length_of_period(p) if self.forced else None
-        parameters = self.values.at(p)
+        at = At(x, self.values.at(p), t)
         with np.errstate(all="ignore"):
-            self.many = self._agrees(self.f, x, parameters, t, (self.node,))
+            self.many = self._agrees(self.f, at, (self.node,))
             if self.given_jacobian is not None:
-                shape = (self.node, self.node)
-                self.many_jacobian = self._agrees(self.given_jacobian, x, parameters, t, shape)
+                self.many_jacobian = self._agrees(self.given_jacobian, at, (self.node, self.node))
 
-    def _agrees(
-        self,
-        f: Callable,
-        x: np.ndarray,
-        parameters: Parameters | complex,
-        t: np.ndarray | None,
-        shape: tuple[int, ...],
-    ) -> bool:
-        times = [None] * len(x) if t is None else t
+    def _agrees(self, f: Callable, at: At, shape: tuple[int, ...]) -> bool:
         try:
-            single = np.array([self._one(f, y, parameters, s, shape) for y, s in zip(x, times, strict=True)])
+            single = self._each(f, at, shape)
         except NotEvaluable:
             return False  # points beside the start may be outside of where f is defined
         try:
-            together = self._stacked(f, x, parameters, t, shape)
+            together = self._stacked(f, at, shape)
         except Exception:  # a function of one point may fail in any way when it is called with many
             return False
         agree = self.settings.agree
@@ -211,7 +191,7 @@ class Field:
         def jacobian(x: np.ndarray):
             if given is None:
                 return self.jacobian(x[None, :], p, t)[0]
-            return given(*self._arguments(x, parameters, None if t is None else t[0]))
+            return given(x, parameters) if t is None else given(x, parameters, t[0])
 
         try:
             with np.errstate(all="ignore"):
@@ -225,10 +205,9 @@ class Field:
         pattern = self.sparsity
         assert pattern is not None
         if self.given_jacobian is not None:
-            times, parameters = [None] * len(x) if t is None else t, self.values.at(p)
-            found = np.empty((len(x), len(pattern.indices)))
-            for i, (y, s) in enumerate(zip(x, times, strict=True)):
-                value = self.given_jacobian(*self._arguments(y, parameters, s))
+            parameters, found = self.values.at(p), np.empty((len(x), len(pattern.indices)))
+            for i, y in enumerate(x):
+                value = self.given_jacobian(y, parameters, *([] if t is None else [t[i]]))
                 value = value.tocsr() if issparse(value) else np.asarray(value)
                 found[i] = np.asarray(value[pattern.indices, pattern.columns]).reshape(-1)
             return found
@@ -248,17 +227,12 @@ class Field:
 
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """df/dx at the points, shape (n, d, d)."""
-        shape = (self.node, self.node)
+        shape, d = (self.node, self.node), self.node
         if self.compiled is not None and self.compiled.dfdx is not None:
             return self.compiled.at_points(self.compiled.dfdx, x, self.values.at(p), t, shape)
         if self.given_jacobian is not None:
-            parameters = self.values.at(p)
-            if self.many_jacobian:
-                return self._stacked(self.given_jacobian, x, parameters, t, shape)
-            times = [None] * len(x) if t is None else t
-            pairs = zip(x, times, strict=True)
-            return np.array([self._one(self.given_jacobian, y, parameters, s, shape) for y, s in pairs])
-        d = self.node
+            together = self._stacked if self.many_jacobian else self._each
+            return together(self.given_jacobian, At(x, self.values.at(p), t), shape)
         if self.complex_step:  # all directions in one call
             moved = x + 1j * COMPLEX_STEP * np.eye(d)[:, None]
             found = (
@@ -296,13 +270,11 @@ class Field:
             given = given.get(self.values.varying)
         if given is None:
             return self.along(lambda q: self(x, q, t), p)
-        times, parameters, shape = [None] * len(x) if t is None else t, self.values.at(p), (self.node,)
+        at, shape = At(x, self.values.at(p), t), (self.node,)
         if self.values.varying not in self.many_slope:
-            first = None if t is None else t[:7]
-            self.many_slope[self.values.varying] = self._agrees(given, x[:7], parameters, first, shape)
-        if self.many_slope[self.values.varying]:
-            return self._stacked(given, x, parameters, t, shape)
-        return np.array([self._one(given, y, parameters, s, shape) for y, s in zip(x, times, strict=True)])
+            first = At(x[:7], at.parameters, None if t is None else t[:7])
+            self.many_slope[self.values.varying] = self._agrees(given, first, shape)
+        return (self._stacked if self.many_slope[self.values.varying] else self._each)(given, at, shape)
 
 
 def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:
@@ -315,6 +287,10 @@ def _at_zero(f: Callable, period: Callable | None) -> Callable:
     if period is None or not callable(f):
         return f
     return lambda x, p: f(x, p, 0.0)
+
+
+def _full(given: object) -> np.ndarray:
+    return np.asarray(given.toarray()) if issparse(given) else np.array(given)  # type: ignore[union-attr]
 
 
 def _broadcast(given: Iterable, n: int, shape: tuple[int, ...]) -> np.ndarray:

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from ..problems.registry import find_callables
-from .cycles import CycleProblem
 from .expressions import read_text
 from .problem import FlowProblem, NamedOptions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from .cycles import CycleProblem
     from .equilibria import Equilibria
 
 
@@ -44,17 +44,9 @@ def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Equilibria 
         found.u0 = np.array(description["u0"], dtype=float)
         return found
     flow.sizes = np.array(cycle["scale"], dtype=float), float(cycle["clock"])
-    values = flow.values.against(description["parameter"], named)
-    return CycleProblem(
-        flow,
-        flow.field.against(values),
-        np.array(cycle["u0"], dtype=float),
-        cycle["intervals"],
-        cycle["rounds"],
-        cycle["copies"],
-        *flow.sizes,
-        cycle["unit"],
-    )
+    field = flow.field.against(flow.values.against(description["parameter"], named))
+    counts = cycle["intervals"], cycle["rounds"], cycle["copies"]
+    return flow.cycles(field, np.array(cycle["u0"], dtype=float), counts, (*flow.sizes, cycle["unit"]))
 
 
 def read_ode(

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from .settings import FlowSettings
 
 
+Sizes = tuple[np.ndarray, float, float]  #: of states, period and parameter
+
+
 class Born(Problem, Protocol):
     """Cycles that are born at a Hopf point."""
 
@@ -59,17 +62,7 @@ class Flow(Protocol):
     def equilibria(
         self, parameter: str | None = None, values: Mapping[str, float] | None = None
     ) -> AlgebraicProblem: ...
-    def cycles(
-        self,
-        field: Field,
-        u: np.ndarray,
-        intervals: int,
-        rounds: int,
-        copies: int,
-        scale: np.ndarray,
-        clock: float,
-        unit: float,
-    ) -> Born: ...
+    def cycles(self, field: Field, u: np.ndarray, counts: tuple[int, int, int], sizes: Sizes) -> Born: ...
     def population(
         self,
         over: str | None = None,

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..core.library import native
 from ..problems.functions import NotEvaluable
+from ..problems.interpreted import assign
 from ..problems.protocol import Kernels
 from .core import CoreCycle, across
 from .elimination import condense, multipliers_of, solve_collocation
-from .mesh import closed
 from .sparse import SparseEquations, leading_multipliers, solve_bordered
 
 if TYPE_CHECKING:
@@ -210,18 +210,15 @@ def spectrum(data: Collocated, work: CycleWork) -> tuple[np.ndarray, float]:
     if data.n_multipliers == 1:
         # Liouville: stiff parts of a cycle are passed in intervals in which collocation contracts less than the flow does
         value = complex(math.exp(min(max(growth_of_volume(data, work), -LARGEST), LARGEST)))
-        return np.array([value]), _trivial_missed(data, work, left, right)
+        found = _across(data, work, left, right)
+        return np.array([value]), 0.0 if found is None else abs(found[1] - 1.0)
     if not data.free_period:
         return multipliers_of(left, right), 0.0
-    points, p, _, _ = work.along
-    speeds = data.field(points, p) / data.node_scale
-    sizes = np.linalg.norm(speeds, axis=1)
-    if not sizes.min() > data.field.settings.solved * (1.0 + sizes.max()):
-        values = multipliers_of(
-            left, right
-        )  # a cycle that is an equilibrium: all motions are as slow as none
+    found = _across(data, work, left, right)
+    if found is None:  # a cycle that is an equilibrium: all motions are as slow as none
+        values = multipliers_of(left, right)
         return np.delete(values, int(np.argmin(np.abs(values - 1.0)))), 0.0
-    maps, product = (planes if work.core is None else across)(left, right, speeds)
+    maps, product = found
     return multipliers_of(maps, np.broadcast_to(-np.eye(maps.shape[1]), maps.shape)), abs(product - 1.0)
 
 
@@ -231,15 +228,18 @@ def growth_of_volume(data: Collocated, work: CycleWork) -> float:
     return float((work.steps[:, None] * data.rule.weights).reshape(-1) @ np.trace(jacobian, axis1=1, axis2=2))
 
 
-def _trivial_missed(data: Collocated, work: CycleWork, left: np.ndarray, right: np.ndarray) -> float:
+def _across(
+    data: Collocated, work: CycleWork, left: np.ndarray, right: np.ndarray
+) -> tuple[np.ndarray, float] | None:
+    """Maps between the planes across the motion, and the trivial multiplier, as computed; None of forced flows, and where nothing moves."""
     if not data.free_period:
-        return 0.0
+        return None
     points, p, _, _ = work.along
     speeds = data.field(points, p) / data.node_scale
     sizes = np.linalg.norm(speeds, axis=1)
     if not sizes.min() > data.field.settings.solved * (1.0 + sizes.max()):
-        return 0.0
-    return abs((planes if work.core is None else across)(left, right, speeds)[1] - 1.0)
+        return None
+    return (planes if work.core is None else across)(left, right, speeds)
 
 
 def planes(left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:
@@ -321,23 +321,6 @@ def transpose(data: Collocated, work: CycleWork, column: np.ndarray, other: Cycl
     other.derivative[:] = column
 
 
-def assign(data: Collocated, other: Collocated, value: float) -> None:
-    """Give the parameter that varies in ``other`` a value in ``data``, in place."""
-    data.values.assign(other.parameter, value)
-
-
-KERNELS = Kernels(
-    linearise,
-    bordered,
-    inspect,
-    compiled=False,
-    assign=assign,
-    flip=flip,
-    transpose=transpose,
-    column=1,
-    matrix=matrix,
-)
+KERNELS = Kernels(linearise, bordered, inspect, False, assign, flip, transpose, 1, matrix)
 
 SPARSE = Kernels(linearise, bordered, inspect, compiled=False, assign=assign, column=1)
-
-__all__ = ["KERNELS", "SPARSE", "CycleWork", "closed"]

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from ..problems.protocol import BorderPoint, Problem
     from .cycle_mesh import CycleMesh
+    from .flow import Sizes
 
 INTERVALS = 40  # of a cycle from data, to begin with
 FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to its slowest point is the one to which it is homoclinic
@@ -406,7 +407,7 @@ class FlowProblem:
         found = None
         for widths in (np.full(count, 1.0 / count), mesh.along_data(times, states / scale, count, copies)):
             guess = self._guess(field, parameters.start, times, states, widths, rounds)
-            cycles = self.cycles(field, guess, count, rounds, copies, scale, clock, unit)
+            cycles = self.cycles(field, guess, (count, rounds, copies), (scale, clock, unit))
             found = found or settled(cycles, guess, parameters.start)
         if found is None:
             raise ValueError(
@@ -439,22 +440,11 @@ class FlowProblem:
         x = np.column_stack([np.interp(places, times, column) for column in states.T])
         return np.concatenate([x.reshape(-1), own, widths])
 
-    def cycles(
-        self,
-        field: Field,
-        u: np.ndarray,
-        intervals: int,
-        rounds: int,
-        copies: int,
-        scale: np.ndarray,
-        clock: float,
-        unit: float,
-    ) -> CycleProblem:
+    def cycles(self, field: Field, u: np.ndarray, counts: tuple[int, int, int], sizes: Sizes) -> CycleProblem:
         """The problem of cycles; scales are those of the first one that was asked for, so that cycles of all can be compared."""
         if self.sizes is None:
-            self.sizes = np.array(scale, dtype=float), float(clock)
-        scale, clock = self.sizes
-        return CycleProblem(self, field, u, intervals, rounds, copies, scale, clock, unit)
+            self.sizes = np.array(sizes[0], dtype=float), float(sizes[1])
+        return CycleProblem(self, field, u, *counts, *self.sizes, sizes[2])
 
     # ------------------------------------------------------------------ measures, and what else attracts
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -29,8 +30,10 @@ from .crossings import crossings
 from .departures import leaving
 from .kinds import PREFIXES, condition
 from .known_motions import KnownMotions, together
-from .layout import BRANCH, FOLD, MARGIN
+from .layout import BRANCH, FOLD, MARGIN, PERIOD
 from .locus import Locus
+from .long_period import lengthened
+from .on_mesh import on_mesh
 from .plane_point import PlanePoint
 from .problem import LocusProblem
 from .regions import divide
@@ -250,7 +253,16 @@ class Charting:
             # where branches cross they do not fold
             if locus.kind != candidate.kind and (wanted, problem.condition) != (FOLD, BRANCH):
                 continue
-            if self.passes(locus, problem, candidate, border=wanted == MARGIN):
+            there = candidate
+            if wanted == PERIOD:  # cycles of another period stand for the same homoclinic orbits
+                try:
+                    longer = lengthened(
+                        on_mesh(candidate.problem), candidate.u, candidate.p, problem.reference
+                    )
+                except ValueError:
+                    continue
+                there = replace(candidate, problem=longer[0], u=longer[1], p=longer[2])
+            if self.passes(locus, problem, there, border=wanted == MARGIN):
                 return locus
         return None
 

@@ -37,6 +37,7 @@ from .starts import begin, first_point
 from .touching import touching_form
 
 FEW = 4  # places at which a border is asked whether its equations are singular
+SHRINKS = 2.0  # ratio of squares of sizes over which cycles are seen to shrink
 BESIDE = 0.02  # distance (in the metric) on either side at which its point of codimension two is sought
 
 Found = tuple[int, PlanePoint]
@@ -327,13 +328,49 @@ FIRST_OF_CYCLES = {
 }
 
 
-def beginning(locus: LocusProblem, end: Solved, within: tuple[float, float]) -> PlanePoint | None:
+def vanishing(locus: LocusProblem, ends: Sequence[Solved], within: tuple[float, float]) -> PlanePoint | None:
+    """The point of codimension two at which the cycles of a locus shrink to an equilibrium, from the last of its points.
+
+    Their equations are singular there to a higher order in their size: Newton's method fails before. The square of the size falls to zero in
+    proportion to the parameters, and the point is where that leads to.
+    """
+    problem = on_mesh(locus.base)
+    last = _place(locus, ends[-1])
+    mean, size = problem.center(last.u)
+    places = (_place(locus, end) for end in reversed(ends))
+    before = next((one for one in places if problem.center(one.u)[1] > SHRINKS * size), None)
+    if before is None or not problem.free_period:
+        return None
+    ahead = (np.subtract(last[1:], before[1:])) * size / (problem.center(before.u)[1] - size)
+    rest = on_mesh(locus.at(last.q)).root(problem.resting(last.u, mean), last.p)
+    if rest is None:
+        return None
+    found = beginning(locus, ends[-1], within, Becomes("hopf", *rest), float(np.abs(ahead).max()))
+    missed = np.inf if found is None else np.abs(np.subtract(found.value, last[1:]) - ahead).max()
+    return found if missed <= np.abs(ahead).max() else None
+
+
+def beginning(
+    locus: LocusProblem,
+    end: Solved,
+    within: tuple[float, float],
+    met: Becomes | None = None,
+    ahead: float = 0.0,
+) -> PlanePoint | None:
     """The point of codimension two at which a locus begins, or ends, whose motion there is an equilibrium, a shorter or a symmetric one.
 
     It is the point of that motion: the equations of the locus are singular there, and no point of it comes nearer than to half the digits.
+
+    Parameters
+    ----------
+    locus, end, within
+    met : Becomes, optional
+        That motion, where it is known.
+    ahead : float
+        How far the parameters may still be from those of the point.
     """
     u, p, q = _place(locus, end)
-    met = becomes(locus, u, p, q)
+    met = met or becomes(locus, u, p, q)
     if met is None or met.problem is None or met.u is None:
         return None
     still = met.problem.spectrum == "flow"
@@ -343,7 +380,10 @@ def beginning(locus: LocusProblem, end: Solved, within: tuple[float, float]) -> 
     if not isinstance(locus.base, Adaptive):
         wanted += _borders(parent)
     engine, start = first_point(parent, met.u, p, q, within, Settings())
-    beside = [] if start is None else [_beside(engine, start, by) for by in (-BESIDE, BESIDE)]
+    beside = []
+    if start is not None:
+        reach = BESIDE + 2.0 * ahead / float(np.linalg.norm(start.tangent[-2:]))
+        beside = [_beside(engine, start, by) for by in (-reach, reach)]
     around = [point for point in beside if point is not None]
     if len(around) < 2:
         return None

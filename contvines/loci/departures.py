@@ -55,5 +55,5 @@ def leaving(point: PlanePoint, locus: Locus, bounds: tuple[float, float], over: 
             Candidate(problem, problem.margin_kind(j), point.u, p, q, j, point.label) for j in point.margins
         ]
     if point.kind == "bogdanov-takens":
-        found += homoclinic_of(point, bounds, over, locus.within)
+        found += homoclinic_of(point, bounds, locus.within)
     return found + born(point, bounds, over, locus.within)

@@ -1,72 +1,163 @@
-"""Where homoclinic loci begin: beside Bogdanov-Takens points."""
+"""Where homoclinic loci begin: at Bogdanov-Takens points, from the asymptotics of the orbits there.
+
+On the centre manifold x = x0 + H(w, b), with parameters x0 + K(b) of its own, the flow is
+
+    w1' = w2,    w2' = b1 + b2 w2 + a w1^2 + b w1 w2 + ...
+
+H and K follow from F(H, K) = DH w' degree by degree (Kuznetsov, Meijer, Al Hdaibat and Govaerts, Int. J. Bifurc. Chaos 24 (2014) 1450057). With
+w1 = e^2 v / a, w2 = e^3 v' / a, a time s = e t, b1 = -4 e^4 / a and b2 = (b / a) e^2 r it is v'' = v^2 - 4 + e (b / a) v' (r + v), whose orbit
+homoclinic to v = 2 is
+
+    v = 2 - 6 / cosh(s)^2 - e (b / a) (72 / 7) sinh(s) log(cosh(s)) / cosh(s)^3 + O(e^2),    r = 10 / 7 + O(e^2).
+"""
 
 from __future__ import annotations
 
-import contextlib
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
-from ..branches.special_point import SpecialPoint
-from ..continuation.settings import Settings
+from ..flows import mesh
+from ..flows.collocation import rule
 from ..flows.equilibria import Equilibria
-from ..graph.automatic import diagram
-from ..graph.cycle_at import cycle_at
 from .born import Candidate
-from .long_period import lengthened, on_mesh
+from .long_period import of_period
+from .on_mesh import on_mesh
 from .plane_point import PlanePoint
-from .starts import begin
-from .tracing import trace_locus
+from .touching import BEND
 
-if TYPE_CHECKING:
-    from ..problems.protocol import Problem
+SIDE = 10.0  # half of the period in the time s: the orbit comes to the saddle as near as 4 exp(-2 SIDE) of its size
+INTERVALS = 40  # of its first mesh
+STEP = 0.01  # of differences, in units of the states and of the parameters
+SHARES = (0.1, 0.03, 0.01, 0.003)  # of these units: sizes of the first orbit, and changes of the parameters
+ALIKE = 0.5  # part of the predicted size that an orbit has at least
 
 
-LONGER = 3.0  # times the period with which the branch of cycles ends
-PLACES = (
-    0.15,
-    0.3,
-    0.06,
-    0.6,
-)  # of the interval of the second parameter: how far from a Bogdanov-Takens point a cycle is followed
+class Asymptotics:
+    """Homoclinic orbits beside a Bogdanov-Takens point, to first order in e.
+
+    Parameters
+    ----------
+    problem : Equilibria
+        At the point's value of the second parameter.
+    u : ndarray, shape (d,)
+    value : (float, float)
+        Of the parameters at the point.
+    over : str
+        Name of the second one.
+    units : (float, float)
+        Of both.
+    """
+
+    def __init__(
+        self,
+        problem: Equilibria,
+        u: np.ndarray,
+        value: tuple[float, float],
+        over: str,
+        units: tuple[float, float],
+    ) -> None:
+        self.flow, self.values, self.over, d = problem.flow, problem.values, over, problem.node
+        lengths = self.flow.field.lengths if problem.scales is None else problem.scales.unknowns[:d]
+        self.start, self.units, self.d = np.array([*u[:d], *value]), np.array([*lengths, *units]), d
+        slopes = np.array([self._along(unit)[0] for unit in np.eye(d + 2)]).T
+        matrix, by_value = slopes[:, :d], slopes[:, d:]
+        left, _, right = np.linalg.svd(matrix)
+        v, w = right[-1], left[:, -1]
+        bordered = np.block([[matrix, w[:, None]], [v[None], np.zeros((1, 1))]])
+
+        def solved(side: np.ndarray, whole: np.ndarray = bordered) -> np.ndarray:
+            return np.linalg.solve(whole, np.append(side, 0.0))[:-1]
+
+        q1, p0 = solved(v), solved(w, bordered.T)
+        w, p0 = w / (w @ q1), p0 / (w @ q1)
+        p0 = p0 - (p0 @ q1) * w
+        nothing = np.zeros(2)
+        first, second = np.append(v, nothing), np.append(q1, nothing)
+        square = self._bent(first, first)
+        self.a, self.b = 0.5 * float(w @ square), float(w @ self._bent(first, second) + p0 @ square)
+        across = w @ by_value
+        across = across / (across @ across)
+        flat = np.array([-across[1], across[0]])
+        ahead = np.append(-solved(by_value @ flat), flat)
+        both = [(self._bent(first, along), self._bent(second, along)) for along in (ahead, first)]
+        system = np.array([[w @ one for one, _ in both], [p0 @ one + w @ other for one, other in both]])
+        parts = np.linalg.solve(system, [0.0, 1.0])
+        self.by_second = parts[0] * ahead + parts[1] * first
+        bend = -0.5 * float(w @ self._bent(self.by_second, self.by_second))
+        self.states, self.across, self.bend = (first, second), np.append(np.zeros(d), across), bend
+
+    def _line(self, direction: np.ndarray) -> np.ndarray:
+        """The rates at seven places along a direction, in their units."""
+        found = []
+        for k in range(-3, 4):
+            z = self.start + STEP * k * direction * self.units
+            values = self.values.against(self.values.varying, {self.over: z[-1]})
+            found.append(self.flow.field.against(values)(z[None, : self.d], z[-2])[0])
+        return np.array(found) / self.units[: self.d]
+
+    def _along(self, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """First and second derivative of the rates along a direction."""
+        line = self._line(direction)
+        slope = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
+        return slope @ line / STEP, BEND @ line / STEP**2
+
+    def _bent(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """The second derivative along two directions."""
+        return 0.25 * (self._along(one + other)[1] - self._along(one - other)[1])
+
+    def largest(self, share: float) -> float:
+        """The e at which orbits have a size, or parameters have changed, by a share of their units."""
+        moved = 10.0 / 7.0 * np.abs(self.b / self.a * self.by_second)
+        size = np.maximum(6.0 / abs(self.a) * np.abs(self.states[0]), moved)
+        return float(np.sqrt(share / size.max()))
+
+    def orbit(self, e: float, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """States at places in units of the period, both parameters, and the period."""
+        s = SIDE * (2.0 * places - 1.0)
+        c, t, ratio = np.cosh(s), np.tanh(s), self.b / self.a
+        v = 2.0 - 6.0 / c**2 - e * ratio * 72.0 / 7.0 * t * np.log(c) / c**2
+        speed = 12.0 * t / c**2
+        second = ratio * e**2 * 10.0 / 7.0
+        z = self.by_second * second + self.across * (-4.0 * e**4 / self.a + self.bend * second**2)
+        curve = z + (e**2 * v[:, None] * self.states[0] + e**3 * speed[:, None] * self.states[1]) / self.a
+        curve = self.start + curve * self.units
+        return curve[:, : self.d], curve[0, self.d :], 2.0 * SIDE / e
 
 
 def homoclinic_of(
-    point: PlanePoint, bounds: tuple[float, float], over: str, within: tuple[float, float]
-) -> list[Candidate]:
-    """A homoclinic orbit beside a Bogdanov-Takens point of a flow.
-
-    The cycles of a Hopf point that lies on the locus through the point are followed until their period is long.
-    """
+    point: PlanePoint, bounds: tuple[float, float], within: tuple[float, float]
+) -> Iterator[Candidate]:
+    """A homoclinic orbit of a long period beside a Bogdanov-Takens point of a flow; none where the point is degenerate."""
     problem, (p, q) = point.attached, point.value
     if not isinstance(problem, Equilibria):
-        return []
-    hopf = begin(problem, "hopf", point.u, p, over, 0, bounds)
-    locus = trace_locus(hopf, point.u, p, q, within, Settings(), point.label)
-    if locus is None:
-        return []
-    widths = bounds[1] - bounds[0], within[1] - within[0]
-    far = np.abs((locus.values - (p, q)) / widths).max(axis=1)
-    for place in PLACES:
-        i = int(np.argmin(np.abs(far - place)))
-        u, value = hopf.split(locus.branch.points[i])
-        end = _end_of_cycles(hopf.at(float(locus.branch.values[i])), u, float(value), bounds)
-        if end is not None:
-            there = float(locus.branch.values[i])
-            with contextlib.suppress(ValueError):  # the nearer to the point, the longer is a long period
-                end = lengthened(end, LONGER * float(end.u[on_mesh(end.attached).period_place]))
-            return [Candidate(end.attached, "homoclinic", end.u, end.value, there, 0, point.label)]
-    return []
-
-
-def _end_of_cycles(
-    problem: Problem, u: np.ndarray, p: float, bounds: tuple[float, float]
-) -> SpecialPoint | None:
-    """The homoclinic orbit with which the cycles of a Hopf point end; None where they do not."""
-    nothing = np.zeros(len(u) + 1)
-    hopf = SpecialPoint("HB", "hopf", "", p, problem.parameter, u, nothing, np.zeros(0), problem=problem)
+        return
+    units = [
+        high - low if np.isfinite(high - low) else max(abs(own), 1.0)
+        for (low, high), own in zip((bounds, within), (p, q))
+    ]
+    over = point.parameters[1]
     try:
-        ends = diagram(cycle_at(hopf), over=problem.parameter, within=bounds, depth=0).of_kind("homoclinic")
-    except ValueError:
-        return None
-    return min(ends, key=lambda end: abs(end.value - p), default=None)
+        near = Asymptotics(problem, point.u, (p, q), over, (units[0], units[1]))
+    except (ValueError, np.linalg.LinAlgError):
+        return
+    flow, widths, scale = problem.flow, np.full(INTERVALS, 1.0 / INTERVALS), near.units[: near.d]
+    places = mesh.node_places(rule(flow.degree), widths)
+    for share in SHARES:
+        x, (there, second), period = near.orbit(near.largest(share), places)
+        if not within[0] <= second <= within[1]:
+            continue
+        field = flow.field.against(
+            problem.values.against(problem.parameter, {problem.parameter: there, over: second})
+        )
+        u = np.concatenate([x.reshape(-1), [period], widths])
+        unit = 1.0 if problem.scales is None else problem.scales.parameter
+        cycles = flow.cycles(field, u, (INTERVALS, 1, 1), (scale, period, unit))
+        found = of_period(on_mesh(cycles), u, there, period)
+        if found is None:
+            continue
+        end, u, there = found
+        size, wanted = (np.ptp(y.reshape(-1, near.d) / scale, axis=0).max() for y in (u[: end.states], x))
+        if size > ALIKE * wanted:
+            yield Candidate(end, "homoclinic", u, there, second, 0, point.label)
+            return

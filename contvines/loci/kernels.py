@@ -178,7 +178,7 @@ def locus_inspect(data, U, q, work, row):
     data.calls.inspect(first, U[:n], data.unit * U[n], base, row[:-3])
     margins[-3:] = U[n] - reference[3], reference[4] - U[n], math.inf
     if kind == PERIOD:  # a homoclinic orbit is near as long as the cycle comes near to an equilibrium
-        margins[0] = APART - margins[0]
+        margins[0] = math.log10(APART / first.from_rest(U[:n], data.unit * U[n]))
     margins[work.masked] = math.inf
     if kind == PAIR:
         pair_of(row, data.multipliers, data.flow, reference[0], reference[1:])

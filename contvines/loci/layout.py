@@ -8,6 +8,6 @@ B, C, FLIP_B, FLIP_C = range(4)  # rows of `borders`
 KNOWN, SIGN, ANGLE, SERVED = range(
     4
 )  # entries of `state`; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
-APART = 4.5  # decades that a cycle may be further from an equilibrium than a homoclinic end of a branch is: 3 % of its size
+APART = 0.03  # of its size: how far from an equilibrium a cycle may stay that stands for a homoclinic orbit
 LONGEST = 4  # points that borders serve
 TURNED = 1.02  # length of the null vector, as long as c at first, at which they do not any more

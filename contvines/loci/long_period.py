@@ -1,21 +1,18 @@
-"""Homoclinic ends of branches with another, longer period."""
+"""Cycles that stand for homoclinic orbits, with another period."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from .on_mesh import OnMesh, on_mesh
+from .on_mesh import OnMesh
 
 LONGER = 1.3  # factor from one period to the next, on the way to a longer one
 
 
-def lengthened(point: SpecialPoint, period: float) -> SpecialPoint:
-    """A homoclinic end of a branch with another period.
+def lengthened(problem: OnMesh, u: np.ndarray, p: float, period: float) -> tuple[OnMesh, np.ndarray, float]:
+    """A nearly homoclinic cycle with another period.
 
     Where it is longer the cycle waits at its slowest point.
 
@@ -24,24 +21,18 @@ def lengthened(point: SpecialPoint, period: float) -> SpecialPoint:
     ValueError
         If the period is not positive, or no such cycle is found.
     """
-    problem = on_mesh(point.attached)
-    u, p = np.array(point.u), float(point.value)
     if not period > 0.0:
         raise ValueError(f"period = {period!r} must be positive")
-    while True:
-        now = float(u[problem.period_place])
-        if now == period:
-            return replace(point, problem=problem, u=u, value=p)
+    while (now := float(u[problem.period_place])) != period:
         wanted = min(max(period, now / LONGER), now * LONGER)
-        found = _of_period(problem, problem.waiting(u, p, wanted), p, wanted)
+        found = of_period(problem, problem.waiting(u, p, wanted), p, wanted)
         if found is None:
-            raise ValueError(
-                f"{point.label}: no cycle of period {wanted:.6g} is found beyond the one of {now:.6g}"
-            )
+            raise ValueError(f"no cycle of period {wanted:.6g} is found beyond the one of {now:.6g}")
         problem, u, p = found
+    return problem, u, p
 
 
-def _of_period(
+def of_period(
     problem: OnMesh, u: np.ndarray, p: float, period: float
 ) -> tuple[OnMesh, np.ndarray, float] | None:
     """The cycle of a given period near a guess, on a mesh that suits it."""

@@ -19,6 +19,7 @@ class OnMesh(Adaptive, Problem, Protocol):
 
     reference: tuple[np.ndarray, np.ndarray] | None
     states: int
+    free_period: int
     intervals: int
     copies: int
 
@@ -28,6 +29,9 @@ class OnMesh(Adaptive, Problem, Protocol):
     def root(
         self, u: np.ndarray, p: float, loose: float | None = None
     ) -> tuple[Problem, np.ndarray] | None: ...
+    def center(self, u: np.ndarray) -> tuple[np.ndarray, float]: ...
+    def resting(self, u: np.ndarray, x: np.ndarray) -> np.ndarray: ...
+    def from_rest(self, u: np.ndarray, p: float) -> float: ...
     def waiting(self, u: np.ndarray, p: float, period: float) -> np.ndarray: ...
     def with_unknowns(
         self, u: np.ndarray, p: float, intervals: int, copies: int, rounds: int | None = None

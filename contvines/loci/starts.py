@@ -63,9 +63,8 @@ def begin(
     line = Linearisation(problem)
     line.at(u, p)
     if wanted == PERIOD:
-        near = (
-            line.row()[2 * int(problem.n_multipliers)] < APART - 1.0
-        )  # not where an equilibrium is about to appear on the cycle
+        # not where an equilibrium is about to appear on the cycle
+        near = on_mesh(problem).from_rest(u, p) < 0.1 * APART
         locus.masked = (1,) if near else (0, 1)
     if wanted == MARGIN:
         margins = line.row()[2 * int(problem.n_multipliers) :]

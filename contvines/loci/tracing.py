@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,10 +28,12 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
 from .adaptive import AdaptiveLocus
-from .codimension_two import becomes, beginning
+from .codimension_two import becomes, beginning, vanishing
+from .homoclinic import homoclinic_of
 from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
 from .long_period import lengthened
+from .on_mesh import on_mesh
 from .own_test import of_own_kind, with_condition
 from .plane_point import PlanePoint
 from .problem import LocusProblem
@@ -41,14 +44,21 @@ from .starts import begin, first_point, regular_side
 if TYPE_CHECKING:
     from ..journal import Journal
 
+NOTHING = np.zeros(0), 0.0, 0.0, 0.0  # of a point of which no more is known
 #: how a half may end where equations become singular
-SINGULAR = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE, Status.CREEPING, Status.BORDER)
+SINGULAR = (
+    Status.STEP_TOO_SMALL,
+    Status.NOT_EVALUABLE,
+    Status.CREEPING,
+    Status.BORDER,
+    Status.COARSE,
+)
 
 
 @hinting
 @listening()
 def locus(
-    point: SpecialPoint,
+    point: SpecialPoint | PlanePoint,
     over: str,
     within: tuple[float, float],
     bounds: tuple[float, float] | None = None,
@@ -62,9 +72,9 @@ def locus(
 
     Parameters
     ----------
-    point : SpecialPoint
+    point : SpecialPoint or PlanePoint
         Fold, symmetry breaking, branch point, period doubling, Neimark-Sacker, Hopf, any border, or a homoclinic end of a branch of
-        cycles of a flow.
+        cycles of a flow. Of a Bogdanov-Takens point of a flow, on another locus, the homoclinic orbits that begin there are followed.
     over : str
         Name of the second parameter.
     within : (float, float)
@@ -78,7 +88,7 @@ def locus(
         Called with (label, number of points, value of the second parameter).
     period : float, optional
         Of a homoclinic end: the period of the cycles that stand for the homoclinic orbits along the locus; the one at the end of
-        the branch if it is left out.
+        the branch if it is left out, at a Bogdanov-Takens point one that suits the first orbit.
     kinds : iterable of Kind, optional
         As in :func:`contvines.diagram`: zeros of the tests of kinds of your own along the locus are among its points, too.
 
@@ -97,12 +107,18 @@ def locus(
         raise ValueError(without_problem(point.label))
     within = check_interval(within)
     own_kinds = tuple(kind for kind in checked(kinds) if BY_NAME.get(kind.name) is not kind)
+    if isinstance(point, PlanePoint):
+        point = _beside(point, over, within, (-np.inf, np.inf) if bounds is None else check_interval(bounds))
     if period is not None:
         if point.kind != "homoclinic":
             raise ValueError(
                 f"period = {period!r}: {point.label} is no homoclinic end of a branch ({point.kind})"
             )
-        point = lengthened(point, period)
+        try:
+            longer, u, p = lengthened(on_mesh(point.attached), np.array(point.u), float(point.value), period)
+        except ValueError as error:
+            raise ValueError(f"{point.label}: {error}") from error
+        point = replace(point, problem=longer, u=u, value=p)
     if not of_own_kind(point):
         point = regular_side(point)
     motion = point.attached
@@ -144,6 +160,24 @@ def locus(
         )
     found.kinds = own_kinds
     return found
+
+
+def _beside(
+    point: PlanePoint, over: str, within: tuple[float, float], bounds: tuple[float, float]
+) -> SpecialPoint:
+    """The homoclinic orbit beside a Bogdanov-Takens point of a flow."""
+    if point.kind != "bogdanov-takens":
+        raise ValueError(
+            f"{point.label} is a point of codimension two ({point.kind}); only Bogdanov-Takens points of flows begin loci by themselves"
+        )
+    if over != point.parameters[1]:
+        raise ValueError(f"over = {over!r}: {point.label} lies on a locus over {point.parameters[1]!r}")
+    found = next(homoclinic_of(point, bounds, within), None)
+    if found is None:
+        raise ValueError(f"no homoclinic orbit is found beside {point.label}")
+    nothing = np.zeros(len(found.u) + 1)
+    label, kind, inner = point.label, found.kind, point.parameters[0]
+    return SpecialPoint(label, kind, "", found.p, inner, found.u, nothing, np.zeros(0), problem=found.problem)
 
 
 def checked_ends(problem: Problem, over: str, within: tuple[float, float]) -> None:
@@ -193,7 +227,7 @@ def trace_locus(
         flags = np.zeros(0, dtype=bool)
         for part in range(20):
             more = trace_half(engine, first, detector, journal, f"{name}/{side}/{part}", now, None, notice)
-            if more.status == Status.COARSE:
+            if more.status == Status.COARSE and _becoming(problem, more, within)[1] is None:
                 raise TooCoarse
             flags = np.append(flags, np.full(len(more) - (0 if half is None else 1), now))
             half = more if half is None else half.extended(more, skip=1)
@@ -244,9 +278,12 @@ def trace_locus(
 def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoint) -> None:
     """Let a locus end at the point of a shorter or more symmetric motion that is its end."""
     nothing = np.zeros(len(end.u) + 1)
-    seen = end.attached.offspring(end.attached.flip_kind, end.u, end.value[0], nothing, -1.0 + 0.0j)[0]
+    if isinstance(problem.base, Adaptive):
+        u = on_mesh(problem.base).resting(problem.split(branch.points[index])[0], end.u)
+    else:
+        u = end.attached.offspring(end.attached.flip_kind, end.u, end.value[0], nothing, -1.0 + 0.0j)[0].u
     branch.points, branch.values = branch.points.copy(), branch.values.copy()
-    branch.points[index] = problem.joined(np.asarray(seen.u, dtype=float), end.value[0])
+    branch.points[index] = problem.joined(np.asarray(u, dtype=float), end.value[0])
     branch.values[index] = end.value[1]
 
 
@@ -268,13 +305,18 @@ def _becoming(
     codimension two at which it does; empty where neither."""
     if half.status not in SINGULAR:
         return "", None
-    U, q, tangent = half.at(len(half) - 1)
-    u, p = problem.split(U)
-    met = None if isinstance(problem.base, Adaptive) else becomes(problem, u, float(p), q)
-    if met is None:
-        return "", None
-    what = "a shorter one, run twice" if met.kind == "period-doubling" else "symmetric"
-    end = beginning(problem, Solved(U, q, tangent, np.zeros(0), 0.0, 0.0, 0.0), within)
+    points = [Solved(*half.at(i), *NOTHING) for i in range(len(half))]
+    (u, p), q = problem.split(points[-1].u), points[-1].p
+    if isinstance(problem.base, Adaptive):
+        end, what = vanishing(problem, points, within), "an equilibrium"
+        if end is None:
+            return "", None
+    else:
+        met = becomes(problem, u, float(p), q)
+        if met is None:
+            return "", None
+        what = "a shorter one, run twice" if met.kind == "period-doubling" else "symmetric"
+        end = beginning(problem, points[-1], within)
     p, q, digits = (float(p), q, 7) if end is None else (*end.value, 10)
     return (
         f"the motion becomes {what}, at {problem.inner} = {p:.{digits}g}, {problem.over} = {q:.{digits}g}",

@@ -20,7 +20,7 @@ from .equivariance import refuse_asymmetry
 from .extents import weighed
 from .functions import NotEvaluable, Operator
 from .nearness import side
-from .parameters import ParameterSet
+from .parameters import ParameterSet, Parametrised
 from .pieces import Pieced, Pieces
 from .protocol import ProblemDefaults
 from .scales import Scales
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 TERMS = 62  # roundings of more unknowns than this cancel
 
 
-class CallableProblem(ProblemDefaults, ABC):
+class CallableProblem(Parametrised, ProblemDefaults, ABC):
     """A problem whose equations are Python callables.
 
     Attributes
@@ -128,21 +128,6 @@ class CallableProblem(ProblemDefaults, ABC):
         return problem
 
     # ------------------------------------------------------------------ parameters
-    @property
-    def parameter(self) -> str:
-        """Name of the parameter that varies."""
-        return self.values.varying
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """All parameters by name; of the one that varies the value at the start."""
-        return dict(self.values.values)
-
-    @property
-    def p0(self) -> float:
-        """Value of the varying parameter at the start."""
-        return self.values.start
-
     def against(self, parameter: str, values: Mapping[str, float] | None = None) -> Self:
         """The same problem with another parameter varying, and with other values of some parameters.
 

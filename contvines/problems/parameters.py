@@ -122,3 +122,24 @@ class ParameterSet:
     def given(self) -> dict[str, float] | float:
         """As they were given: a mapping, or a number."""
         return dict(self.values) if self.named else self.start
+
+
+class Parametrised:
+    """A problem with such parameters, ``values``."""
+
+    values: ParameterSet
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter that varies."""
+        return self.values.varying
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name; of the one that varies the value at the start."""
+        return dict(self.values.values)
+
+    @property
+    def p0(self) -> float:
+        """Value of the varying parameter at the start."""
+        return self.values.start

@@ -95,6 +95,17 @@ def test_folds_of_cycles_go_on_through_a_canard_explosion():
     assert left.values[0, 0] == pytest.approx(canard(0.02, 0.299, 0.301), abs=1e-10)
 
 
+def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
+    """At x = -1/2: with f the cubic and b = 0.8 the first Lyapunov coefficient is zero where the third derivative is -b / (1 - e b^2) times the second one's square."""
+    flow = cv.FlowProblem(nerve, [-1.2, -0.6], {"I": 0.70, "e": 0.9374})
+    graph = cv.diagram(flow, over="I", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
+    locus = cv.locus(graph["LP1"], over="e", within=(0.9373, 0.938))
+    assert locus.ended[1] == "the motion becomes an equilibrium, at I = 0.7083333333, e = 0.9375"
+    (point,) = locus.points.values()
+    assert point.kind == "generalized-hopf"
+    assert point.value == pytest.approx((17 / 24, 15 / 16), abs=1e-11)
+
+
 def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable():
     graph = cv.diagram(
         cv.FlowProblem(bautin, [0.0, 0.0], {"b1": -1.0, "b2": -0.5}), over="b1", within=(-1, 1)
@@ -152,6 +163,43 @@ def test_homoclinic_orbits_of_a_long_period_come_from_a_bogdanov_takens_point():
     assert [point.kind for point in hopf.points.values()] == ["bogdanov-takens"]
     with pytest.raises(ValueError, match="homoclinic"):
         cv.locus(graph["HB1"], over="b2", within=(-0.6, 0.2), period=50.0)
+
+
+def test_homoclinic_orbits_begin_at_a_bogdanov_takens_point():
+    """b2 = e^2 (10/7 + 288/2401 e^2 + O(e^4)) where b1 = -4 e^4 (Al-Hdaibat, Govaerts, Kuznetsov and Meijer, SIAM J. Appl. Dyn. Syst. 15 (2016) 952)."""
+
+    def takens(x, p):
+        return [x[1], p.b1 + p.b2 * x[1] + x[0] ** 2 + x[0] * x[1]]
+
+    flow = cv.FlowProblem(takens, [-0.2, 0.0], {"b1": -0.04, "b2": 0.1})
+    graph = cv.diagram(flow, over="b1", within=(-0.3, 0.1), depth=0)
+    (point,) = cv.locus(graph["HB1"], over="b2", within=(-0.3, 0.6)).points.values()
+    locus = cv.locus(point, over="b2", within=(-0.3, 0.6))
+    b1, b2 = locus.values[locus.values[:, 1] > 0.005].T
+    fourth = -b1 / 4.0
+    assert (np.abs(b2 / np.sqrt(fourth) - 10 / 7 - 288 / 2401 * np.sqrt(fourth)) < 0.01 * fourth).all()
+    longer = cv.locus(point, over="b2", within=(-0.3, 0.6), period=400.0)
+    assert longer.orbit(0).period == pytest.approx(400.0)
+    assert longer.values[:, 1].min() < 0.5 * locus.values[:, 1].min()
+    with pytest.raises(ValueError, match="lies on a locus over"):
+        cv.locus(point, over="b1", within=(-0.3, 0.6))
+
+
+def test_a_homoclinic_locus_from_a_diagram_and_from_a_bogdanov_takens_point_is_one():
+    """Bazykin's predator and prey."""
+
+    def rates(x, p):
+        eaten = x[0] * x[1] / (1 + p.alpha * x[0])
+        return [x[0] - eaten - 0.01 * x[0] ** 2, -x[1] + eaten - p.delta * x[1] ** 2]
+
+    flow = cv.FlowProblem(rates, [20.0, 5.5], {"alpha": 0.4, "delta": 0.15})
+    graph = cv.diagram(flow, over="alpha", within=(0.1, 1.0))
+    chart = cv.chart(graph, "delta", (0.05, 0.5), regions=False)
+    (locus,) = (locus for locus in chart.loci.values() if locus.kind == "homoclinic")
+    (point,) = chart.points.values()
+    assert point.kind == "bogdanov-takens"
+    assert set(point.on) == {"HB1", "LP2", locus.label}
+    assert np.abs(locus.values - point.value).max(axis=1).min() < 1e-3
 
 
 def spiral(z, growth, turn):
