@@ -32,9 +32,13 @@ class Against(Generic[ModelOf]):
         """The value of the parameter that varies in a parameter vector."""
         return self.model.amount(self.parameter, params)
 
-    @cached_property
+    @property
     def began(self) -> float:
         """The value of the parameter that varies in the parameter vector."""
+        return self._began
+
+    @cached_property
+    def _began(self) -> float:
         return self.value(self.params)
 
     def smooth_margin(self, j: int) -> int:
