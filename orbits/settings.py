@@ -380,8 +380,8 @@ class Stepping:
         Speed after an impact, or time, that is none.
     least_speed : float
         That of an impact which roundoff leaves none.
-    last_step, curved : float
-        Newton's method ends with a step that is this small a share of the time, and whose part of third order is this small a share of the rate.
+    last_step : float
+        Newton's method ends with a step that is this small a share of the time.
     leave : float
         Time by which a zero is left behind, at least, when the next one is looked for.
     minimum : float
@@ -395,7 +395,6 @@ class Stepping:
     still: float = 1e-13
     least_speed: float = 1e-30
     last_step: float = 1e-6
-    curved: float = 1e-9
     leave: float = 1e-8
     minimum: float = 1e-5
     slip: float = 1e-6

@@ -66,20 +66,17 @@ class FrictionLaw:
         return "velocity-graze" if here == there == TURN else "stick"
 
     # ------------------------------------------------------------------ modes of a word
-    def directions(
-        self, beats: Sequence[Beat], noted: Mapping[int, int] | None = None, default: int = SLIDE_ON
-    ) -> list[int]:
+    def directions(self, beats: Sequence[Beat], noted: Mapping[int, int] | None = None) -> list[int]:
         """The mode after each event that this friction notices, in a cyclic word.
 
         What no event fixes becomes, at a slip, a reversal of the motion that the stick before it ended; a word of turns alone
-        begins with `default`. Linear time.
+        begins sliding on. Linear time.
 
         Parameters
         ----------
         beats : sequence of Beat
         noted : mapping, optional
             Modes after some of the events that the word itself says.
-        default : int
 
         Raises
         ------
@@ -99,10 +96,10 @@ class FrictionLaw:
                 after[i - 1] = -here
         _settle(beats, after)
         if all(mode is None for mode in after):  # turns alone
-            after = [-default if i % 2 else default for i in range(n)]
+            after = [-SLIDE_ON if i % 2 else SLIDE_ON for i in range(n)]
         for i, mode in enumerate(after):  # an impact that may leave either direction keeps the one there was
             if mode is None:
-                after[i] = default if after[i - 1] is None else after[i - 1]
+                after[i] = SLIDE_ON if after[i - 1] is None else after[i - 1]
                 _spread(beats, after, [i])
         self._refuse(beats, after)
         return [int(mode) for mode in after]  # type: ignore[arg-type]

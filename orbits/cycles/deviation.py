@@ -77,15 +77,15 @@ def by_positions(orbit: Cycle, known: Known) -> float:
     infinite derivatives, and a very unstable orbit large ones, so that rounding would grow out of bounds over a period.
     """
     n, model, motion = len(orbit.word), orbit.model, orbit.flow.sample(orbit, POINTS)
-    names = orbit.flow.position_names(model)
-    claimed = np.tile(np.column_stack([motion[name] for name in names]), (2, 1))
+    names = orbit.flow.coordinates(model)
+    columns = [entry - 1 for entry in orbit.flow.position_entries(model)]
+    claimed = np.tile(np.column_stack([motion[names[k]] for k in columns]), (2, 1))
     clock = motion["phase"] if orbit.forced else motion["time"]
     clock = np.append(clock, clock + orbit.durations.sum() if n else clock)
     first = np.searchsorted(motion["segment"], np.arange(max(n, 1) + 1))
     first = np.append(first[:-1], first + len(motion["segment"]))  # twice through the cycle
     places = _definite(orbit, known()[0]) if n else [0]
     simulator, worst = simulator_of(model, orbit.params), 0.0
-    columns = [simulator.names.index(name) for name in names]
     for place, end in zip(places, [*places[1:], places[0] + max(n, 1)]):
         part = slice(first[place], first[end])
         since = np.maximum(
@@ -95,7 +95,7 @@ def by_positions(orbit: Cycle, known: Known) -> float:
             if n:
                 simulator.begin(orbit.word.rotate(place), orbit.nodes[place])
             else:
-                here = np.array([motion[name][0] for name in simulator.names])
+                here = np.array([motion[name][0] for name in names])
                 simulator.start(here, float(clock[0]) / TURN)
             begun = simulator.time
             run = simulator.run(float(since[-1]) / TURN + SIMULATING.whole, 100 * n + 1000)

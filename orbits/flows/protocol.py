@@ -11,8 +11,8 @@ The solving half, in words
    `coordinates` are what simulators call a point, `census` says how many starts of them are simulated.
 3. `loose` are the entries of a node along which any motion with a word may be shifted as a whole.
 4. `sample` has a motion over time, `positions` what no impulse moves, at equal phases from phase zero on, shape (m, c): motions are compared
-   by it, and are one where they differ by less than `resolution`. `position_entries` are the entries of a node to which these belong, and
-   `position_names` what samples call them. `points` are the simulator's coordinates just after the events, shape (L, d).
+   by it, and are one where they differ by less than `resolution`. `position_entries` are the entries of a node to which these belong, places among
+   `coordinates` counted from 1. `points` are the simulator's coordinates just after the events, shape (L, d).
    `strobed` has a motion without events once per period.
 5. `measures` of many solutions at once, their names, which are angles, and the one that is shown first; `simulated_names` are those that a
    simulation tells, `swept` those that a picture of a sweep shows, `in_units` has them in the units that are shown. `described` is what JSON has of events. `kind` is
@@ -468,7 +468,6 @@ class Flow(Protocol[ModelFor]):
     def census(self, model: ModelFor) -> Census: ...
     def coordinates(self, model: ModelFor) -> tuple[str, ...]: ...
     def position_entries(self, model: ModelFor) -> tuple[int, ...]: ...
-    def position_names(self, model: ModelFor) -> tuple[str, ...]: ...
     def points(self, motion: Motion[ModelFor]) -> np.ndarray: ...
 
     def equations(

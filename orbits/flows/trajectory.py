@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 import numpy as np
 
 from orbits.contacts.letters import HIT, HOLD, RELEASE
+from orbits.machines.stepping import REST, STATUS, TIME_REACHED
 from orbits.words import Word
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class Trajectory(ABC, Generic[ModelOf]):
     kinds : int array (m,)
         What the events do (`orbits.contacts.letters`).
     status : int
-        Why the run ended; `ended` says it in words.
+        Why the run ended (`orbits.machines.stepping`); `ended` says it in words.
     """
 
     model: ModelOf
@@ -52,14 +53,14 @@ class Trajectory(ABC, Generic[ModelOf]):
         """The simulator's coordinates just after the events, shape (m, d)."""
 
     @property
-    @abstractmethod
     def whole(self) -> bool:
         """Whether the run goes on to the time asked for."""
+        return self.status == TIME_REACHED
 
     @property
-    @abstractmethod
     def stopped(self) -> bool:
         """Whether nothing will ever happen again."""
+        return self.status == REST
 
     @property
     @abstractmethod
@@ -77,9 +78,9 @@ class Trajectory(ABC, Generic[ModelOf]):
         """Whether a wall holds the body from the beginning to the end."""
 
     @property
-    @abstractmethod
     def reason(self) -> str:
         """Why the run ended."""
+        return STATUS[self.status]
 
     @abstractmethod
     def coordinates(self, times: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 from orbits.contacts import letters as kinds
 from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.machines.states import event_states, nodes_of
-from orbits.machines.stepping import MODE, PSI, RATE, REST, STATUS, TIME_REACHED, TURNS, Machine, W
+from orbits.machines.stepping import MODE, PSI, RATE, TURNS, Machine, W
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 from orbits.words.alphabet import shaken
@@ -98,16 +98,6 @@ class NativeTrajectory(Trajectory):
         return self.states[1:, list(self.machine.places)]
 
     @property
-    def whole(self) -> bool:
-        """Whether the run goes on to the time asked for."""
-        return self.status == TIME_REACHED
-
-    @property
-    def stopped(self) -> bool:
-        """Whether it has come to rest."""
-        return self.status == REST
-
-    @property
     def letters(self) -> str:
         """The events as one string."""
         return "".join(LETTERS[code] for code in self.codes)
@@ -126,11 +116,6 @@ class NativeTrajectory(Trajectory):
     def held(self) -> bool:
         """Whether the absorber rests on a wall all the time."""
         return not len(self) and self.start[MODE] == 0.0 and self.start[W] in self.machine.walls(self.params)
-
-    @property
-    def reason(self) -> str:
-        """Why the run ended."""
-        return STATUS[self.status]
 
     @property
     def phases(self) -> np.ndarray:

@@ -18,10 +18,10 @@ from orbits.flows.page.variations import Variations
 from orbits.flows.protocol import SimulationError, Waiting, checked_start
 from orbits.flows.trajectory import Trajectory
 from orbits.machines.page.machine import Machine
+from orbits.machines.stepping import EVENTS_FULL, REST, TIME_REACHED
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 
-REACHED, FULL, STILL = 0, 1, 2
 SAMPLES = 2000  # of a run, for its extremes
 AWAY = 1000.0  # clock without an event of a cycle after which a motion does not come back to it
 LONGEST_WORD = 400  # events of its longest cycle
@@ -72,16 +72,6 @@ class PageTrajectory(Trajectory):
         return np.column_stack([self.clocks[1:], self.points])
 
     @property
-    def whole(self) -> bool:
-        """Whether the run goes on to the time asked for."""
-        return self.status == REACHED
-
-    @property
-    def stopped(self) -> bool:
-        """Whether nothing happened for very long."""
-        return self.status == STILL
-
-    @property
     def letters(self) -> list[str]:
         """The events as they are written; "(R" and "R)" are where wall R begins and ends to hold."""
         return self._letters
@@ -104,11 +94,7 @@ class PageTrajectory(Trajectory):
     @property
     def reason(self) -> str:
         """Why the run ended."""
-        return (
-            "the requested time was reached",
-            "the requested number of events was reached",
-            f"no further event within {FOREVER:g} of the clock",
-        )[self.status]
+        return f"no further event within {FOREVER:g} of the clock" if self.stopped else super().reason
 
     def coordinates(self, times: np.ndarray) -> np.ndarray:
         """The states at these times (forcing periods, or time over 2 pi), shape (m, n)."""
@@ -192,11 +178,11 @@ def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
     clocks = [stepper.base + stepper.clock]
     states, modes, events = [stepper.state.copy()], [stepper.modes], []
     until = clocks[0] + (FOREVER if math.isinf(length) else length)
-    status = FULL
+    status = EVENTS_FULL
     while len(events) < most:
         event = stepper.advance(until)
         if event is None:
-            status = STILL if math.isinf(length) else REACHED
+            status = REST if math.isinf(length) else TIME_REACHED
             break
         clocks.append(stepper.base + stepper.clock)
         states.append(stepper.state.copy())

@@ -211,7 +211,7 @@ def _motion(simulator: Simulator, orbit: Motion) -> float:
     last = phases[0] + TWO_PI * orbit.periods
     if phases.min() < phases[0] or phases.max() > last:
         return np.inf  # time does not run forward through these nodes
-    columns = [simulator.names.index(name) for name in flow.position_names(orbit.model)]
+    columns = [entry - 1 for entry in flow.position_entries(orbit.model)]
     claimed = flow.points(orbit)[:, columns]
     try:
         simulator.begin(orbit.word, orbit.nodes[0])

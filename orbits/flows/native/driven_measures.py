@@ -72,7 +72,7 @@ def own_measures(
 
 
 def _shapes(states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
-    """`orbits.machines.reference.driven_motion.shapes`, by the native core where there is one."""
+    """`orbits.machines.reference.motion.shapes`, by the native core where there is one."""
     if not native():
         from orbits.machines.reference.machine import reference
 

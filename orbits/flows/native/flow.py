@@ -42,10 +42,6 @@ class NativeFlow:
         """w."""
         return (1,)
 
-    def position_names(self, model: Model) -> tuple[str, ...]:
-        """w."""
-        return ("w",)
-
     def loose(self, model: Model, word: Word) -> tuple[int, ...]:
         """The position, where no wall is hit."""
         return (1,) if word.impact_free and len(word) else ()

@@ -44,10 +44,6 @@ class PageFlow:
         """States that no wall pushes."""
         return tuple(1 + j for j in unmoved(model))
 
-    def position_names(self, model: Machine) -> tuple[str, ...]:
-        """The same by name."""
-        return tuple(model.states[j] for j in unmoved(model))
-
     def points(self, motion: Motion[Machine]) -> np.ndarray:
         """The states."""
         return motion.nodes[:, 1:]
