@@ -289,7 +289,8 @@ class _Run:
                 bound = q.bound(at, 3, strength, _HORIZON)
                 renew = tau + _HORIZON
             if y <= SMALLEST:
-                if tau > 0.0 or y > 0.0 > y_rate:
+                # the native core of coupled machines takes a speed that hardly is one for rest
+                if tau > 0.0 or (self.law.prescribed and y > 0.0 > y_rate):
                     return _Sliding(_HALT, tau, at, y, y_rate, gain)
                 # from rest: y' or, after a slip, y'' opens the flight
                 jerk = s * (at.h3 + at.z3)
