@@ -298,7 +298,11 @@ def _shows_response(graph: "Graph", y: str | None) -> bool:
 
 def _add_simulated(axes: "Axes", graph: "Graph", study: "Study") -> None:
     """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
+    import numpy as np
+
     from contvines.command.compose import population
+    from contvines.plots.figures import styled
+    from contvines.plots.legends import Key, draw_legend
     from contvines.plots.sweep import draw_bands
     from contvines.survey.simulated import simulated
 
@@ -309,17 +313,6 @@ def _add_simulated(axes: "Axes", graph: "Graph", study: "Study") -> None:
     draw_bands(
         axes, [(one.value, one.low, one.mean, one.high) for one in met if one.low < one.high], SIMULATED
     )
-    old = axes.get_legend()
-    if met and old is not None:
-        handles, labels = axes.get_legend_handles_labels()
-        named = [text.get_text() for text in old.get_texts()]
-        more = [(handle, label) for handle, label in zip(handles, labels) if label not in named]
-        axes.legend(
-            [
-                *(handle for handle in old.legend_handles if handle is not None),
-                *(handle for handle, _ in more),
-            ],
-            [*named, *(label for _, label in more)],
-            loc="best",
-            fontsize="small",
-        )
+    if met and axes.get_legend() is not None:
+        with styled():
+            draw_legend(axes, Key(), "best", False, np.empty((0, 2)))
