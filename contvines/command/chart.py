@@ -1,8 +1,10 @@
 """`contvines chart` and `contvines locus`: one or all special points of a diagram followed in a second parameter."""
 
+import hashlib
+import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from contvines.command.amounts import interval
 from contvines.command.frame import (
@@ -103,14 +105,12 @@ def chart(
 ) -> None:
     """Chart of two parameters: loci of special points, codimension-two points, regions; an interrupted run goes on."""
     target = place_of(output, file, "-chart.vines")
-    graph, diagram, over, ends = _diagram(file, over, within, trust, fresh)
+    graph, diagram, plane = _diagram(file, over, within, virtual, trust, fresh)
     refuse_detached(
         graph, *(label for label, point in graph.special.items() if point.kind not in ("end", "user"))
     )
     with held(target, quiet, fresh):
-        found = chart_of(
-            graph, over, ends, virtual, target, quiet, _source(diagram, target, over, ends, virtual)
-        )
+        found = chart_of(graph, plane, target, quiet, _source(diagram, target, plane))
     _tell(found, target, plot, quiet, details)
 
 
@@ -122,21 +122,30 @@ def _tell(found: "Chart", target: Path, plot: Path | None, quiet: bool, details:
     draw(plot, found.plot, quiet)
 
 
+class Plane(NamedTuple):
+    """What a diagram is charted over: the second parameter, its interval, and whether virtual motions are followed."""
+
+    over: str
+    within: tuple[float, float]
+    virtual: bool
+
+    def fingerprint(self, graph: "Graph") -> str:
+        """What tells charts of a diagram apart."""
+        values = [(point.label, point.kind, point.value) for point in graph.special.values()]
+        of = "chart", graph.model, graph.parameter, list(graph.within), values
+        text = json.dumps([*of, self.over, list(self.within), self.virtual])
+        return hashlib.sha256(text.encode()).hexdigest()
+
+
 def chart_of(
-    graph: "Graph",
-    over: str,
-    ends: tuple[float, float],
-    virtual: bool,
-    target: Path,
-    quiet: bool,
-    source: dict[str, Any] | None,
+    graph: "Graph", plane: Plane, target: Path, quiet: bool, source: dict[str, Any] | None
 ) -> "Chart":
     """The chart of a diagram: from its file if that is finished, computed else; `source` is kept for `contvines rerun`."""
     from contvines.loci.chart import Chart
     from contvines.loci.charting import chart as make
     from contvines.store import Store
 
-    fingerprint = fingerprint_of(graph, over, ends, virtual)
+    fingerprint, (over, ends, virtual) = plane.fingerprint(graph), plane
     found = finished_of(Chart, target, fingerprint, quiet, problems=False)
     if found is not None:
         say(f"{target} holds the finished chart; nothing to compute.", quiet)
@@ -150,8 +159,8 @@ def chart_of(
 
 
 def _diagram(
-    file: Path, over: str | None, within: tuple[str, str] | None, trust: bool, fresh: bool
-) -> tuple["Graph", Path, str, tuple[float, float]]:
+    file: Path, over: str | None, within: tuple[str, str] | None, virtual: bool, trust: bool, fresh: bool
+) -> tuple["Graph", Path, Plane]:
     """The diagram to chart, made first if a study is given, its file, and what to chart it over."""
     from contvines.command.study import read_study
     from contvines.file_names import is_database
@@ -162,7 +171,7 @@ def _diagram(
         if over is None or within is None:
             missing = "--over" if over is None else "--within"
             raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8.")
-        return graph, file, over, interval("--within", within, over, graph.units)
+        return graph, file, Plane(over, interval("--within", within, over, graph.units), virtual)
     from contvines.command.frame import beside
     from contvines.command.run import diagram
 
@@ -178,14 +187,14 @@ def _diagram(
     made = beside(file, ".vines")
     graph = load_file(made)
     if within is not None:
-        return graph, made, over, interval("--within", within, over, graph.units)
-    assert said is not None
-    return graph, made, over, (said.within[0], said.within[1])
+        ends = interval("--within", within, over, graph.units)
+    else:
+        assert said is not None
+        ends = said.within[0], said.within[1]
+    return graph, made, Plane(over, ends, virtual)
 
 
-def _source(
-    diagram: Path, target: Path, over: str, ends: tuple[float, float], virtual: bool
-) -> dict[str, Any] | None:
+def _source(diagram: Path, target: Path, plane: Plane) -> dict[str, Any] | None:
     """The study of a diagram, as its file keeps it, and what is charted; None where it keeps none."""
     from contvines.store import Store
 
@@ -194,15 +203,4 @@ def _source(
     if not kept:
         return None
     place = os.path.relpath(diagram.absolute().parent / kept["study"], target.absolute().parent)
-    return {**kept, "study": place, "chart": [over, *ends], "virtual": virtual}
-
-
-def fingerprint_of(graph: "Graph", over: str, within: tuple[float, float], virtual: bool) -> str:
-    import hashlib
-    import json
-
-    values = [(point.label, point.kind, point.value) for point in graph.special.values()]
-    text = json.dumps(
-        ["chart", graph.model, graph.parameter, list(graph.within), values, over, list(within), virtual]
-    )
-    return hashlib.sha256(text.encode()).hexdigest()
+    return {**kept, "study": place, "chart": [plane.over, *plane.within], "virtual": plane.virtual}

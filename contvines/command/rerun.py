@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.chart import chart_of, fingerprint_of
-from contvines.command.frame import held, place_of, refuse_unfinished, say
+from contvines.command.chart import Plane, chart_of
+from contvines.command.frame import held, place_of, refuse_unfinished, say, tell
 from contvines.command.options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOption, option
 from contvines.command.run import graph_of
 from contvines.command.study_data import Study
@@ -55,16 +55,15 @@ def rerun(
             with held(diagram, quiet, fresh or _finished(diagram)):
                 graph = graph_of(study, command, diagram, quiet, problems=True, look=False)
             over, low, high = source["chart"]
-            after = chart_of(graph, over, (low, high), source["virtual"], target, quiet, source)
+            plane = Plane(over, (low, high), source["virtual"])
+            after = chart_of(graph, plane, target, quiet, source)
             found = differences(of_chart(before), of_chart(after))
-            same = fingerprint_of(graph, over, (low, high), source["virtual"]) == fingerprint
+            same = plane.fingerprint(graph) == fingerprint
         else:
             after = graph_of(study, command, target, quiet, problems=False, look=before.looked)
             found = differences(of_graph(before), of_graph(after))
             same = study.fingerprint(command) == fingerprint
     if json:
-        from contvines.command.frame import tell
-
         tell(None, {"before": made, "after": provenance(), "same_study": same, "differences": found})
     else:
         if not same:
