@@ -4,7 +4,6 @@ The quantities make a machine (`orbits.machines.physical`); intervals and values
 in which the machine's quantity was given. What is left is a study like any other.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -56,17 +55,31 @@ def converted(data: dict[str, Any]) -> tuple[Physical | None, dict[str, Any], li
         Sentences.
     """
     model, start = data.get("model"), data.get("start", {})
-    if not isinstance(model, dict) or not isinstance(start, dict):
-        return None, {key: value for key, value in data.items() if key not in ("units", "model")}, []
     plain = {key: value for key, value in data.items() if key not in ("units", "model")}
+    if not isinstance(model, dict) or not isinstance(start, dict):
+        return None, plain, []
     plain["start"] = {key: value for key, value in start.items() if key in SAID}
-    said, name = data.get("units", model.get("units")), str(model.get("name"))
+    go = plain.get("continue")
+    usual, within = _parameter(go), go.get("within") if isinstance(go, dict) else None
+    machine, wrong = _machine(data.get("units", model.get("units")), model, start, usual, within)
+    for section, values in plain.items():
+        if isinstance(values, dict) and section not in ("start", "survey", "random"):
+            plain[section], refused = _numbers(machine, section, values, usual)
+            wrong += refused
+    return machine, plain, wrong
+
+
+def _machine(
+    said: object, model: dict[str, Any], start: dict[str, Any], usual: str | None, within: object
+) -> tuple[Physical | None, list[str]]:
+    """The machine of `[model]` and `[start]`, counted in the unit of what varies; None where it cannot be made; and what is wrong."""
     if said != "si":
-        return None, _without_texts(plain), [f'units = {said!r} is unknown; use "si", or leave it out.']
+        return None, [f'units = {said!r} is unknown; use "si", or leave it out.']
+    name = str(model.get("name"))
     try:
         known = tables(model_class(name)).QUANTITIES
     except ValueError as error:
-        return None, _without_texts(plain), [f"[model] {error}."]
+        return None, [f"[model] {error}."]
     wrong = [
         f"[{section}] {key} = {value!r}: there is no such quantity{near_quantity(key, [*known, *extra])}; "
         f"known are {', '.join([*extra, *known])}."
@@ -74,14 +87,10 @@ def converted(data: dict[str, Any]) -> tuple[Physical | None, dict[str, Any], li
         for key, value in values.items()
         if key not in known and key not in extra
     ]
-    usual = _parameter(plain.get("continue"))
-    if (
-        usual is not None
-        and "word" not in start
-        and usual in known
-        and not _said(known, usual, (*model, *start))
-    ):
-        start = {**start, usual: _middle(known[usual], plain["continue"].get("within"))}
+    over = known.get(usual or "")
+    said_already = {known[key].choice for key in (*model, *start) if key in known}
+    if over is not None and "word" not in start and over.choice not in said_already:
+        start = {**start, over.name: _middle(over, within)}
     # [start] replaces what [model] says of the same thing
     groups = {known[key].choice for key in start if key in known}
     places = {key: "model" for key in model if key in known and known[key].choice not in groups}
@@ -92,24 +101,13 @@ def converted(data: dict[str, Any]) -> tuple[Physical | None, dict[str, Any], li
         machine = physical(name, given, bool(model.get("unusual", False)))
     except QuantityError as error:
         section = places.get(str(error).split(" ", 1)[0].rstrip(":"), "model")
-        return None, _without_texts(plain), [*wrong, f"[{section}] {error}."]
-    if usual is not None and usual in known:
-        machine = machine.given_by(usual)
-    for section, values in plain.items():
-        if isinstance(values, dict) and section not in ("start", "survey", "random"):
-            plain[section], refused = _numbers(machine, known, section, values, usual)
-            wrong += refused
-    return machine, plain, wrong
+        return None, [*wrong, f"[{section}] {error}."]
+    return machine.given_by(over.name) if over else machine, wrong
 
 
 def _parameter(section: object) -> str | None:
     name = section.get("parameter") if isinstance(section, dict) else None
     return name if isinstance(name, str) else None
-
-
-def _said(known: Mapping[str, Quantity], name: str, given: Iterable[str]) -> bool:
-    """Whether quantity `name`, or another one that is chosen in its place, is among those given."""
-    return any(key == name or known[key].choice == known[name].choice for key in given if key in known)
 
 
 def _middle(quantity: Quantity, within: object) -> object:
@@ -128,47 +126,39 @@ def _middle(quantity: Quantity, within: object) -> object:
     )
 
 
-def _lists(values: dict[str, Any]) -> Iterator[tuple[str, list[Any]]]:
-    """The entries of a section that hold values of what varies."""
-    return ((key, values[key]) for key in ("within", "values") if isinstance(values.get(key), list))
-
-
-def _without_texts(plain: dict[str, Any]) -> dict[str, Any]:
-    """The sections with numbers in place of quantities that no machine can read, so that these are not refused as well."""
-    found = {}
-    for section, values in plain.items():
-        found[section] = dict(values) if isinstance(values, dict) else values
-        for key, texts in _lists(values) if isinstance(values, dict) else ():
-            if any(isinstance(value, str) for value in texts):
-                found[section][key] = [float(i) for i in range(len(texts))]
-        if isinstance(values, dict) and isinstance(values.get("bounds"), dict):
-            found[section].pop("bounds")
-    return found
-
-
 def _numbers(
-    machine: Physical, known: Mapping[str, Quantity], section: str, values: dict[str, Any], usual: str | None
+    machine: Physical | None, section: str, values: dict[str, Any], usual: str | None
 ) -> tuple[dict[str, Any], list[str]]:
-    """A section with numbers in place of quantities, and refusals; the machine tells them by the quantity that varies."""
-    name, changed, wrong = _parameter(values) or usual, dict(values), []
-    if name is not None and name not in known and "parameter" in values:
+    """A section with numbers in place of quantities, and refusals; the machine tells them by the quantity that varies.
+
+    Without a machine, or where they are refused, numbers that nothing is wrong with stand in their place, so that these are refused once.
+    """
+    changed, wrong = dict(values), []
+    lists = {key: values[key] for key in ("within", "values") if isinstance(values.get(key), list)}
+    if machine is None:
+        if isinstance(values.get("bounds"), dict):
+            del changed["bounds"]
+        unread = {key: texts for key, texts in lists.items() if any(isinstance(text, str) for text in texts)}
+        return changed | {key: [float(i) for i in range(len(texts))] for key, texts in unread.items()}, []
+    name, known = _parameter(values) or usual, machine.tables.QUANTITIES
+    if name is None:
+        return changed, wrong
+    if name in known:
+        given = machine.given_by(name)
+        sound = given.quantities.get(name) or 1.0
+        for key, texts in lists.items():
+            pairs = [number_of(given, name, text, f"[{section}] {key}[{i}]") for i, text in enumerate(texts)]
+            refused = [refusal for _, refusal in pairs if refusal]
+            wrong += refused
+            changed[key] = (
+                np.linspace(0.5 * sound, sound, len(pairs)).tolist() if refused else [n for n, _ in pairs]
+            )
+    elif "parameter" in values:
         wrong.append(
             f"[{section}] parameter = {name!r}: the model {machine.name!r} has no such quantity"
             f"{near_quantity(name, known)}; it has {', '.join(known)}."
         )
         changed["within"] = [0.0, 1.0]
-    if name is None:
-        return changed, wrong
-    for key, texts in _lists(values) if name in known else ():
-        given = machine.given_by(name)
-        pairs = [number_of(given, name, text, f"[{section}] {key}[{i}]") for i, text in enumerate(texts)]
-        refused = [refusal for _, refusal in pairs if refusal]
-        wrong += refused
-        # numbers that nothing is wrong with in place of refused ones, so that these are refused once
-        sound = given.quantities.get(name) or 1.0
-        changed[key] = (
-            np.linspace(0.5 * sound, sound, len(pairs)).tolist() if refused else [n for n, _ in pairs]
-        )
     if isinstance(values.get("bounds"), dict):
         changed["bounds"], refused = _bounds(machine.units, values["bounds"], section)
         wrong += refused
