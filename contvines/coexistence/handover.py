@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import networkx as nx
 import numpy as np
 
 from ..branches.branch import Branch
@@ -124,17 +125,12 @@ def loose_ends(graph: Graph) -> list[End]:
 
 def _together(firsts: np.ndarray, lasts: np.ndarray, near: float) -> np.ndarray:
     """Width of what each stretch forms with those that it meets, and these with theirs, shape (n,)."""
-    low, high = firsts.copy(), lasts.copy()
-    meets = [np.flatnonzero(np.abs(firsts - last) <= near) for last in lasts]
-    for _ in range(len(firsts)):
-        before = low.sum() - high.sum()
-        for k, others in enumerate(meets):
-            for j in others:
-                low[k] = low[j] = min(low[k], low[j])
-                high[k] = high[j] = max(high[k], high[j])
-        if low.sum() - high.sum() == before:
-            break
-    return high - low
+    meeting = np.abs(firsts[None, :] - lasts[:, None]) <= near
+    widths = np.empty(len(firsts))
+    for part in nx.connected_components(nx.from_numpy_array(meeting | meeting.T)):
+        members = list(part)
+        widths[members] = lasts[members].max() - firsts[members].min()
+    return widths
 
 
 def _stretches(branch: Branch) -> Iterator[tuple[End, End]]:

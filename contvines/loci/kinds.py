@@ -63,6 +63,7 @@ def looks(problem: Problem, condition: int) -> list[Look]:
         return []  # of a user's condition nothing is known
     spectrum, m = problem.spectrum, int(problem.n_multipliers)
     half = problem.flip_kind == "symmetry-breaking"
+    turn = "symmetry-breaking" if half else "flip"
     flow, found = spectrum == "flow", []
     pairs = m >= (2 if condition in (MARGIN, PAIR) else 3)
     if condition == FOLD:
@@ -74,14 +75,14 @@ def looks(problem: Problem, condition: int) -> list[Look]:
         if pairs:
             found.append(Look("pair", "zero-hopf" if flow else "fold-neimark-sacker"))
         if not flow:
-            found.append(Look("minus", "fold-symmetry-breaking" if half else "fold-flip"))
+            found.append(Look("minus", f"fold-{turn}"))
     if condition == FLIP:
         found.append(Look("cubic", "degenerate-symmetry-breaking" if half else "generalized-period-doubling"))
         if m >= 2:
             found.append(Look("double", "resonance-1-1" if half else "resonance-1-2", -1.0))
-            found.append(Look("plus", "fold-symmetry-breaking" if half else "fold-flip"))
+            found.append(Look("plus", f"fold-{turn}"))
         if pairs:
-            found.append(Look("pair", "symmetry-breaking-neimark-sacker" if half else "flip-neimark-sacker"))
+            found.append(Look("pair", f"{turn}-neimark-sacker"))
     if condition == PAIR:
         found.append(Look("lyapunov", "generalized-hopf" if flow else "chenciner"))
         if flow:
@@ -91,15 +92,13 @@ def looks(problem: Problem, condition: int) -> list[Look]:
         if m >= 3:
             found.append(Look("plus", "zero-hopf" if flow else "fold-neimark-sacker"))
             if not flow:
-                found.append(
-                    Look("minus", "symmetry-breaking-neimark-sacker" if half else "flip-neimark-sacker")
-                )
+                found.append(Look("minus", f"{turn}-neimark-sacker"))
         if m >= 4:
             found.append(Look("second-pair", "double-hopf" if flow else "double-neimark-sacker"))
     if condition == MARGIN:
         found += [Look("plus", "border-fold"), TOUCH]
         if not flow:
-            found.append(Look("minus", "border-symmetry-breaking" if half else "border-flip"))
+            found.append(Look("minus", f"border-{turn}"))
         if m >= 2:
             found.append(Look("pair", "border-neimark-sacker"))
     return found
@@ -107,17 +106,8 @@ def looks(problem: Problem, condition: int) -> list[Look]:
 
 def resonances(half: bool) -> list[Look]:
     """Strong resonances by the cosine of the raw angle; on half maps the multipliers of the full period are squares."""
-    if not half:
-        return [
-            Look("angle", "resonance-1-1", 1.0),
-            Look("angle", "resonance-1-2", -1.0),
-            Look("angle", "resonance-1-3", -0.5),
-            Look("angle", "resonance-1-4", 0.0),
-        ]
     root = 0.5**0.5
-    return [
-        *(Look("angle", "resonance-1-1", c) for c in (1.0, -1.0)),
-        Look("angle", "resonance-1-2", 0.0),
-        *(Look("angle", "resonance-1-3", c) for c in (0.5, -0.5)),
-        *(Look("angle", "resonance-1-4", c) for c in (root, -root)),
-    ]
+    cosines = (
+        ((1.0, -1.0), (0.0,), (0.5, -0.5), (root, -root)) if half else ((1.0,), (-1.0,), (-0.5,), (0.0,))
+    )
+    return [Look("angle", f"resonance-1-{n}", c) for n, both in enumerate(cosines, 1) for c in both]

@@ -59,12 +59,17 @@ def title(chart: Chart) -> str:
     return f"chart of {first} and {second}"
 
 
+def _figures(chart: Chart) -> list[Callable[[float], str]]:
+    """How values of the two parameters are written."""
+    return [
+        figures_in(within, [point.value[k] for point in chart.points.values()]) for k, within in enumerate(chart.within)
+    ]  # fmt: skip
+
+
 def _tables(chart: Chart) -> list[Table]:
     """Loci, then points and regions where there are any."""
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
-    at = [
-        figures_in(within, [point.value[k] for point in chart.points.values()]) for k, within in enumerate(chart.within)
-    ]  # fmt: skip
+    at = _figures(chart)
 
     def across(locus: Locus, which: int) -> str:
         ends = locus.values[:, which].min(), locus.values[:, which].max()
@@ -101,9 +106,7 @@ def _tables(chart: Chart) -> list[Table]:
 def regions_table(chart: Chart, most: int | None = None) -> Table:
     """A row per region, the largest first: where it was simulated, its share of the plane, what is stable; with `most` so many of them."""
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
-    at = [
-        figures_in(within, [point.value[k] for point in chart.points.values()]) for k, within in enumerate(chart.within)
-    ]  # fmt: skip
+    at = _figures(chart)
     rows = [
         (
             at[1](region.at[1]),

@@ -6,7 +6,7 @@ nearer than 1e-8 to each other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -128,19 +128,40 @@ def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
 
 
 def _branches(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
-    for label, branch in before.items():
+    names, intervals = (
+        ("word", "periods", "symmetric", "real", "closed"),
+        {"range": "range was", "stable": "stable was"},
+    )
+    return _entries(before, after, "branch {} ({word} k={periods})", names, intervals)
+
+
+def _loci(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
+    return _entries(
+        before, after, "locus {} ({kind} from {seed})", ("kind", "seed", "closed"), {"ends": "its ends were"}
+    )
+
+
+def _entries(
+    before: dict[str, Any],
+    after: dict[str, Any],
+    called: str,
+    names: Sequence[str],
+    intervals: Mapping[str, str],
+) -> Iterator[str]:
+    """Curves that are missing, have changed, or are new; `intervals` says of which fields the intervals are compared, and how they are told."""
+    for label, entry in before.items():
         if label not in after:
-            yield f"branch {label} ({branch['word']} k={branch['periods']}) is missing"
+            yield f"{called.format(label, **entry)} is missing"
             continue
         now = after[label]
-        for name in ("word", "periods", "symmetric", "real", "closed"):
-            if branch[name] != now[name]:
-                yield f"{label}: {name} was {branch[name]} and is {now[name]}"
-        for name in ("range", "stable"):
-            if not _same_intervals(branch[name], now[name]):
-                yield f"{label}: {name} was {branch[name]} and is {now[name]}"
+        for name in names:
+            if entry[name] != now[name]:
+                yield f"{label}: {name} was {entry[name]} and is {now[name]}"
+        for name, was in intervals.items():
+            if not _same_intervals(entry[name], now[name]):
+                yield f"{label}: {was} {entry[name]} and {'are' if was.endswith('were') else 'is'} {now[name]}"
     for label in set(after) - set(before):
-        yield f"branch {label} ({after[label]['word']} k={after[label]['periods']}) is new"
+        yield f"{called.format(label, **after[label])} is new"
 
 
 def _same_intervals(one: Stretches, other: Stretches) -> bool:
@@ -148,21 +169,6 @@ def _same_intervals(one: Stretches, other: Stretches) -> bool:
         return one is other
     a, b = np.array(sorted(one), dtype=float), np.array(sorted(other), dtype=float)
     return a.shape == b.shape and bool(np.allclose(a, b, rtol=AGREEMENT.end, atol=AGREEMENT.end))
-
-
-def _loci(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
-    for label, locus in before.items():
-        if label not in after:
-            yield f"locus {label} ({locus['kind']} from {locus['seed']}) is missing"
-            continue
-        now = after[label]
-        for name in ("kind", "seed", "closed"):
-            if locus[name] != now[name]:
-                yield f"{label}: {name} was {locus[name]} and is {now[name]}"
-        if not _same_intervals(locus["ends"], now["ends"]):
-            yield f"{label}: its ends were {locus['ends']} and are {now['ends']}"
-    for label in set(after) - set(before):
-        yield f"locus {label} ({after[label]['kind']} from {after[label]['seed']}) is new"
 
 
 def of_graph(graph: Graph) -> dict[str, Any]:

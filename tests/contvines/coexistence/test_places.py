@@ -43,10 +43,3 @@ def test_every_stretch_between_two_changes_is_asked(pairs, asked):
             assert any(first < p < last for p in all_asked)
     assert unasked(graph, all_asked, 1000) == []  # it ends
     assert len(unasked(graph, known, 2)) <= 2
-
-
-def windows(x, p):
-    """x = 0 attracts everywhere; x = 1 attracts |x - 1| < 1/2 for 0.40 < p < 0.42 alone."""
-    inside = 40.0 * ((p - 0.41) ** 2 - 0.01**2) * 1e4
-    near = 1.0 + (x - 1.0) * (0.5 + 0.6 * (1.0 + np.tanh(inside)) / 2.0)
-    return np.where(np.abs(x - 1.0) < 0.5, near, 0.5 * x)
