@@ -37,7 +37,7 @@ class CycleMesh(CycleUnknowns):
             ranges, s.same * self.node_scale * (ranges / self.node_scale).max() + s.solved * self.node_scale
         )
 
-    def adapted(self, u: np.ndarray) -> Callable[[np.ndarray], np.ndarray] | None:
+    def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
         x, widths = self._curve(u)
         if np.ptp(x.reshape(-1, self.node) / self.node_scale, axis=0).max() < self.flow.settings.same:

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from ..flows.cycles import CycleProblem
 from ..problems.protocol import Symmetry
 from ..problems.registry import rebuild
 from .borders import borders_at
 from .layout import FOLD, GROWTH, KNOWN, PERIOD
-from .on_mesh import OnMesh, on_mesh
+from .on_mesh import on_mesh
 from .problem import LocusProblem, Work, described
 
 
@@ -33,7 +34,7 @@ class AdaptiveLocus(LocusProblem):
         return GROWTH if self.condition == FOLD and self.n_multipliers == 1 else self.condition
 
     @property
-    def mesh(self) -> OnMesh:
+    def mesh(self) -> CycleProblem:
         """The problem of the branches."""
         return on_mesh(self.base)
 

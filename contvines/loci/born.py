@@ -10,10 +10,10 @@ import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
+from ..flows.cycles import CycleProblem
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from .linear import Linearisation
-from .on_mesh import OnMesh
 from .plane_point import PlanePoint
 from .starts import begin
 
@@ -85,7 +85,7 @@ def _doubled(point: PlanePoint) -> Iterator[Child]:
     line.at(point.u, p)
     right = line.null_vectors(flipped=True).right
     for child in problem.offspring(problem.flip_kind, point.u, p, np.append(right, 0.0), -1.0 + 0.0j)[:1]:
-        states = problem.states if isinstance(problem, OnMesh) else len(point.u)
+        states = problem.states if isinstance(problem, CycleProblem) else len(point.u)
         direction = np.asarray(child.tangent, dtype=float)[:-1].copy()
         direction[states : 2 * states] *= -1.0
         direction[2 * states :] = 0.0

@@ -20,6 +20,7 @@ from ..bifurcation.settings import LOCATING
 from ..bifurcation.symmetry_test import image_of
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
+from ..flows.cycles import CycleProblem
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..shared.floating_point import ROUNDED
@@ -402,8 +403,8 @@ class Becomes(NamedTuple):
 def becomes(locus: LocusProblem, u: np.ndarray, p: float, q: float) -> Becomes | None:
     """What the motion at a place of a locus all but is, if it is more symmetric than others of its equations."""
     whole = locus.at(q)
-    if isinstance(whole, Adaptive):
-        root = on_mesh(whole).root(u, p, VANISHING.loose)
+    if isinstance(whole, CycleProblem):
+        root = whole.root(u, p, VANISHING.loose)
         return (
             None
             if root is None

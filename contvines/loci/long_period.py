@@ -6,12 +6,14 @@ import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from .on_mesh import OnMesh
+from ..flows.cycles import CycleProblem
 
 LONGER = 1.3  # factor from one period to the next, on the way to a longer one
 
 
-def lengthened(problem: OnMesh, u: np.ndarray, p: float, period: float) -> tuple[OnMesh, np.ndarray, float]:
+def lengthened(
+    problem: CycleProblem, u: np.ndarray, p: float, period: float
+) -> tuple[CycleProblem, np.ndarray, float]:
     """A nearly homoclinic cycle with another period.
 
     Where it is longer the cycle waits at its slowest point.
@@ -33,8 +35,8 @@ def lengthened(problem: OnMesh, u: np.ndarray, p: float, period: float) -> tuple
 
 
 def of_period(
-    problem: OnMesh, u: np.ndarray, p: float, period: float
-) -> tuple[OnMesh, np.ndarray, float] | None:
+    problem: CycleProblem, u: np.ndarray, p: float, period: float
+) -> tuple[CycleProblem, np.ndarray, float] | None:
     """The cycle of a given period near a guess, on a mesh that suits it."""
     while True:
         border = np.zeros(problem.dimension + 1)
