@@ -261,27 +261,27 @@ class Engine(Rows):
 
     def start(self, u: np.ndarray, p: float, tangent: np.ndarray | None = None) -> Solved | None:
         """A first point near (u, p): at fixed p within the interval, or, where that fails (at a fold), nearest to the guess."""
+        u = np.asarray(u, dtype=float)
         if tangent is not None and np.any(tangent):
             tangent = self.unit(np.asarray(tangent, dtype=float))
             border = self.weights * tangent
-            found = self.solve(u, p, border, float(np.dot(border, self.join(u, p))), tangent)
+            found = self.solve(u, p, border, float(border @ self.join(u, p)), tangent)
             if found is not None and self.lower <= found.p <= self.upper:
                 return found
         found, p = None, min(max(p, self.lower), self.upper)
         if tangent is None and not self.compiled and isinstance(self.problem, Rough):
             from ..problems.approach import approach
 
-            near = approach(self.problem, np.asarray(u, dtype=float), p)
+            near = approach(self.problem, u, p)
             found = None if near is None else self.at_value(near, p)
-        if found is None:
-            found = self.at_value(np.asarray(u, dtype=float), p)
-        if found is None:
-            for i in range(min(self.n, 8)):
-                border = np.zeros(self.n + 1)
-                border[i] = 1.0
-                found = self.solve(np.asarray(u, dtype=float), p, border, float(u[i]))
-                if found is not None and self.lower <= found.p <= self.upper:
-                    break
+        found = found or self.at_value(u, p)
+        for i in range(min(self.n, 8)):
+            if found is not None:
+                break
+            border = np.zeros(self.n + 1)
+            border[i] = 1.0
+            found = self.solve(u, p, border, float(u[i]))
+            if found is not None and not self.lower <= found.p <= self.upper:
                 found = None
         return found
 

@@ -6,6 +6,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..graph.table import with_unit
 from ..shared.number_text import figures_in
 from ..text_table import Table, terminal_width
@@ -32,17 +34,14 @@ def chart_summary(chart: Chart, width: int | None = None) -> str:
     def spread(values: list[float], text: Callable[[float], str]) -> str:
         return "..".join(dict.fromkeys((text(min(values)), text(max(values)))))
 
+    loci = [(locus.kind, locus.values) for locus in chart.loci.values()]
+    points = [(point.kind, np.array([point.value])) for point in chart.points.values()]
     rows = []
-    for kind, count in Counter(locus.kind for locus in chart.loci.values()).most_common():
-        ends = [locus.values for locus in chart.loci.values() if locus.kind == kind]
-        across = (
-            spread([x for v in ends for x in (v[:, k].min(), v[:, k].max())], number[k]) for k in (1, 0)
-        )
-        rows.append((kind, str(count), *across))
-    for kind, count in Counter(point.kind for point in chart.points.values()).most_common():
-        values = [point.value for point in chart.points.values() if point.kind == kind]
-        across = (spread([value[k] for value in values], number[k]) for k in (1, 0))
-        rows.append((kind, str(count), *across))
+    for each in (loci, points):
+        for kind, count in Counter(kind for kind, _ in each).most_common():
+            values = np.concatenate([values for own, values in each if own == kind])
+            across = (spread([values[:, k].min(), values[:, k].max()], number[k]) for k in (1, 0))
+            rows.append((kind, str(count), *across))
     p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
     lines = [title(chart), "", *Table(("loci and points", "number", q, p), rows).lines(width)]
     if chart.regions:

@@ -154,7 +154,8 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         self._check_start(start)
         self._check_rows(start)
         self._find_structure(start)
-        self._find_symmetries()
+        if self.mirror is not None:
+            self.symmetries = (Symmetry("symmetry-breaking", self._mirrored),)
         self.describe()  # its callables are known by their addresses from now on
 
     def _find_structure(self, start: np.ndarray) -> None:
@@ -172,16 +173,9 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
                 "conditions need a Jacobian that is an array; put them into F, with an unknown each"
             )
 
-    def _find_symmetries(self) -> None:
-        found = []
-        if self.mirror is not None:
-            found.append(Symmetry("symmetry-breaking", self._on_unknowns(self.mirror)))
-        self.symmetries = tuple(found)
-
-    def _on_unknowns(self, image: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.ndarray], np.ndarray]:
-        if self.conditions is None:
-            return image
-        return lambda u: np.append(image(u[: self.node]), u[self.node :])
+    def _mirrored(self, u: np.ndarray) -> np.ndarray:
+        assert self.mirror is not None
+        return np.append(self.mirror(u[: self.node]), u[self.node :])
 
     def _of_unknowns(self, each: np.ndarray) -> np.ndarray:
         """The multipliers of conditions have the length 1."""
