@@ -162,8 +162,10 @@ def _stability(flow: Drawn, branch: Any, i: int, place: float, done: Judged) -> 
     """Whether a solution between two points of a branch is as stable as these."""
     stable, none = bool(branch.stable[i]), (np.zeros(0), 0.0, 0.0, 0.0)
     engine = Engine(branch.problem, WITHIN, Settings())
-    ends = [Solved(branch.points[k], float(branch.values[k]), branch.tangents[k], *none) for k in (i, i + 1)]
-    found = Segment(engine, *ends).at(place)
+    first, last = (
+        Solved(branch.points[k], float(branch.values[k]), branch.tangents[k], *none) for k in (i, i + 1)
+    )
+    found = Segment(engine, first, last).at(place)
     if found is None:
         done.tried["solutions not solved for"] += 1
         return

@@ -160,16 +160,14 @@ def _chunks(
 def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[Solved]:
     """The last points on a mesh that suits the last one, whose phase is kept from now on."""
     problem.anchor(None)
-    image = problem.adapted(history[-1].u)
-    points = list(history)
-    if image is not None:
-        moved = [_solved_again(engine, point, image) for point in points]
-        if all(point is not None for point in moved):
-            points = [point for point in moved if point is not None]
-    problem.anchor(points[-1].u, points[-1].p)
-    # the last one, too: its tangent is that of the phase which was kept before
-    *before, last = [_solved_again(engine, point) for point in points]
-    return [*(point for point in before if point is not None), last or points[-1]]
+    last, image = history[-1], problem.adapted(history[-1].u)
+    while True:
+        problem.anchor(last.u if image is None else image(last.u), last.p)
+        # the last one, too: its tangent is that of the phase which was kept before
+        *before, found = [_solved_again(engine, point, image) for point in history]
+        if image is None or found is not None:
+            return [*(point for point in before if point is not None), found or last]
+        image = None
 
 
 def _solved_again(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -101,34 +102,72 @@ def mark(
     places |= {i for i, _ in stretches}
     twins = {i for i, _ in half.events} - places
     branch.stable = stability(engine, half.joined().spectrum, sorted(places), sorted(twins))
-    for index, event in stretches:
-        run.graph.unresolved.append(_stretch(engine, branch, half, index, event))
-    _unresolved(run, branch)
+    own = [(_stretch(engine, branch, half, *pair), _accuracy(engine, pair[1].point)) for pair in stretches]
+    run.graph.unresolved += _unresolved(run, branch, own)
     branch.endings = (ends.get(0, branch.endings[0]), ends.get(1, branch.endings[1]))
     return fresh
 
 
-def _unresolved(run: Run, branch: Branch) -> None:
-    """Say where two changes of stability lie so close together that solutions between them are not resolved; these count as unstable.
+class _Place(NamedTuple):
+    """A special point, or a stretch that is not resolved: its index on the branch, values between which it lies, and the error of these."""
 
-    Either no solution could be put between them, or their parameter values are one as far as these are known.
+    at: int
+    low: float
+    high: float
+    error: float
+    what: SpecialPoint | Unresolved
+
+
+def _unresolved(run: Run, branch: Branch, stretches: list[tuple[Unresolved, float]]) -> list[Unresolved]:
+    """What is not resolved: stretches, those that are one as far as their values are known joined, and special points that cannot be told apart.
+
+    Solutions between places whose values are one, or between which no solution could be put, count as unstable where those on both sides are.
     """
-    special = run.graph.special
-    for (i, one), (j, other) in pairwise(branch.marks):
-        here, there = (special[label] for label in (one, other))
-        if not a_sliver((here.kind,), (there.kind,)):
+    points = [(i, run.graph.special[label]) for i, label in branch.marks]
+    places = [_Place(i, point.value, point.value, point.location_error, point) for i, point in points]
+    places += [_Place(one.index, one.low, one.high, error, one) for one, error in stretches]
+    places.sort(key=lambda place: place.at)
+    found = [one for one, _ in stretches]
+    groups = [[place] for place in places[:1]]
+    for one, other in pairwise(places):
+        apart = max(one.low, other.low) - min(one.high, other.high)
+        rounding = LAST_PLACES * float(np.spacing(run.unit(one.low)))
+        if not _may_hide(one, other) or (
+            other.at - one.at > 1 and apart > one.error + other.error + rounding
+        ):
+            groups.append([other])
             continue
-        apart = abs(here.value - there.value)
-        rounding = LAST_PLACES * float(np.spacing(run.unit(here.value)))
-        if j - i > 1 and apart > here.location_error + there.location_error + rounding:
-            continue
-        for label, neighbour in ((one, other), (other, one)):
-            run.remark(label, f"{apart:.1e} from {neighbour}: solutions between the two are not resolved")
-        low, high = sorted((here.value, there.value))
-        run.graph.unresolved.append(Unresolved(branch.label, low, high, i, "neighbours", points=(one, other)))
-        beside = [k for k in (i - 1, j + 1) if 0 <= k < len(branch)]
-        if branch.stable is not None and not branch.stable[beside].any():
-            branch.stable[i : j + 1] = False
+        groups[-1].append(other)
+        if isinstance(one.what, SpecialPoint) and isinstance(other.what, SpecialPoint):
+            names = one.what.label, other.what.label
+            for label, neighbour in (names, names[::-1]):
+                run.remark(label, f"{apart:.1e} from {neighbour}: solutions between the two are not resolved")
+            low, high = sorted((one.low, other.low))
+            found.append(Unresolved(branch.label, low, high, one.at, "neighbours", points=names))
+    for group in groups:
+        inside = [place.what for place in group if isinstance(place.what, Unresolved)]
+        if len(inside) > 1:
+            found = [one for one in found if one not in inside]
+            low, high = min(one.low for one in inside), max(one.high for one in inside)
+            found.append(replace(inside[0], low=low, high=high, after=inside[-1].after))
+        beside = [k for k in (group[0].at - 1, group[-1].at + 1) if 0 <= k < len(branch)]
+        if len(group) > 1 and branch.stable is not None and not branch.stable[beside].any():
+            branch.stable[group[0].at : group[-1].at + 1] = False
+    return found
+
+
+def _may_hide(one: _Place, other: _Place) -> bool:
+    """Whether solutions between two places may be stable although those on both sides are not."""
+    if isinstance(one.what, SpecialPoint) and isinstance(other.what, SpecialPoint):
+        return a_sliver((one.what.kind,), (other.what.kind,))
+    return True
+
+
+def _accuracy(engine: Engine, point: Solved) -> float:
+    """How well the equations know the parameter at a point."""
+    problem = engine.problem
+    own = problem.accuracy(point.u, point.p) if isinstance(problem, Adaptive) else 0.0
+    return max(own, problem.uncertainty()) * engine.parameter_unit(point.p)
 
 
 def _stretch(engine: Engine, branch: Branch, half: HalfBranch, index: int, event: Located) -> Unresolved:

@@ -1,8 +1,12 @@
 """Where both ends of a stretch do not agree with what is found between, the graph says so, with what is certain on both sides."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.graph.label_special_points import _unresolved
 from contvines.graph.unresolved import Unresolved, sentences
 
 
@@ -43,3 +47,28 @@ def test_many_stretches_of_one_branch_are_counted():
         sum("on B1 at p" in line for line in lines) == 10 and sum("on B2 at p" in line for line in lines) == 1
     )
     assert lines[-1].startswith("unresolved on B1: 2 more")
+
+
+class Line:
+    """A branch of seven points, stable between the second and the last but one."""
+
+    label, marks = "B1", ()
+
+    def __init__(self):
+        self.stable = np.array([False, *[True] * 5, False])
+
+    def __len__(self):
+        return len(self.stable)
+
+
+@pytest.mark.parametrize(("error", "together"), [(1e-9, True), (1e-13, False)])
+def test_nothing_is_stable_between_stretches_nearer_than_their_errors(error, together):
+    run = SimpleNamespace(graph=SimpleNamespace(special={}), unit=lambda value: 1.0)
+    counts = (1, 0, 0), (0, 0, 0)
+    one = Unresolved("B1", 0.3, 0.3 + 1e-11, 1, "multipliers", *counts)
+    other = Unresolved("B1", 0.3 + 1e-10, 0.3 + 1.1e-10, 5, "multipliers", *counts[::-1])
+    branch = Line()
+    found = _unresolved(run, branch, [(one, error), (other, error)])
+    assert branch.stable.any() != together
+    whole = Unresolved("B1", one.low, other.high, 1, "multipliers", one.before, other.after)
+    assert found == ([whole] if together else [one, other])
