@@ -16,7 +16,8 @@ from .locate import Root, locate
 from .segment import Segment
 
 MARGIN_ROUNDING = 2.0 * EPSILON  # of margins, in units of the machine's own size
-TOLD = 10.0  # times that: a difference of margins which is no rounding
+NEARER = 0.1, 0.01  # parts of the distance of the point close before a border
+TOLD = 10.0  # times rounding: a difference of margins that is none; times what one sample tells: an error
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 
 
@@ -98,7 +99,7 @@ def _passing(segment: Segment, root: Root, falling: NDArray[np.intp]) -> NDArray
 
 
 def rounding(segment: Segment, root: Root, index: int, before: Solved | None) -> float:
-    """How far rounding of the margins that vanish at a border may move its parameter value.
+    """How far rounding of the margins that vanish at a border, and of its unknowns, may move its parameter value.
 
     Where a margin is flat it is zero, but for rounding, far from the last bracket; of one that is that all along nobody knows where it
     passes zero. The point close before the border may be known.
@@ -113,7 +114,9 @@ def rounding(segment: Segment, root: Root, index: int, before: Solved | None) ->
     towards = -1.0 if place * segment.length > sloped else 1.0
     room = place if towards < 0.0 else 1.0 - place
     reach = min(sloped / segment.length, room)
-    aside = before if towards < 0.0 else None
+    aside = before if towards < 0.0 else segment.at(place + reach)
+    if aside is not None and reach < room:
+        error = _scatter(segment, root, index, towards * reach, aside)
     while reach > 0.0 and (aside := aside or segment.at(place + towards * reach)) is not None:
         rises, moved = np.abs(_finite(aside.row[first:][flat]) - here), abs(aside.p - point.p)
         told = rises > TOLD * MARGIN_ROUNDING
@@ -127,6 +130,24 @@ def rounding(segment: Segment, root: Root, index: int, before: Solved | None) ->
             break
         reach, aside = min(30.0 * reach, room), None
     return error
+
+
+def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solved) -> float:
+    """How far unknowns that are not known to the last digits, as where two events fall together, may move the parameter value of a border.
+
+    They show in its margin, which is the farther from the parabola through the border and two points beside it.
+    """
+    j = 2 * segment.engine.m + index
+    points = segment.several([root.position + part * reach for part in NEARER])
+    rises = [float(point.row[j] - root.point.row[j]) for point in (aside, *points) if point is not None]
+    if len(rises) < 3 or not np.isfinite(rises).all():
+        return 0.0
+    if not abs(rises[2]) < 0.5 * abs(rises[0]):
+        return 0.0  # it jumps
+    one, other = NEARER
+    bend = (rises[1] / one - rises[0]) / (one - 1.0)
+    apart = abs(rises[2] - other * (rises[0] + (other - 1.0) * bend))
+    return TOLD * apart / abs(rises[0]) * abs(aside.p - root.point.p)
 
 
 def _finite(margins: np.ndarray) -> np.ndarray:
