@@ -96,13 +96,16 @@ def _pairs(product: arb_mat) -> arb:
 
 
 def factor_matrices(system: System, nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
-    """The linearised maps -D_i^{-1} A_i, reduced by the free shift of impact-free motions."""
+    """The linearised maps, reduced by the free shift of impact-free motions."""
+    factors = linear_maps(system, nodes)
+    return [_without_shift(factor, system.p) for factor in factors] if system.motif.impact_free else factors
+
+
+def linear_maps(system: System, nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
+    """The linearised maps -D_i^{-1} A_i."""
     arb_mat = library().arb_mat
     blocks = system.linearise(nodes, [])
-    factors = [-(arb_mat(D).solve(arb_mat(A))) for A, D in zip(blocks.A, blocks.D)]
-    if system.motif.impact_free:
-        factors = [_without_shift(factor, system.p) for factor in factors]
-    return factors
+    return [-(arb_mat(D).solve(arb_mat(A))) for A, D in zip(blocks.A, blocks.D)]
 
 
 def _without_shift(factor: arb_mat, p: Mapping[str, arb]) -> arb_mat:
@@ -129,7 +132,7 @@ def stable_in_basis(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[boo
         factors = factor_matrices(system, nodes)
     except ZeroDivisionError:
         return None, []
-    for basis in _bases(_middle(factors)):
+    for basis in _bases(middle_product(factors)):
         carried = factors[0] * basis
         for factor in factors[1:]:
             carried = factor * carried
@@ -145,7 +148,7 @@ def stable_in_basis(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[boo
 def basis_texts(system: System, nodes: Sequence[Sequence[arb]]) -> list[list[str]]:
     """That basis alone; of eigenvectors with many digits where multipliers hardly lie on one side of the circle."""
     try:
-        product = _middle(factor_matrices(system, nodes))
+        product = middle_product(factor_matrices(system, nodes))
     except ZeroDivisionError:
         return []
     bases = _bases(product)
@@ -156,7 +159,8 @@ def basis_texts(system: System, nodes: Sequence[Sequence[arb]]) -> list[list[str
     return basis
 
 
-def _middle(factors: Sequence[arb_mat]) -> arb_mat:
+def middle_product(factors: Sequence[arb_mat]) -> arb_mat:
+    """The product of the maps' middles, the first one rightmost."""
     product = factors[0].mid()
     for factor in factors[1:]:
         product = (factor.mid() * product).mid()

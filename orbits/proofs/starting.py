@@ -12,6 +12,7 @@ from orbits.proofs.equations import Motif, System
 from orbits.proofs.flights import Flight, Flights
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.special import Normal, Vanishing
+from orbits.proofs.stability import linear_maps, middle_product
 
 if TYPE_CHECKING:
     from flint import arb, arb_mat
@@ -21,10 +22,8 @@ SAMPLES = 400
 
 def chain(motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
     """The linearised maps at the middles, each a matrix of exact numbers."""
-    blocks = System(motif, p).linearise(nodes, [])
-    arb_mat = library().arb_mat
     try:
-        return [(-(arb_mat(D).solve(arb_mat(A)))).mid() for A, D in zip(blocks.A, blocks.D)]
+        return [factor.mid() for factor in linear_maps(System(motif, p), nodes)]
     except ZeroDivisionError:
         raise Obstacle(Step.REFINEMENT, Remedy.DEGENERATE) from None
 
@@ -33,7 +32,7 @@ def eigenvector(factors: Sequence[arb_mat], mu: int) -> tuple[list[list[arb]], N
     """phi at every node for the real multiplier nearest to mu, its largest component 1, and where that is."""
     arb, arb_mat = library().arb, library().arb_mat
     size = factors[0].nrows()
-    product = _product(factors)
+    product = middle_product(factors)
     shifted = product - arb_mat(size, size, [arb(mu) * (i == j) for i in range(size) for j in range(size)])
     # inverse iteration; the multiplier is known to about ten digits only
     tilt = arb(2) ** (-60)
@@ -51,7 +50,7 @@ def eigenvector(factors: Sequence[arb_mat], mu: int) -> tuple[list[list[arb]], N
 
 def eigenpair(factors: Sequence[arb_mat]) -> tuple[list[list[arb]], Normal, float]:
     """Re phi and Im phi at every node for the complex multiplier nearest to the unit circle, and its angle."""
-    numbers = np.array([[float(value) for value in row] for row in _product(factors).tolist()])
+    numbers = np.array([[float(value) for value in row] for row in middle_product(factors).tolist()])
     values, vectors = np.linalg.eig(numbers)
     upper = [j for j, value in enumerate(values) if value.imag > 0.0]
     if not upper:
@@ -125,13 +124,6 @@ def _size(flight: Flight, phase: arb, mode: int, vanishing: Vanishing, machine: 
     if vanishing.name == "hold":
         return float((machine.limit[vanishing.side] - vanishing.side * m.push).mid())
     return float((machine.room[vanishing.side] - vanishing.side * m.w).mid())
-
-
-def _product(factors: Sequence[arb_mat]) -> arb_mat:
-    product = factors[0]
-    for factor in factors[1:]:
-        product = (factor * product).mid()
-    return product
 
 
 def _carried(factors: Sequence[arb_mat], vector: arb_mat) -> list[list[arb]]:

@@ -122,7 +122,7 @@ def lay(along: Along, center: str, half: str, z: Sequence[Sequence[arb]], value:
     place = None if along.place is None else along.place[0] * along.k + along.place[1]
     try:
         along.at = Jet(ball(center), {0: arb(1)})
-        slopes = [texts((-v).mid(), 30)[0] for v in _flat(_solved(along, m, [p], _tangent(along, m, p)))]
+        slopes = [texts((-v).mid(), 30)[0] for v in _flat(_solved(along, m, [p], _tangent(along)))]
         slopes[-1 if place is None else place] = "1"
         s = [ball(text) for text in slopes]
         F = _residual(along, m, p, s, ball(center), span)
@@ -161,7 +161,7 @@ def _flat(solution: Solution) -> list[arb]:
     return [*(v for node in solution[0] for v in node), *solution[1]]
 
 
-def _tangent(along: Along, m: Nodes, p: arb) -> Solution:
+def _tangent(along: Along) -> Solution:
     """The right side whose solution is the tangent, with its sign changed: the coordinate grows at the rate 1."""
     return [[library().arb(0)] * along.k for _ in range(along.length)], [library().arb(-1)]
 
