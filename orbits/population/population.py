@@ -144,7 +144,7 @@ class Population:
         starts = np.asarray(starts, dtype=float)
         fleet = Fleet(self._simulator(p), starts, self._longest, self.workers)
         try:
-            return Sorting(len(starts), self.parameter, p).sort(fleet)
+            return Sorting(len(starts), self.parameter, p).sort(fleet.sort)
         finally:
             self.work += fleet.work
 

@@ -2,19 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
 
 import numpy as np
 
 from orbits.attractors.motion import Form, Motion, alike
-
-
-class Fleet(Protocol):
-    """Many starts under way; what it finds of them it tells to a `Sorting`."""
-
-    def sort(self, i: int, sorting: Sorting) -> None:
-        """Say which motion start number i reaches; others may be said with it."""
-        ...
 
 
 class Sorting:
@@ -36,11 +28,11 @@ class Sorting:
         self.mirrored = np.zeros(count, dtype=bool)
         self._forms: list[Form | None] = []
 
-    def sort(self, fleet: Fleet) -> tuple[list[Motion], np.ndarray, np.ndarray]:
-        """Motions in the order of their first start, then `index` and `mirrored`."""
+    def sort(self, reached: Callable[[int, Sorting], None]) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+        """Motions in the order of their first start, then `index` and `mirrored`; `reached` says of a start, and perhaps of others with it, which it reaches."""
         for i in range(len(self.index)):
             if self.index[i] < 0:
-                fleet.sort(i, self)
+                reached(i, self)
         first = [int(np.flatnonzero(self.index == k)[0]) for k in range(len(self.motions))]
         order = sorted(range(len(first)), key=first.__getitem__)
         place = np.argsort(order)

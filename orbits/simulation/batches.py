@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from concurrent.futures import ThreadPoolExecutor
 from threading import Event
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,12 +26,14 @@ from orbits.machines.stepping import (
     Machine,
     W,
 )
+from orbits.numbers import mean_of_blocks
 from orbits.settings import SIMULATING
 from orbits.simulation.driver import buffers
 
 SETTLED, AT_REST, LOST, WANDERING = Outcome.SETTLED, Outcome.AT_REST, Outcome.LOST, Outcome.WANDERING
 GROWTH = 4000  # forcing periods over which the growth of small differences is followed
 
+BLOCKS = 19  # of the periods after the first twentieth
 BLOCK = 512  # motions that one thread takes at a time
 BUFFER = 1024  # events kept between two looks
 WORK = 8000.0  # events and periods of one native call: an interrupt is seen between two calls
@@ -41,23 +44,12 @@ class Interrupted(Exception):
     """Another thread has been interrupted."""
 
 
-def settle(
-    engine: Machine,
-    states: np.ndarray,
-    params: np.ndarray,
-    transient: float,
-    longest: int,
-    tolerance: float,
-    found: dict[str, np.ndarray],
-    stopped: Event | None = None,
-) -> None:
-    """Run every motion that is still wandering until it recurs, rests or is lost.
+class Settling(NamedTuple):
+    """How motions are run until they recur.
 
-    Parameters
+    Attributes
     ----------
     engine : Machine
-    states : ndarray, shape (n, S)
-        Moved along.
     params : ndarray, shape (P,)
     transient : float
         Forcing periods before a recurrence is looked for.
@@ -65,90 +57,72 @@ def settle(
         Forcing periods of the longest recurrence.
     tolerance : float
         Largest difference of two states that counts as a return.
-    found : dict of ndarray
-        As in `settle_all`, filled.
-    stopped : Event, optional
-        Ends the work with `Interrupted` when it is set.
     """
-    count, begin = len(states), 0
-    while begin < count:
-        if stopped is not None and stopped.is_set():
-            raise Interrupted
-        if native():
-            begin = _settle_native(
-                engine, begin, states, floats(params), transient, longest, tolerance, found
-            )
-        else:
+
+    engine: Machine
+    params: np.ndarray
+    transient: float
+    longest: int
+    tolerance: float
+
+    def settle(self, states: np.ndarray, found: dict[str, np.ndarray], stopped: Event | None = None) -> None:
+        """Run every motion that is still wandering until it recurs, rests or is lost.
+
+        Parameters
+        ----------
+        states : ndarray, shape (n, S)
+            Moved along.
+        found : dict of ndarray
+            As in `settle_all`, filled.
+        stopped : Event, optional
+            Ends the work with `Interrupted` when it is set.
+        """
+        begin, fast = 0, native()
+        while begin < len(states):
+            if stopped is not None and stopped.is_set():
+                raise Interrupted
+            if fast:
+                begin = self._natively(begin, states, found)
+                continue
             if found["outcome"][begin] == WANDERING:
-                _settle_one(engine, begin, states[begin], params, transient, longest, tolerance, found)
+                self._one(states[begin], begin, found)
             begin += 1
 
+    def _natively(self, begin: int, states: np.ndarray, found: dict[str, np.ndarray]) -> int:
+        """Some motions from number `begin` on; the number of the next one."""
+        work = function(
+            "simulation_settle", WHOLE, WHOLE, WHOLE, WHOLE, POINTER, POINTER, NUMBER, WHOLE, NUMBER, *[POINTER] * 5, NUMBER
+        )  # fmt: skip
+        number, results = NUMBERS[self.engine.name], [written(found[name]) for name in RESULTS]
+        how = address(self.params), self.transient, self.longest, self.tolerance
+        return work(number, begin, len(states), written(states), *how, *results, WORK)
 
-def _settle_native(
-    engine: Machine,
-    begin: int,
-    states: np.ndarray,
-    params: np.ndarray,
-    transient: float,
-    longest: int,
-    tolerance: float,
-    found: dict[str, np.ndarray],
-) -> int:
-    """Some motions from number `begin` on; the number of the next one."""
-    work = function(
-        "simulation_settle", WHOLE, WHOLE, WHOLE, WHOLE, POINTER, POINTER, NUMBER, WHOLE, NUMBER, *[POINTER] * 5, NUMBER
-    )  # fmt: skip
-    results = [written(found[name]) for name in RESULTS]
-    number = NUMBERS[engine.name]
-    return work(
-        number,
-        begin,
-        len(states),
-        written(states),
-        address(params),
-        transient,
-        longest,
-        tolerance,
-        *results,
-        WORK,
-    )
-
-
-def _settle_one(
-    engine: Machine,
-    i: int,
-    state: np.ndarray,
-    params: np.ndarray,
-    transient: float,
-    longest: int,
-    tolerance: float,
-    found: dict[str, np.ndarray],
-) -> None:
-    """Motion number i in plain Python: the reference of `native/many_starts.hpp`."""
-    room = buffers(engine, BUFFER)
-    if state[TURNS] < 0.5:
-        engine.launch(state, params)
-    until = np.floor(state[TURNS] + state[PSI] / (2.0 * np.pi) + 0.5) + transient
-    status, _, _ = _follow(engine, state, params, until, room)
-    first = state.copy()
-    looked_at = [c for c in range(W, engine.state) if c not in (TURNS, LOW)]
-    hits, held, k = 0, 0, 0
-    if status not in (REST, FAILED):
-        found["gaps"][i] = np.inf
-    while status not in (REST, FAILED) and k < longest:
-        k += 1
-        status, more, piled = _follow(engine, state, params, until + k, room)
+    def _one(self, state: np.ndarray, i: int, found: dict[str, np.ndarray]) -> None:
+        """Motion number i in plain Python: the reference of `native/many_starts.hpp`."""
+        engine, params, room = self.engine, self.params, buffers(self.engine, BUFFER)
+        if state[TURNS] < 0.5:
+            engine.launch(state, params)
+        until = np.floor(state[TURNS] + state[PSI] / (2.0 * np.pi) + 0.5) + self.transient
+        status, _, _ = _follow(engine, state, params, until, room)
+        first = state.copy()
+        looked_at = [c for c in range(W, engine.state) if c not in (TURNS, LOW)]
+        hits, held, k = 0, 0, 0
+        if status not in (REST, FAILED):
+            found["gaps"][i] = np.inf
+        while status not in (REST, FAILED) and k < self.longest:
+            k += 1
+            status, more, piled = _follow(engine, state, params, until + k, room)
+            if status in (REST, FAILED):
+                break
+            hits, held = hits + more, held + piled
+            gap = np.abs(state[looked_at] - first[looked_at]).max()
+            found["gaps"][i] = min(found["gaps"][i], gap)
+            if gap < self.tolerance:
+                found["periods"][i], found["impacts"][i], found["holds"][i] = k, hits, held
+                found["outcome"][i] = SETTLED
+                break
         if status in (REST, FAILED):
-            break
-        hits, held = hits + more, held + piled
-        gap = np.abs(state[looked_at] - first[looked_at]).max()
-        found["gaps"][i] = min(found["gaps"][i], gap)
-        if gap < tolerance:
-            found["periods"][i], found["impacts"][i], found["holds"][i] = k, hits, held
-            found["outcome"][i] = SETTLED
-            break
-    if status in (REST, FAILED):
-        found["outcome"][i] = AT_REST if status == REST else LOST
+            found["outcome"][i] = AT_REST if status == REST else LOST
 
 
 def _follow(
@@ -167,42 +141,21 @@ def _follow(
     return status, hits, held
 
 
-def growth(
-    engine: Machine,
-    state: np.ndarray,
-    params: np.ndarray,
-    left: float,
-    right: float,
-    count: int,
-    distance: float,
-) -> np.ndarray:
+def growth(engine: Machine, state: np.ndarray, params: np.ndarray, count: int) -> np.ndarray:
     """Follow a motion and a neighbour between the walls, drawn back to it once a forcing period; growth factors, shape (count,)."""
-    ratios, other = np.empty(count), state.copy()
-    if not native():
-        _growth(engine, state, other, params, left, right, distance, ratios)
+    ratios, other, distance = np.empty(count), state.copy(), SIMULATING.nudge
+    left, right = (float(wall) for wall in engine.walls(params))
+    if native():
+        work = function(
+            "simulation_growth", NOTHING, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, WHOLE, WHOLE, NUMBER, POINTER
+        )  # fmt: skip
+        params = floats(params)
+        arrays = written(state), written(other), address(params)
+        for begin in range(0, count, BUFFER):
+            end = min(begin + BUFFER, count)
+            work(NUMBERS[engine.name], *arrays, left, right, begin, end, distance, address(ratios))
         return ratios
-    work = function(
-        "simulation_growth", NOTHING, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, WHOLE, WHOLE, NUMBER, POINTER
-    )  # fmt: skip
-    params = floats(params)
-    arrays = written(state), written(other), address(params)
-    for begin in range(0, count, BUFFER):
-        end = min(begin + BUFFER, count)
-        work(NUMBERS[engine.name], *arrays, left, right, begin, end, distance, address(ratios))
-    return ratios
-
-
-def _growth(
-    engine: Machine,
-    state: np.ndarray,
-    other: np.ndarray,
-    params: np.ndarray,
-    left: float,
-    right: float,
-    distance: float,
-    ratios: np.ndarray,
-) -> None:
-    """The same in plain Python: the reference of `native/many_starts.hpp`."""
+    # the reference of `native/many_starts.hpp`
     room = buffers(engine, BUFFER)
     drawn_back = [c for c in range(W, engine.state) if c not in (MODE, TURNS, LOW)]
     other[W] -= distance * np.sign(other[W])
@@ -223,6 +176,7 @@ def _growth(
         other[[PSI, TURNS, LOW]] = state[[PSI, TURNS, LOW]]
         other[W] = min(max(other[W], right), left)
         engine.launch(other, params)
+    return ratios
 
 
 def settle_all(
@@ -256,7 +210,8 @@ def settle_all(
 
     def run(block: np.ndarray, transient: float) -> None:
         part, pieces = states[block], {key: column[block] for key, column in found.items()}
-        settle(engine, part, params, transient, longest, tolerance, pieces, stopped)
+        how = Settling(engine, floats(params), transient, longest, tolerance)
+        how.settle(part, pieces, stopped)
         states[block] = part
         for key, piece in pieces.items():
             found[key][block] = piece
@@ -283,11 +238,7 @@ def lyapunov(name: str, state: np.ndarray, params: np.ndarray, periods: int = GR
     """Largest Lyapunov exponent per forcing period and its standard error, from blocks of the growth's logarithms.
 
     A neighbour 1e-7 away is drawn back once a period (Benettin et al., Meccanica 15 (1980) 9). The error is that of
-    the mean over 20 blocks, which are long against the memory of the motion.
+    the mean over 19 blocks, which are long against the memory of the motion.
     """
-    engine = machine(name)
-    left, right = engine.walls(params)
-    logs = np.log(growth(engine, state.copy(), params, float(left), float(right), periods, SIMULATING.nudge))
-    blocks = logs[periods // 20 :]
-    means = blocks[: 19 * (len(blocks) // 19)].reshape(19, -1).mean(axis=1)
-    return float(means.mean()), float(means.std(ddof=1) / np.sqrt(len(means)))
+    logs = np.log(growth(machine(name), state.copy(), params, periods))[periods // 20 :]
+    return mean_of_blocks(logs[: BLOCKS * (len(logs) // BLOCKS)], BLOCKS)

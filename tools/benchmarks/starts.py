@@ -5,7 +5,7 @@ import numpy as np
 from orbits import Absorber
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import PSI, RATE, TURNS, V, W
-from orbits.simulation.batches import settle
+from orbits.simulation.batches import Settling
 from orbits.simulation.driver import skip
 
 PERIODS = 100  # forcing periods of a start at amplitude 0.6, where the motion hits twice in each: 200 impacts
@@ -31,7 +31,7 @@ class Starts:
         found = {name: np.zeros(n, np.int64) for name in ("periods", "impacts", "holds", "outcome")}
         found["gaps"] = np.full(n, np.inf)
         # no state is as near as 0: every start is followed to the end
-        settle(self.engine, states, self.params, PERIODS - 1.0, 1, 0.0, found)
+        Settling(self.engine, self.params, PERIODS - 1.0, 1, 0.0).settle(states, found)
         return states
 
     def plain(self):

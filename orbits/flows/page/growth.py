@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from orbits.flows.page.stepper import TWO_PI, Stepper
-from orbits.numbers import SMALLEST
+from orbits.numbers import SMALLEST, mean_of_blocks
 from orbits.settings import SIMULATING
 
 SAMPLES, BLOCKS = 1200, 20
@@ -40,7 +40,7 @@ def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
     while len(logs) < samples and tries < 4 * samples:
         tries += 1
         if len(logs) == samples // EARLY and tries > FORGET:
-            exponent, error = _mean(logs)
+            exponent, error = mean_of_blocks(np.array(logs), BLOCKS)
             if exponent > CLEAR * error:  # certainly chaotic
                 return exponent, error
         alike = _together(stepper, other)
@@ -58,13 +58,7 @@ def growth(stepper: Stepper, samples: int = SAMPLES) -> tuple[float, float]:
         waited = 1
     if len(logs) < BLOCKS:
         return math.nan, math.nan
-    return _mean(logs)
-
-
-def _mean(logs: list[float]) -> tuple[float, float]:
-    """Mean, and its standard error from the scatter of blocks."""
-    means = np.array([block.mean() for block in np.array_split(np.array(logs), BLOCKS)])
-    return float(means.mean()), float(means.std(ddof=1) / math.sqrt(BLOCKS))
+    return mean_of_blocks(np.array(logs), BLOCKS)
 
 
 def _beside(stepper: Stepper, other: Stepper, direction: np.ndarray) -> None:
