@@ -6,7 +6,7 @@ needed to check it: one orbit where the multiplier or the margin has one sign, o
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING
@@ -14,12 +14,10 @@ from typing import TYPE_CHECKING
 from orbits.proofs.balls import ball, texts
 from orbits.proofs.certificates import Entry, orbit_box, resting_box, tile_box
 from orbits.proofs.enclosing import Box, enclose, refine
-from orbits.proofs.equations import Motif, System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
-from orbits.proofs.special import Normal
+from orbits.proofs.special import Family, Normal
 from orbits.proofs.stability import away_from_one, basis_texts
-from orbits.proofs.tiles import DIGITS, Along, Tile, lay
-from orbits.proofs.varying import Varying
+from orbits.proofs.tiles import DIGITS, Along, lay
 
 if TYPE_CHECKING:
     from flint import arb
@@ -39,9 +37,7 @@ WIDTH = 1.25  # of the tile
 
 
 def crossing(
-    motif: Motif,
-    p: Mapping[str, arb],
-    varying: Varying,
+    family: Family,
     z: Sequence[Sequence[arb]],
     value: arb,
     bits: int,
@@ -63,13 +59,14 @@ def crossing(
     Obstacle
         If one of the three is not proved, or the orbits do not lie in the tile.
     """
+    motif = family.motif
     if not len(motif):
         center, half = texts(value.mid(), DIGITS)[0], f"{float(APART[0]) * WIDTH:.3g}"
         low, high = (_shifted(center, sign, APART[0]) for sign in (-1, 1))
         return [resting_box(motif, low), resting_box(motif, center, half), resting_box(motif, high)]
     for apart in APART if turn is None else TURN:
         try:
-            return _chain(motif, p, varying, z, value, bits, turn, apart, pair)
+            return _chain(family, z, value, bits, turn, apart, pair)
         except Obstacle as obstacle:
             if apart in (APART[-1], TURN[-1]):
                 raise obstacle from None
@@ -77,9 +74,7 @@ def crossing(
 
 
 def _chain(
-    motif: Motif,
-    p: Mapping[str, arb],
-    varying: Varying,
+    family: Family,
     z: Sequence[Sequence[arb]],
     value: arb,
     bits: int,
@@ -88,16 +83,16 @@ def _chain(
     pair: bool,
 ) -> list[Entry]:
     """`crossing` with orbits this far from the point."""
-    n = motif.node
+    n = family.motif.node
     nodes = [list(node[:n]) for node in z]
     center = texts(value.mid(), DIGITS)[0]
     if turn is None:
         ends = [_shifted(center, sign, apart) for sign in (-1, 1)]
-        along, starts = Along(motif, p, varying, None, ball(center)), [nodes, nodes]
+        along, starts = Along(family, None, ball(center)), [nodes, nodes]
     else:
         place = turn.block, turn.component
         center = texts(nodes[place[0]][place[1]].mid(), DIGITS)[0]
-        along = Along(motif, p, varying, place, ball(_shifted(center, 1, apart)))
+        along = Along(family, place, ball(_shifted(center, 1, apart)))
         starts = [
             [[a + b * ball(apart) * sign for a, b in zip(node[:n], node[n:])] for node in z]
             for sign in (-1, 1)
@@ -108,43 +103,31 @@ def _chain(
     tile = lay(along, center, f"{float(apart) * WIDTH:.3g}", nodes, value)
     if tile is None:
         raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
-    if pair and not away_from_one(System(motif, {**p, **varying.at(tile.values())}), tile.balls()):
+    if pair and not away_from_one(family.system(tile.values()), tile.balls()):
         raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the multipliers about the point")
-    boxes = [orbit_at(motif, p, varying, end, start, bits) for end, start in zip(ends, starts)]
+    boxes = [orbit_at(family, end, start, bits) for end, start in zip(ends, starts)]
     if not all(tile.holds(end, box) for end, box in zip(ends, boxes)):
         raise Obstacle(Step.EXISTENCE, Remedy.BITS, detail="the branch about the point")
-    one, other = (orbit_entry(motif, p, varying, end, box) for end, box in zip(ends, boxes))
-    return [one, tile_box(motif, _with_basis(motif, p, varying, tile)), other]
+    one, other = (orbit_entry(family, end, box) for end, box in zip(ends, boxes))
+    with_basis = replace(tile, basis=basis_texts(family.system(tile.values()), tile.balls()))
+    return [one, tile_box(family.motif, with_basis), other]
 
 
-def orbit_at(
-    motif: Motif,
-    p: Mapping[str, arb],
-    varying: Varying,
-    value: str,
-    start: Sequence[Sequence[arb]],
-    bits: int,
-) -> Box:
+def orbit_at(family: Family, value: str, start: Sequence[Sequence[arb]], bits: int) -> Box:
     """The orbit near `start` at a value of the parameter.
 
     Raises
     ------
     Obstacle
     """
-    system = System(motif, {**p, **varying.at(ball(value))})
+    system = family.system(ball(value))
     z, _ = refine(system, start, [], bits)
     return enclose(system, z, [], bits)
 
 
-def orbit_entry(motif: Motif, p: Mapping[str, arb], varying: Varying, value: str, box: Box) -> Entry:
+def orbit_entry(family: Family, value: str, box: Box) -> Entry:
     """The orbit for a certificate, with a basis that shows its multipliers plainly."""
-    system = System(motif, {**p, **varying.at(ball(value))})
-    return orbit_box(motif, box, value, basis_texts(system, box.balls()[0]))
-
-
-def _with_basis(motif: Motif, p: Mapping[str, arb], varying: Varying, tile: Tile) -> Tile:
-    system = System(motif, {**p, **varying.at(tile.values())})
-    return replace(tile, basis=basis_texts(system, tile.balls()))
+    return orbit_box(family.motif, box, value, basis_texts(family.system(ball(value)), box.balls()[0]))
 
 
 def _shifted(center: str, sign: int, distance: str) -> str:

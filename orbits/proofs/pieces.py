@@ -14,9 +14,10 @@ from orbits.proofs.certificates import Entry, certificate, tile_box
 from orbits.proofs.checks import check_symmetry
 from orbits.proofs.crossing import orbit_at, orbit_entry
 from orbits.proofs.enclosing import Box, refine
-from orbits.proofs.equations import Motif, System
+from orbits.proofs.equations import Motif
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.proof import Proof
+from orbits.proofs.special import Family
 from orbits.proofs.stability import stable_in_basis
 from orbits.proofs.tiles import Along, Tile, lay
 from orbits.proofs.varying import Varying
@@ -164,8 +165,7 @@ def prove_piece(
     given = {name: decimal(value) for name, value in parameters.items() if name not in varying.numbers}
     check_symmetry(motif, given, varying)
     with precision(BITS):
-        p = {name: ball(value) for name, value in given.items()}
-        cover = _Cover(motif, p, varying)
+        cover = _Cover(Family(motif, {name: ball(value) for name, value in given.items()}, varying))
         first, last = ((end and _chain(end, guess, 0.5 * (low + high))) for end in ends)
         obstacle = cover.run(guess, low, high, first, last)
     real, steady = cover.verdict or (None, None)
@@ -203,8 +203,8 @@ def _chain(end: Proof, guess: Callable[[float], np.ndarray], inside: float) -> l
 class _Cover:
     """Tiles laid one after another from the left to the right end, and the orbits that join them."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying) -> None:
-        self.motif, self.p, self.varying = motif, p, varying
+    def __init__(self, family: Family) -> None:
+        self.family = family
         self.tiles: list[Tile] = []
         self.boxes: list[Entry] = []
         self.verdict: tuple[bool | None, bool | None] | None = None
@@ -229,7 +229,7 @@ class _Cover:
             else:
                 at = repr(low)
                 box = self._orbit(at, guess(low))
-                self.boxes.append(orbit_entry(self.motif, self.p, self.varying, at, box))
+                self.boxes.append(orbit_entry(self.family, at, box))
         except Obstacle as obstacle:
             return obstacle
         goal = last[-1]["parameter"][0] if last else repr(high)
@@ -262,7 +262,7 @@ class _Cover:
 
     def _orbit(self, value: str, start: Sequence[Sequence[float]] | np.ndarray) -> Box:
         nodes = [[ball(float(v)) for v in node] for node in start]
-        return orbit_at(self.motif, self.p, self.varying, value, nodes, BITS)
+        return orbit_at(self.family, value, nodes, BITS)
 
     def _next(
         self, at: str, box: Box, width: float, least: float, goal: str, last: list[Entry] | None
@@ -271,17 +271,17 @@ class _Cover:
 
         The first tile may leave a verdict open only where it is narrower than `least`.
         """
-        motif, varying = self.motif, self.varying
-        where = f"{varying.name} = {float(at):.6g}"
+        family = self.family
+        where = f"{family.varying.name} = {float(at):.6g}"
         smaller = Obstacle(Step.PIECE, Remedy.SMALLER, detail=where)
         # a little to the left of `at`, so that the orbit lies within
         center = repr(float(at) + 0.49 * width)
         half = f"{width / 2:.6g}"
         before = np.array([[float(mid) for mid, _ in node] for node in box.nodes])
         nodes = self.tiles[-1].end(float(center)) if self.tiles else before
-        along = Along(motif, self.p, varying, None, ball(center))
+        along = Along(family, None, ball(center))
         try:
-            system = System(motif, {**self.p, **varying.at(ball(center))})
+            system = family.system(ball(center))
             z, _ = refine(system, [[ball(float(v)) for v in node] for node in nodes], [], BITS)
             tile = lay(along, center, half, z, ball(center))
             if tile is None or not tile.holds(at, box):
@@ -305,18 +305,17 @@ class _Cover:
             return smaller
         self.tiles.append(tile)
         self.verdict = verdict
-        self.boxes += [tile_box(motif, tile), orbit_entry(motif, self.p, varying, reached, following)]
+        self.boxes += [tile_box(family.motif, tile), orbit_entry(family, reached, following)]
         return reached, following
 
     def _judged(self, tile: Tile) -> tuple[tuple[bool | None, bool | None], Tile]:
         """Whether all orbits of a tile are real, and stable, with room to spare: another arithmetic must come to the same."""
         values, balls = tile.values(), tile.balls()
-        here = {**self.p, **self.varying.at(values)}
-        roomy = {**self.p, **self.varying.at(_wider(values))}
-        steady, basis = stable_in_basis(
-            System(self.motif, roomy), [[_wider(v) for v in node] for node in balls]
+        roomy = self.family.system(_wider(values))
+        steady, basis = stable_in_basis(roomy, [[_wider(v) for v in node] for node in balls])
+        return (examine(self.family.motif, self.family.numbers(values), balls).real, steady), replace(
+            tile, basis=basis
         )
-        return (examine(self.motif, here, balls).real, steady), replace(tile, basis=basis)
 
 
 def _box_of(entry: Entry) -> Box:

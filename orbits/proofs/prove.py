@@ -19,7 +19,7 @@ from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import Obstacle, ProofError, Remedy, Step
 from orbits.proofs.proof import Proof
 from orbits.proofs.resting import AtSlip
-from orbits.proofs.special import AtBorder, AtMultiplier, AtPair, Normal, Vanishing
+from orbits.proofs.special import AtBorder, AtMultiplier, AtPair, Family, Normal, Vanishing
 from orbits.proofs.stability import basis_texts, stable
 from orbits.proofs.starting import chain as maps_of
 from orbits.proofs.starting import eigenpair, eigenvector, touching_phase, vanishing_margin
@@ -149,14 +149,14 @@ def prove_special(
     proof = Proof(kind, motif, given, varying)
 
     def attempt(at: int) -> Proof:
-        p = {name: ball(number) for name, number in given.items()}
-        here = p | varying.at(ball(value))
+        family = Family(motif, {name: ball(number) for name, number in given.items()}, varying)
+        here = family.numbers(ball(value))
         check_parameters(motif, here)
         if not len(motif):
-            return _slip(proof, p, here, value, at)
+            return _slip(proof, family, value, at)
         x = [[ball(float(v)) for v in node] for node in nodes]
         vanishing = vanishing_margin(motif, here, x, *margin) if margin else None
-        system, z, e, turn = _defining(kind, motif, p, here, x, varying, value, vanishing)
+        system, z, e, turn = _defining(kind, family, x, value, vanishing)
         z, e = _refined(system, nodes, e, at, z)
         box = enclose(system, z, e, at)
         balls, extras = box.balls()
@@ -168,10 +168,10 @@ def prove_special(
             zero = Zero(
                 vanishing.name, vanishing.event, extras[1] if vanishing.inside else None, vanishing.side
             )
-        reality = examine(motif, p | varying.at(extras[0]), inside, zero)
+        reality = examine(motif, family.numbers(extras[0]), inside, zero)
         broken = (reality.broken.name, reality.broken.event) if reality.broken else None
         turning = turn if kind == "fold" else None
-        chain = crossing(motif, p, varying, z, e[0], at, turning, pair=kind == "neimark-sacker")
+        chain = crossing(family, z, e[0], at, turning, pair=kind == "neimark-sacker")
         chain[1]["kind"] = kind if vanishing is None else "border"
         if vanishing is not None:
             chain[1]["conditions"] = conditions(motif, vanishing)
@@ -189,50 +189,43 @@ def prove_special(
     return _with_bits(attempt, proof, bits or 192 + 8 * len(motif), given)
 
 
-def _slip(proof: Proof, p: Mapping[str, arb], here: Mapping[str, arb], value: float, bits: int) -> Proof:
+def _slip(proof: Proof, family: Family, value: float, bits: int) -> Proof:
     """Where the stuck absorber slips: the push just reaches friction."""
-    flights = proof.motif.flights(here)
+    flights = family.motif.flights(family.numbers(ball(value)))
     one, other = (float(flights.resting(phase)[0].mid()) for phase in (ball(0), ball(float(np.pi / 2))))
     bias = float(ball(0) + flights.bias)
     side = min((1, -1), key=lambda s: float(ball(0) + flights.limit[s]) - s * bias)
     phase = float(np.arctan2(other - bias, one - bias)) + (0.0 if side > 0 else float(np.pi))
-    assert proof.varying is not None
-    system = AtSlip(proof.motif, p, proof.varying, side)
+    system = AtSlip(family, side)
     z, e = refine(system, [[ball(phase)]], [ball(value)], bits)
     if not abs(float(e[0]) - value) < PROVING.near:
         raise Obstacle(Step.REFINEMENT, Remedy.START)
     box = enclose(system, z, e, bits)
-    chain = crossing(proof.motif, p, proof.varying, [], e[0], bits)
-    sides = (1, -1) if mirrored(proof.parameters, proof.varying) else (side,)
+    chain = crossing(family, [], e[0], bits)
+    sides = (1, -1) if mirrored(proof.parameters, family.varying) else (side,)
     chain[1] |= {"kind": "border", "conditions": [["flight", 0, side] for side in sides]}
     return replace(proof, box=box, real=True, chain=tuple(chain), bits=bits)
 
 
 def _defining(
-    kind: str,
-    motif: Motif,
-    p: Mapping[str, arb],
-    here: Mapping[str, arb],
-    x: list[list[arb]],
-    varying: Varying,
-    value: float,
-    vanishing: Vanishing | None,
+    kind: str, family: Family, x: list[list[arb]], value: float, vanishing: Vanishing | None
 ) -> tuple[System, list[list[arb]], list[arb], Normal | None]:
     """The defining system, where to start, and the largest component of the eigenvector."""
+    motif, here = family.motif, family.numbers(ball(value))
     if vanishing is not None:
         extras = [ball(value)]
         if vanishing.inside:
             extras.append(touching_phase(motif, here, x, vanishing))
-        return AtBorder(motif, p, varying, vanishing), x, extras, None
+        return AtBorder(family, vanishing), x, extras, None
     factors = maps_of(motif, here, x)
     if kind == "neimark-sacker":
         phi, normal, angle = eigenpair(factors)
-        system: System = AtPair(motif, p, varying, normal)
+        system: System = AtPair(family, normal)
         extras = [ball(value), ball(angle)]
     else:
         mu = MULTIPLIERS[kind]
         phi, normal = eigenvector(factors, mu)
-        system, extras = AtMultiplier(motif, p, varying, mu, normal), [ball(value)]
+        system, extras = AtMultiplier(family, mu, normal), [ball(value)]
     return system, [a + b for a, b in zip(x, phi)], extras, normal
 
 

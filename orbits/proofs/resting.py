@@ -15,12 +15,9 @@ from orbits.proofs.equations import Motif
 from orbits.proofs.jets import sqrt
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.proofs.proof import Proof
-from orbits.proofs.special import AtParameter
-from orbits.proofs.varying import Varying
+from orbits.proofs.special import AtParameter, Family
 
 if TYPE_CHECKING:
-    from flint import arb
-
     from orbits.proofs.flights import Flights
     from orbits.proofs.jets import Number
 
@@ -28,8 +25,8 @@ if TYPE_CHECKING:
 class AtSlip(AtParameter):
     """Where friction just holds the stuck absorber; unknowns the phase at which the push is largest, and the parameter."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, side: int) -> None:
-        super().__init__(motif, p, varying)
+    def __init__(self, family: Family, side: int) -> None:
+        super().__init__(family)
         self.k = self.length = 1
 
         def row(z: Sequence[Number], extras: Sequence[Number]) -> Number:

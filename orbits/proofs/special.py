@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.jets import Jet, partial, sin_cos
@@ -38,12 +38,28 @@ class Normal:
     component: int
 
 
+class Family(NamedTuple):
+    """All orbits of a motif along the parameter that varies; `p` are the numbers that do not move with it."""
+
+    motif: Motif
+    p: Mapping[str, arb]
+    varying: Varying
+
+    def numbers(self, value: arb) -> dict[str, arb]:
+        """All numbers of the machine at a value of the parameter."""
+        return {**self.p, **self.varying.at(value)}
+
+    def system(self, value: arb) -> System:
+        """The orbit at a value of the parameter."""
+        return System(self.motif, self.numbers(value))
+
+
 class AtParameter(System):
     """Base of the systems in which the parameter that varies is an unknown, the first of the further ones."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying) -> None:
-        super().__init__(motif, p)
-        self.varying, self.m = varying, 1
+    def __init__(self, family: Family) -> None:
+        super().__init__(family.motif, family.p)
+        self.varying, self.m = family.varying, 1
 
     def numbers(self, extras: Sequence[Number]) -> Mapping[str, Number]:
         """The parameters, at the unknown one."""
@@ -55,10 +71,10 @@ class AtMultiplier(AtParameter):
 
     directions = 1
 
-    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, mu: int, normal: Normal) -> None:
-        super().__init__(motif, p, varying)
+    def __init__(self, family: Family, mu: int, normal: Normal) -> None:
+        super().__init__(family)
         self.mu, self.normal = mu, normal
-        self.n = motif.node
+        self.n = self.motif.node
         self.k = self.n * (1 + self.directions)
         place = self.n + normal.component
         self.borders = ((normal.block, lambda z, e: z[place] - 1),)
@@ -100,8 +116,8 @@ class AtPair(AtMultiplier):
 
     directions = 2
 
-    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, normal: Normal) -> None:
-        super().__init__(motif, p, varying, 1, normal)
+    def __init__(self, family: Family, normal: Normal) -> None:
+        super().__init__(family, 1, normal)
         self.m = 2
         imaginary = 2 * self.n + normal.component
         self.borders = (*self.borders, (normal.block, lambda z, e: z[imaginary]))
@@ -149,8 +165,8 @@ class Vanishing:
 class AtBorder(AtParameter):
     """Orbits at a border; further unknowns p and, for a margin inside a flight, the phase at which it vanishes."""
 
-    def __init__(self, motif: Motif, p: Mapping[str, arb], varying: Varying, vanishing: Vanishing) -> None:
-        super().__init__(motif, p, varying)
+    def __init__(self, family: Family, vanishing: Vanishing) -> None:
+        super().__init__(family)
         self.vanishing = vanishing
         i = vanishing.event
         if vanishing.inside:

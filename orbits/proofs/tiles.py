@@ -11,17 +11,15 @@ at q = 0 and its derivative along s, which is small since s is tangent: r shrink
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from orbits.proofs.balls import ball, library, texts, upper_text
 from orbits.proofs.elimination import Singular, solve
 from orbits.proofs.enclosing import Box
-from orbits.proofs.equations import Motif
 from orbits.proofs.jets import Jet, partial
-from orbits.proofs.special import AtParameter
-from orbits.proofs.varying import Varying
+from orbits.proofs.special import AtParameter, Family
 
 if TYPE_CHECKING:
     from flint import arb
@@ -40,10 +38,8 @@ Place = tuple[int, int]
 class Along(AtParameter):
     """A branch along one of its unknowns, the parameter where `place` is None; the coordinate's value is `at`."""
 
-    def __init__(
-        self, motif: Motif, p: Mapping[str, arb], varying: Varying, place: Place | None, at: Number
-    ) -> None:
-        super().__init__(motif, p, varying)
+    def __init__(self, family: Family, place: Place | None, at: Number) -> None:
+        super().__init__(family)
         self.place, self.at = place, at
         block, component = place or (0, 0)
         self.borders = ((block, lambda z, e: (e[0] if place is None else z[component]) - self.at),)
