@@ -33,35 +33,7 @@ def find_attractor(
     observed: bool = True,
     **parameters: float,
 ) -> Attractor:
-    """Simulate, leave out the transient, and recognise what is left.
-
-    Parameters
-    ----------
-    model : Model or Machine
-    start : mapping or ndarray, optional
-        As for `orbits.simulation.simulate`; by default the absorber starts from rest in the middle of the cavity, a declared machine with all states zero.
-    transient : float, optional
-        Forcing periods left out first, 300 (of a self-excited machine events, 100).
-    max_period : int
-        Longest recurrence looked for, in forcing periods (events of a self-excited cycle: 25 times as many).
-    tolerance : float, optional
-        Largest difference of two points, relative to 1 + points, that may count as a return, 1e-6 (1e-5 of a declared machine); the orbit is then solved for.
-    patience : int, optional
-        How often the transient is prolonged, fourfold (page: twofold, four times), when nothing recurs; 2.
-    observed : bool
-        Whether a motion that does not recur is followed until its statistics settle.
-    **parameters
-        Parameters that are no fields of the machine (`amplitude`), or that replace them.
-
-    Returns
-    -------
-    Attractor
-
-    Raises
-    ------
-    SimulationError
-        If the start or the lengths cannot be.
-    """
+    """Simulate, leave out the transient, and recognise what is left: the work of `Varying.attractor`, which says what is given."""
     if max_period < 1:
         raise SimulationError(f"max_period = {max_period}: give a whole number, 1 or above")
     if transient is not None and not (np.isfinite(transient) and transient >= 0.0):
@@ -94,23 +66,7 @@ def beginning_with(orbit: Orbit, transient: float, max_period: int) -> dict[str,
 def different_attractors(
     model: Varying, count: int, seed: int = 0, size: float = 1.0, **options: Any
 ) -> list[Attractor]:
-    """The different attractors that `count` random starts lead to, in the order in which they are met; mirror images are one.
-
-    Parameters
-    ----------
-    model : Model or Machine
-    count, seed : int
-        Starts, and the seed of their generator.
-    size : float
-        Of a declared machine: states are drawn within +-`size`.
-    **options
-        As for `find_attractor`, parameters of the machine included.
-
-    Raises
-    ------
-    SimulationError
-        If no start can be simulated.
-    """
+    """The attractors that random starts lead to: the work of `Varying.attractors`, which says what is given."""
     generator = np.random.default_rng(seed)
     params = model.vector({k: v for k, v in options.items() if k in model.parameter_names})
     found: list[Attractor] = []

@@ -87,7 +87,7 @@ def sweep(
     start : mapping or ndarray, optional
         Start at the first value.
     transient, max_period
-        As for `find_attractor`, at every value.
+        As for `Varying.attractor`, at every value.
     nudge : float
         A velocity is changed by this at each value, as noise would: a motion that has become unstable is then
         left. 0 for none.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from orbits.contacts.changes import Change, Grows, What
 from orbits.contacts.letters import STICK
 from orbits.flows.solving import newton
 from orbits.protocol import CycleProblem
-from orbits.settings import BORDERING, SOLVING
+from orbits.settings import BORDERING, GROWING, SOLVING
 
 
 def parameter_unit(problem: CycleProblem, p: float) -> float:
@@ -27,54 +28,67 @@ class Held(NamedTuple):
     size: float
 
 
-def climb(
-    other: CycleProblem, guess: np.ndarray, first: int, change: Change, p: float, sizes: tuple[float, ...]
-) -> list[Held]:
-    """Solve with what grows beyond the border held at each of the sizes in turn, as long as that converges."""
-    found: list[Held] = []
-    u, q = guess, p
-    for wanted in sizes:
-        held = hold(other, u, q, first, change, p, wanted)
-        if held is None:
-            break
-        found.append(held)
-        u, q = held.u, held.p
-    return found
+class Growing(NamedTuple):
+    """What grows from nothing beyond a border at p: in orbits with a new word, at one of its events, by a change."""
 
+    problem: CycleProblem
+    first: int
+    change: Change
+    p: float
 
-def hold(
-    other: CycleProblem, guess: np.ndarray, q: float, first: int, change: Change, p: float, wanted: float
-) -> Held | None:
-    """Solve with what grows beyond the border at p held at a size; None where there is no such solution near the border."""
-    size = other.dimension
-    n = size // other.length
-    border = np.zeros(size + 1)
-    u, here, following = guess.copy(), first * n, (first + 1) * n % size
-    if change.grows is Grows.GAP and not other.forced:
-        border[here], u[here] = 1.0, wanted
-    elif change.grows is Grows.GAP:
-        border[here], border[following] = -1.0, 1.0
-        if change.what is What.CROSSINGS_APPEAR:
-            u[here] = 0.5 * (u[here] + u[following] - wanted)
-            u[following] = u[here] + wanted
-        elif change.start == change.stop:  # the later event stays: friction gives way there
-            u[here] = u[following] - wanted
+    def climb(self, guess: np.ndarray, sizes: tuple[float, ...]) -> list[Held]:
+        """Solve with it held at each of the sizes in turn, as long as that converges."""
+        found: list[Held] = []
+        u, q = guess, self.p
+        for wanted in sizes:
+            held = self.hold(u, q, wanted)
+            if held is None:
+                break
+            found.append(held)
+            u, q = held.u, held.p
+        return found
+
+    def outwards(self, found: list[Held]) -> Iterator[Held]:
+        """The solutions found from small to large, and on to larger sizes."""
+        yield from found[-2::-1]
+        held: Held | None = found[0]
+        while held is not None and held.size < GROWING.first:
+            held = self.hold(held.u, held.p, min(10.0 * held.size, GROWING.first))
+            if held is not None:
+                yield held
+
+    def hold(self, guess: np.ndarray, q: float, wanted: float) -> Held | None:
+        """Solve with it held at a size; None where there is no such solution near the border."""
+        other, first, change, p = self
+        size = other.dimension
+        n = size // other.length
+        border = np.zeros(size + 1)
+        u, here, following = guess.copy(), first * n, (first + 1) * n % size
+        if change.grows is Grows.GAP and not other.forced:
+            border[here], u[here] = 1.0, wanted
+        elif change.grows is Grows.GAP:
+            border[here], border[following] = -1.0, 1.0
+            if change.what is What.CROSSINGS_APPEAR:
+                u[here] = 0.5 * (u[here] + u[following] - wanted)
+                u[following] = u[here] + wanted
+            elif change.start == change.stop:  # the later event stays: friction gives way there
+                u[here] = u[following] - wanted
+            else:
+                u[following] = u[here] + wanted
         else:
-            u[following] = u[here] + wanted
-    else:
-        near = BORDERING.together * parameter_unit(other, p)
-        speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
-        border[here : here + n], border[size] = slopes, by_parameter
-        u[here : here + n] += push * (wanted - speed) / float(slopes @ push)
-        if (
-            len(change.events) > 1
-            and other.word.letter(first + 1).kind == STICK
-            and abs(speed) > BORDERING.together
-        ):  # it comes to rest the sooner the slower it is
-            clock = here if not other.forced else following
-            since = u[following] - u[here] if other.forced else u[here]
-            u[clock] += since * (wanted / speed - 1.0)
-    u, q, residual, tangent = newton(other.equations, u, q, border)
-    if not residual < SOLVING.residual:
-        return None
-    return Held(u, q, tangent, wanted)
+            near = BORDERING.together * parameter_unit(other, p)
+            speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
+            border[here : here + n], border[size] = slopes, by_parameter
+            u[here : here + n] += push * (wanted - speed) / float(slopes @ push)
+            if (
+                len(change.events) > 1
+                and other.word.letter(first + 1).kind == STICK
+                and abs(speed) > BORDERING.together
+            ):  # it comes to rest the sooner the slower it is
+                clock = here if not other.forced else following
+                since = u[following] - u[here] if other.forced else u[here]
+                u[clock] += since * (wanted / speed - 1.0)
+        u, q, residual, tangent = newton(other.equations, u, q, border)
+        if not residual < SOLVING.residual:
+            return None
+        return Held(u, q, tangent, wanted)

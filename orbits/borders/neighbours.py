@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orbits.borders.distance import SHRINKS, gap, tends, tends_to
-from orbits.borders.holding import Held, climb, hold, parameter_unit
+from orbits.borders.holding import Growing, Held, parameter_unit
 from orbits.borders.rewriting import durations_after, edits_at, rewritten
 from orbits.contacts.changes import Change, Grows
 from orbits.contacts.letters import HIT, SLIP, STICK
@@ -95,30 +95,27 @@ class Begun:
     orbit : Orbit
         The border orbit.
     p : float
-    start : (problem, unknowns, where what grows stands, its change) or None
-        At the border; None where the edits make no word.
+    start : (Growing, unknowns) or None
+        What grows as the edits have it, and the new orbit at the border; None where the edits make no word.
     """
 
     def __init__(self, problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> None:
         self.orbit, self.p = orbit, p
-        self.start = with_edits(problem, orbit, edits)
+        self.start = with_edits(problem, orbit, p, edits)
         self._climbed: dict[tuple[float, ...], list[Held]] = {}
 
     @cached_property
-    def growing(self) -> tuple[int, Change] | None:
-        """Where what grows from nothing stands, and its change; None where the new word is regular at the border."""
+    def growing(self) -> Growing | None:
+        """What grows from nothing; None where the new word is regular at the border."""
         assert self.start is not None
-        other, guess, first, change = self.start
-        if change.grows is not Grows.MARGIN:
-            return first, change
-        return vanishing_in(other, guess, self.p, first, change)
+        stated, guess = self.start
+        return stated if stated.change.grows is not Grows.MARGIN else vanishing_in(stated, guess)
 
     def climbed(self, sizes: tuple[float, ...]) -> list[Held]:
-        """The solutions in which what grows has these sizes; see `climb`."""
+        """The solutions in which what grows has these sizes; see `Growing.climb`."""
         if sizes not in self._climbed:
             assert self.start is not None and self.growing is not None
-            other, guess = self.start[:2]
-            self._climbed[sizes] = climb(other, guess, *self.growing, self.p, sizes)
+            self._climbed[sizes] = self.growing.climb(self.start[1], sizes)
         return self._climbed[sizes]
 
 
@@ -184,14 +181,13 @@ def grown(
     """
     if begun.start is None:
         return None
-    orbit, p = begun.orbit, begun.p
-    other, guess, _, change = begun.start
-    if change.grows is Grows.MARGIN:
-        found = _beside(other, guess, p, orbit, steady)
+    (stated, guess), orbit = begun.start, begun.orbit
+    other = stated.problem
+    if stated.change.grows is Grows.MARGIN:
+        found = _beside(other, guess, begun.p, orbit, steady)
         if found is not None or begun.growing is None:
             return found
     assert begun.growing is not None
-    first, change = begun.growing
     for sizes in ways:
         found = begun.climbed(sizes)
         if (
@@ -200,15 +196,15 @@ def grown(
             found = [held for held in found if stable_at(other, held.u, held.p)]
             if not found:
                 return None
-        if found and _begins_at(orbit, other, first, change, p, found):
+        if found and _begins_at(orbit, begun.growing, found):
             return Grown(other, *found[-1][:3])
     return None
 
 
 def with_edits(
-    problem: CycleProblem, orbit: Orbit, edits: list[Edit]
-) -> tuple[CycleProblem, np.ndarray, int, Change] | None:
-    """The problem of the new word, its unknowns at the border, and where what grows stands, with its change; None for no word."""
+    problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]
+) -> tuple[Growing, np.ndarray] | None:
+    """What grows in the new word, and the unknowns of its orbit at the border; None for no word."""
     empty, half = not len(problem.word), problem.length
     halved = problem.symmetric
     if empty:
@@ -232,16 +228,15 @@ def with_edits(
         other = problem.sibling(word, problem.periods, halved)
     except ValueError:
         return None
-    return other, other.reduce(nodes), first, edits[0].change
+    return Growing(other, first, edits[0].change, p), other.reduce(nodes)
 
 
-def vanishing_in(
-    other: CycleProblem, guess: np.ndarray, p: float, first: int, change: Change
-) -> tuple[int, Change] | None:
-    """Where another round still has what vanishes at the border, and a change that says that it grows.
+def vanishing_in(stated: Growing, guess: np.ndarray) -> Growing | None:
+    """What grows in another round, which still has what vanishes at the border.
 
     An impact of vanishing speed, or a stick of vanishing length; there the equations are singular.
     """
+    other, _, change, p = stated
     if not len(other.word):
         return None
     orbit, near = other.orbit(guess, p), BORDERING.together * parameter_unit(other, p)
@@ -254,23 +249,22 @@ def vanishing_in(
         else:
             continue
         events = other.word.events[place : place + 2]
-        return place, replace(change, start=place, stop=place, events=events, grows=grows)
+        change = replace(change, start=place, stop=place, events=events, grows=grows)
+        return Growing(other, place, change, p)
     return None
 
 
-def _begins_at(
-    border: Orbit, other: CycleProblem, first: int, change: Change, p: float, found: list[Held]
-) -> bool:
+def _begins_at(border: Orbit, growing: Growing, found: list[Held]) -> bool:
     """Whether the solutions, from large to small, are real ones that tend to the border orbit.
 
     Next to the border margins that vanish there are too small to have a sign: those of the same motion further away tell.
     """
-    near, second, size = found[-1], None, found[-1].size
+    other, near, second, size = growing.problem, found[-1], None, found[-1].size
     values = margins_of(other, near.u, near.p)
     if values.min() < REAL:
         return False
     undecided = np.abs(values) < BORDERING.shown
-    for held in _outwards(other, first, change, p, found):
+    for held in growing.outwards(found):
         second, size = second or held, held.size
         if not undecided.any():
             break
@@ -284,19 +278,18 @@ def _begins_at(
     apart = gap(border, other.orbit(near.u, near.p))
     if not tends(apart, lambda: gap(border, other.orbit(further.u, further.p))):
         return False
-    return _keeps_tending(border, other, first, change, p, near, apart)
+    return _keeps_tending(border, growing, near, apart)
 
 
-def _keeps_tending(
-    border: Orbit, other: CycleProblem, first: int, change: Change, p: float, near: Held, apart: float
-) -> bool:
+def _keeps_tending(border: Orbit, growing: Growing, near: Held, apart: float) -> bool:
     """Whether the solutions go on tending to the border orbit, and to its place, at still smaller sizes, as far as they can be solved for.
 
     Those of a branch that only passes by do so until they are as far as that branch's own border. `apart` is the distance of `near`.
     """
+    other, p = growing.problem, growing.p
     placed = BORDERING.placed * parameter_unit(other, p)
     for _ in range(CLOSER):
-        held = hold(other, near.u, near.p, first, change, p, 0.1 * near.size)
+        held = growing.hold(near.u, near.p, 0.1 * near.size)
         if held is None:
             break
         closer = gap(border, other.orbit(held.u, held.p))
@@ -306,16 +299,6 @@ def _keeps_tending(
             return False
         near, apart = held, closer
     return True
-
-
-def _outwards(other: CycleProblem, first: int, change: Change, p: float, found: list[Held]) -> Iterator[Held]:
-    """The solutions from small to large, and on to larger sizes."""
-    yield from found[-2::-1]
-    held: Held | None = found[0]
-    while held is not None and held.size < GROWING.first:
-        held = hold(other, held.u, held.p, first, change, p, min(10.0 * held.size, GROWING.first))
-        if held is not None:
-            yield held
 
 
 def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, steady: bool) -> Grown | None:

@@ -46,16 +46,16 @@ def _near_border(border: Place, edit: Edit) -> tuple[CycleProblem, list[Held]]:
     begun = border.begun(edit)
     if begun.start is None:
         return border.problem, []
-    other, guess = begun.start[:2]
+    stated, guess = begun.start
     if begun.growing is None:
-        return other, [Held(guess, border.p, guess, 0.0)]
+        return stated.problem, [Held(guess, border.p, guess, 0.0)]
     climbed = begun.climbed(BORDERING.sizes[0])
     if len(climbed) < 2:
-        return other, []
+        return stated.problem, []
     far, near = (abs(held.p - border.p) for held in climbed[-2:])
     # of the distances at which something has a tenth of its size none is more than a tenth, but for higher orders
     nearer = near <= max(0.5 * far, BORDERING.placed * parameter_unit(border.problem, border.p))
-    return other, climbed if nearer else []
+    return stated.problem, climbed if nearer else []
 
 
 def derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndarray, float] | None:

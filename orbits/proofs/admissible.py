@@ -18,6 +18,8 @@ from orbits.proofs.obstacles import Obstacle, Remedy, Step
 if TYPE_CHECKING:
     from flint import arb
 
+    from orbits.proofs.elimination import Nodes
+
 Rates = tuple["arb", "arb", "arb", Any]
 """A function and its first three rates in time, at an instant or over an interval."""
 
@@ -71,9 +73,7 @@ class Reality:
         return [Obstacle(Step.ADMISSIBILITY, Remedy.BORDER, c.event, c.name) for c in self.open]
 
 
-def examine(
-    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], zero: Zero = NOTHING
-) -> Reality:
+def examine(motif: Motif, p: Mapping[str, arb], nodes: Nodes, zero: Zero = NOTHING) -> Reality:
     """Decide every condition for all solutions with nodes in these balls.
 
     Parameters
@@ -112,9 +112,7 @@ def well_formed(motif: Motif) -> bool:
     return len(motif) > 0
 
 
-def conditions(
-    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], zero: Zero = NOTHING
-) -> Iterator[Condition]:
+def conditions(motif: Motif, p: Mapping[str, arb], nodes: Nodes, zero: Zero = NOTHING) -> Iterator[Condition]:
     """All inequalities of the orbit, the one that vanishes at a border left out or marked."""
     flights = motif.flights(p)
     for i in range(len(motif)):

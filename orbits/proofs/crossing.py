@@ -6,7 +6,6 @@ needed to check it: one orbit where the multiplier or the margin has one sign, o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from decimal import Decimal, localcontext
 from typing import TYPE_CHECKING
@@ -21,6 +20,8 @@ from orbits.proofs.tiles import DIGITS, Along, lay
 
 if TYPE_CHECKING:
     from flint import arb
+
+    from orbits.proofs.elimination import Nodes
 
 APART = ("2e-11", "2e-14", "2e-17", "2e-20", "2e-26", "2e-32", "2e-38")
 """Of either orbit from the special point; nearer where the branch bends sharply or a long word's map is known too roughly in the tile."""
@@ -38,7 +39,7 @@ WIDTH = 1.25  # of the tile
 
 def crossing(
     family: Family,
-    z: Sequence[Sequence[arb]],
+    z: Nodes,
     value: arb,
     bits: int,
     turn: Normal | None = None,
@@ -75,7 +76,7 @@ def crossing(
 
 def _chain(
     family: Family,
-    z: Sequence[Sequence[arb]],
+    z: Nodes,
     value: arb,
     bits: int,
     turn: Normal | None,
@@ -113,7 +114,7 @@ def _chain(
     return [one, tile_box(family.motif, with_basis), other]
 
 
-def orbit_at(family: Family, value: str, start: Sequence[Sequence[arb]], bits: int) -> Box:
+def orbit_at(family: Family, value: str, start: Nodes, bits: int) -> Box:
     """The orbit near `start` at a value of the parameter.
 
     Raises

@@ -57,7 +57,7 @@ class Box:
         return max((float(rad) for _, rad in every), default=0.0)
 
 
-def refine(system: System, nodes: Sequence[Sequence[arb]], extras: Sequence[arb], bits: int) -> Solution:
+def refine(system: System, nodes: Nodes, extras: Sequence[arb], bits: int) -> Solution:
     """Newton's method on the middles (of parameters as well) until it stands still.
 
     Raises
@@ -73,7 +73,7 @@ def refine(system: System, nodes: Sequence[Sequence[arb]], extras: Sequence[arb]
         system.p = balls
 
 
-def _newton(system: System, nodes: Sequence[Sequence[arb]], extras: Sequence[arb], bits: int) -> Solution:
+def _newton(system: System, nodes: Nodes, extras: Sequence[arb], bits: int) -> Solution:
     z = [[value.mid() for value in node] for node in nodes]
     e = [value.mid() for value in extras]
     goal = library().arb(2) ** (-(3 * bits) // 4)

@@ -17,7 +17,7 @@ from orbits.proofs.jets import partial, variables
 if TYPE_CHECKING:
     from flint import arb
 
-    from orbits.proofs.jets import Number
+    from orbits.proofs.jets import Number, Row
 
 MIRRORED = {"L": "R", "R": "L"}
 
@@ -82,7 +82,7 @@ class Motif:
         """The mode before event i."""
         return self.modes[i - 1] if i > 0 else self.twist * self.modes[-1]
 
-    def closing(self, node: Sequence[Number], p: Mapping[str, Number]) -> list[Any]:
+    def closing(self, node: Row, p: Mapping[str, Number]) -> list[Any]:
         """The first node again, at the end of the part; a position is mirrored about the middle between the walls."""
         shift = library().arb.pi() * (self.periods if self.half else 2 * self.periods)
         found = [node[0] + shift, *(self.twist * value for value in node[1:])]
@@ -90,13 +90,11 @@ class Motif:
             found[1] = found[1] + (p["distance_left"] - p["distance_right"])
         return found
 
-    def after(self, i: int, nodes: Sequence[Sequence[Number]], p: Mapping[str, Number]) -> Sequence[Any]:
+    def after(self, i: int, nodes: Sequence[Row], p: Mapping[str, Number]) -> Sequence[Any]:
         """The node at which flight i ends."""
         return nodes[i + 1] if i + 1 < len(nodes) else self.closing(nodes[0], p)
 
-    def residual(
-        self, i: int, flights: Flights, x: Sequence[Number], following: Sequence[Number]
-    ) -> list[Any]:
+    def residual(self, i: int, flights: Flights, x: Row, following: Row) -> list[Any]:
         """The elementary map of flight i, zero where `following` is the node that `x` leads to.
 
         At an impact w is at the wall and B+ = v' + r w'; at a turn or stick w' = 0; at a slip the push reaches friction.
@@ -115,7 +113,7 @@ class Motif:
         return rows
 
 
-Border = tuple[int, "Callable[[Sequence[Number], Sequence[Number]], Number]"]
+Border = tuple[int, "Callable[[Row, Row], Number]"]
 """A border row: the block it reads, and its value from that block's unknowns and the further ones."""
 
 
@@ -134,33 +132,24 @@ class System:
         self.k, self.m, self.length = motif.node, 0, len(motif)
         self.borders: tuple[Border, ...] = ()
 
-    def numbers(self, extras: Sequence[Number]) -> Mapping[str, Number]:
+    def numbers(self, extras: Row) -> Mapping[str, Number]:
         """The parameters, at these further unknowns."""
         return self.p
 
-    def prepare(self, extras: Sequence[Number]) -> Flights:
+    def prepare(self, extras: Row) -> Flights:
         """What all blocks share."""
         return self.motif.flights(self.numbers(extras))
 
-    def block(
-        self,
-        i: int,
-        shared: Flights,
-        z: Sequence[Number],
-        following: Sequence[Number],
-        extras: Sequence[Number],
-    ) -> list[Any]:
+    def block(self, i: int, shared: Flights, z: Row, following: Row, extras: Row) -> list[Any]:
         """Residuals of block i."""
         return self.motif.residual(i, shared, z, following)
 
-    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
+    def closing(self, z: Row, extras: Row) -> list[Any]:
         """The unknowns that follow the last block, from those of the first."""
         return self.motif.closing(z, self.numbers(extras))
 
     # ------------------------------------------------------------------ evaluation
-    def residuals(
-        self, nodes: Sequence[Sequence[Number]], extras: Sequence[Number]
-    ) -> tuple[list[list[Number]], list[Number]]:
+    def residuals(self, nodes: Sequence[Row], extras: Row) -> tuple[list[list[Number]], list[Number]]:
         """Values of all equations."""
         shared = self.prepare(extras)
         values = []
@@ -169,7 +158,7 @@ class System:
             values.append(self.block(i, shared, nodes[i], following, extras))
         return values, [row(nodes[i], extras) for i, row in self.borders]
 
-    def linearise(self, nodes: Sequence[Sequence[Number]], extras: Sequence[Number]) -> Blocks:
+    def linearise(self, nodes: Sequence[Row], extras: Row) -> Blocks:
         """All derivatives over a box; right sides are zero."""
         k, m = self.k, self.m
         e = variables(extras, 2 * k)

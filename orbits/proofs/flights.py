@@ -18,7 +18,7 @@ so q1, counted from where all is at rest, is a harmonic of the forcing, a consta
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +26,7 @@ from orbits.proofs.jets import exp, sin_cos, sqrt
 from orbits.proofs.obstacles import ProofError
 
 if TYPE_CHECKING:
-    from orbits.proofs.jets import Number
+    from orbits.proofs.jets import Number, Row
 
 WALLS = {"L": 1, "R": -1}
 
@@ -106,7 +106,7 @@ class Flights:
             )
         return self._responses[stuck]
 
-    def launch(self, letter: str, mode: int, node: Sequence[Number]) -> Flight:
+    def launch(self, letter: str, mode: int, node: Row) -> Flight:
         """The flight in `mode` that begins with event `letter` at `node`."""
         phase0, y = node[:2]
         eps, omega, whole = self.eps, self.omega, self.whole

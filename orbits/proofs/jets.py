@@ -9,12 +9,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from flint import arb
 
     Number: TypeAlias = "arb | Jet"
     """A ball, or a jet over balls."""
+    Row = Sequence[Number]
+    """Unknowns of a node, or the further ones."""
 
 
 class Jet:

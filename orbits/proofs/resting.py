@@ -5,7 +5,7 @@ The push against friction is a harmonic of the forcing about the bias, so it is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from orbits.proofs.special import AtParameter, Family
 
 if TYPE_CHECKING:
     from orbits.proofs.flights import Flights
-    from orbits.proofs.jets import Number
+    from orbits.proofs.jets import Number, Row
 
 
 class AtSlip(AtParameter):
@@ -29,24 +29,17 @@ class AtSlip(AtParameter):
         super().__init__(family)
         self.k = self.length = 1
 
-        def row(z: Sequence[Number], extras: Sequence[Number]) -> Number:
+        def row(z: Row, extras: Row) -> Number:
             flights = self.prepare(extras)
             return flights.limit[side] - side * flights.resting(z[0])[0]
 
         self.borders = ((0, row),)
 
-    def block(
-        self,
-        i: int,
-        shared: Flights,
-        z: Sequence[Number],
-        following: Sequence[Number],
-        extras: Sequence[Number],
-    ) -> list[Any]:
+    def block(self, i: int, shared: Flights, z: Row, following: Row, extras: Row) -> list[Any]:
         """The push is at its extremum."""
         return [shared.resting(z[0])[1]]
 
-    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
+    def closing(self, z: Row, extras: Row) -> list[Any]:
         """There is no map to close."""
         return list(z)
 

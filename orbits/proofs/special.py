@@ -15,7 +15,7 @@ curve of orbits is smooth there and the margin changes sign along it. `docs/proo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from flint import arb
 
     from orbits.proofs.flights import Flights
-    from orbits.proofs.jets import Number
+    from orbits.proofs.jets import Number, Row
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class AtParameter(System):
         super().__init__(family.motif, family.p)
         self.varying, self.m = family.varying, 1
 
-    def numbers(self, extras: Sequence[Number]) -> Mapping[str, Number]:
+    def numbers(self, extras: Row) -> Mapping[str, Number]:
         """The parameters, at the unknown one."""
         return self.p | self.varying.at(extras[0])
 
@@ -79,28 +79,21 @@ class AtMultiplier(AtParameter):
         place = self.n + normal.component
         self.borders = ((normal.block, lambda z, e: z[place] - 1),)
 
-    def prepare(self, extras: Sequence[Number]) -> Flights:
+    def prepare(self, extras: Row) -> Flights:
         """The flights over numbers with one direction; what does not move along it is lifted."""
         lifted = {name: Jet(value, {}) for name, value in self.p.items()}
         return self.motif.flights(lifted | self.varying.at(Jet(extras[0], {})))
 
-    def block(
-        self,
-        i: int,
-        shared: Flights,
-        z: Sequence[Number],
-        following: Sequence[Number],
-        extras: Sequence[Number],
-    ) -> list[Any]:
+    def block(self, i: int, shared: Flights, z: Row, following: Row, extras: Row) -> list[Any]:
         """The map, then its derivative along each direction."""
         rows = self.motif.residual(i, shared, self._along(z), self._along(following))
         return [row.value for row in rows] + [partial(row, d) for d in range(self.directions) for row in rows]
 
-    def _along(self, z: Sequence[Number]) -> list[Jet]:
+    def _along(self, z: Row) -> list[Jet]:
         n = self.n
         return [Jet(z[j], {d: z[n * (1 + d) + j] for d in range(self.directions)}) for j in range(n)]
 
-    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
+    def closing(self, z: Row, extras: Row) -> list[Any]:
         """x_l and phi_l = mu phi_0, seen through the mirror on half a word."""
         n = self.n
         return self.motif.closing(z[:n], self.numbers(extras)) + self._mirrored(
@@ -122,7 +115,7 @@ class AtPair(AtMultiplier):
         imaginary = 2 * self.n + normal.component
         self.borders = (*self.borders, (normal.block, lambda z, e: z[imaginary]))
 
-    def closing(self, z: Sequence[Number], extras: Sequence[Number]) -> list[Any]:
+    def closing(self, z: Row, extras: Row) -> list[Any]:
         """x_l and phi_l = exp(i theta) phi_0."""
         n = self.n
         s, c = sin_cos(extras[1])
@@ -175,13 +168,13 @@ class AtBorder(AtParameter):
         else:
             self.borders = ((i, self._row(0)),)
 
-    def _row(self, which: int) -> Callable[[Sequence[Number], Sequence[Number]], Any]:
-        def row(x: Sequence[Number], extras: Sequence[Number]) -> Number | None:
+    def _row(self, which: int) -> Callable[[Row, Row], Any]:
+        def row(x: Row, extras: Row) -> Number | None:
             return self._margin(x, extras)[which]
 
         return row
 
-    def _margin(self, x: Sequence[Number], extras: Sequence[Number]) -> tuple[Number, Number | None]:
+    def _margin(self, x: Row, extras: Row) -> tuple[Number, Number | None]:
         """The margin's equation, and that of the phase where it vanishes."""
         motif, v = self.motif, self.vanishing
         flights = self.prepare(extras)

@@ -27,11 +27,13 @@ if TYPE_CHECKING:
 
     from flint import arb, arb_mat
 
+    from orbits.proofs.elimination import Nodes
+
 SQUARINGS = 26
 DIGITS = 60  # of exact eigenvectors
 
 
-def stable(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[bool | None, Obstacle | None]:
+def stable(system: System, nodes: Nodes) -> tuple[bool | None, Obstacle | None]:
     """True: all multipliers proved inside the unit circle; False: one proved outside; None, and why: neither.
 
     The trivial multiplier of an impact-free motion, which may be shifted as a whole, is left out.
@@ -61,7 +63,7 @@ def _verdict(product: arb_mat, squarings: int = SQUARINGS) -> bool | None:
     return None
 
 
-def away_from_one(system: System, nodes: Sequence[Sequence[arb]]) -> bool:
+def away_from_one(system: System, nodes: Nodes) -> bool:
     """Whether the plain product of the maps, as a checker forms it, shows that no multiplier is 1 or -1, with room to spare."""
     try:
         factors = factor_matrices(system, nodes)
@@ -95,13 +97,13 @@ def _pairs(product: arb_mat) -> arb:
     return library().arb_mat(minors).det() if pairs else library().arb(1)
 
 
-def factor_matrices(system: System, nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
+def factor_matrices(system: System, nodes: Nodes) -> list[arb_mat]:
     """The linearised maps, reduced by the free shift of impact-free motions."""
     factors = linear_maps(system, nodes)
     return [_without_shift(factor, system.p) for factor in factors] if system.motif.impact_free else factors
 
 
-def linear_maps(system: System, nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
+def linear_maps(system: System, nodes: Nodes) -> list[arb_mat]:
     """The linearised maps -D_i^{-1} A_i."""
     arb_mat = library().arb_mat
     blocks = system.linearise(nodes, [])
@@ -121,7 +123,7 @@ def _without_shift(factor: arb_mat, p: Mapping[str, arb]) -> arb_mat:
     return library().arb_mat([[rows[i][j] for j in keep] for i in keep])
 
 
-def stable_in_basis(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[bool | None, list[list[str]]]:
+def stable_in_basis(system: System, nodes: Nodes) -> tuple[bool | None, list[list[str]]]:
     """The same for pieces of branches, with the basis (rows of decimals) in which a checker sees it from the plain product.
 
     The basis is empty where none helps.
@@ -145,7 +147,7 @@ def stable_in_basis(system: System, nodes: Sequence[Sequence[arb]]) -> tuple[boo
     return None, []
 
 
-def basis_texts(system: System, nodes: Sequence[Sequence[arb]]) -> list[list[str]]:
+def basis_texts(system: System, nodes: Nodes) -> list[list[str]]:
     """That basis alone; of eigenvectors with many digits where multipliers hardly lie on one side of the circle."""
     try:
         product = middle_product(factor_matrices(system, nodes))

@@ -17,10 +17,12 @@ from orbits.proofs.stability import linear_maps, middle_product
 if TYPE_CHECKING:
     from flint import arb, arb_mat
 
+    from orbits.proofs.elimination import Nodes
+
 SAMPLES = 400
 
 
-def chain(motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]]) -> list[arb_mat]:
+def chain(motif: Motif, p: Mapping[str, arb], nodes: Nodes) -> list[arb_mat]:
     """The linearised maps at the middles, each a matrix of exact numbers."""
     try:
         return [factor.mid() for factor in linear_maps(System(motif, p), nodes)]
@@ -64,9 +66,7 @@ def eigenpair(factors: Sequence[arb_mat]) -> tuple[list[list[arb]], Normal, floa
     return [a + b for a, b in zip(real, imaginary)], normal, float(np.angle(values[best]))
 
 
-def vanishing_margin(
-    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], name: str, event: int
-) -> Vanishing:
+def vanishing_margin(motif: Motif, p: Mapping[str, arb], nodes: Nodes, name: str, event: int) -> Vanishing:
     """The margin of this name, with the side on which it vanishes (of the two walls, or of the push's two directions)."""
     flights = motif.flights(p)
     flight = flights.launch(motif.events[event], motif.modes[event], nodes[event])
@@ -85,9 +85,7 @@ def vanishing_margin(
     return Vanishing(name, event, side)
 
 
-def touching_phase(
-    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], vanishing: Vanishing
-) -> arb:
+def touching_phase(motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: Vanishing) -> arb:
     """The phase inside the flight at which the margin is smallest, roughly."""
     least = _least(motif, p, nodes, vanishing)
     if least is None:
@@ -98,7 +96,7 @@ def touching_phase(
 
 
 def _least(
-    motif: Motif, p: Mapping[str, arb], nodes: Sequence[Sequence[arb]], vanishing: Vanishing
+    motif: Motif, p: Mapping[str, arb], nodes: Nodes, vanishing: Vanishing
 ) -> tuple[float, arb] | None:
     """The smallest value of a margin at a minimum inside its flight, and where."""
     i = vanishing.event

@@ -106,7 +106,7 @@ def _hull(triple: Sequence[str], q: arb) -> arb:
     return library().arb(m, r) + library().arb(s) * q
 
 
-def lay(along: Along, center: str, half: str, z: Sequence[Sequence[arb]], value: arb) -> Tile | None:
+def lay(along: Along, center: str, half: str, z: Nodes, value: arb) -> Tile | None:
     """The tile about the refined nodes z and parameter where the coordinate is `center`, None if none is proved."""
     arb = library().arb
     span = arb(0, half)

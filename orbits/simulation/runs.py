@@ -47,30 +47,7 @@ def simulate(
     events: int | None = None,
     **parameters: float,
 ):
-    """Simulate the machine from event to event.
-
-    Parameters
-    ----------
-    model : Model or Machine
-    start : mapping or ndarray, optional
-        Of a built-in machine `phase` (radians), `w`, `w_rate`, and in the coupled model `v`, `v_rate` or `q1`, `q2`, `q1_rate`, `q2_rate`; of a declared machine
-        its states by name, and `phase` if it is forced. What is not given is 0. Or a state, such as `Trajectory.end`.
-    periods, time : float, optional
-        How long: forcing periods, or the machine's time.
-    events : int, optional
-        Stop after so many events. Without it at most a million, so that a run always ends.
-    **parameters
-        Parameters that are no fields of the machine (`amplitude`), or that replace them.
-
-    Returns
-    -------
-    Trajectory or PageTrajectory
-
-    Raises
-    ------
-    SimulationError
-        If the start cannot be, no length is given, or the laws do not continue the motion.
-    """
+    """Simulate a machine from event to event: the work of `Varying.simulate`, which says what is given and what comes of it."""
     params = model.vector(parameters)
     if periods is None and time is None and events is None:
         raise SimulationError("neither periods, time nor events are given: say how long to simulate")
