@@ -104,13 +104,12 @@ def built(study: Study) -> Study:
     ------
     StudyError
     """
-    section = "model"
     try:
         vector = study.model.vector(study.loose)
-        section = "start"
+    except ValueError as error:
+        raise StudyError(f"[model] {error}") from error
+    try:
         Word.parse(study.word or "", frictionless=study.model.frictionless(vector))
     except ValueError as error:
-        raise StudyError(
-            f"[{section}] {error if section == 'model' else without_word(study, error)}"
-        ) from error
+        raise StudyError(f"[start] {without_word(study, error)}") from error
     return study
