@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import networkx as nx
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
 from ..branches.branch import Branch
 from ..circles.section import section_of
@@ -126,11 +126,11 @@ def loose_ends(graph: Graph) -> list[End]:
 def _together(firsts: np.ndarray, lasts: np.ndarray, near: float) -> np.ndarray:
     """Width of what each stretch forms with those that it meets, and these with theirs, shape (n,)."""
     meeting = np.abs(firsts[None, :] - lasts[:, None]) <= near
-    widths = np.empty(len(firsts))
-    for part in nx.connected_components(nx.from_numpy_array(meeting | meeting.T)):
-        members = list(part)
-        widths[members] = lasts[members].max() - firsts[members].min()
-    return widths
+    low, high = np.full((2, len(firsts)), np.inf)
+    _, part = connected_components(meeting, directed=False)
+    np.minimum.at(low, part, firsts)
+    np.minimum.at(high, part, -lasts)
+    return (-high - low)[part]
 
 
 def _stretches(branch: Branch) -> Iterator[tuple[End, End]]:

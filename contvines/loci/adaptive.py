@@ -10,11 +10,10 @@ import numpy as np
 
 from ..flows.cycles import CycleProblem
 from ..problems.protocol import Symmetry
-from ..problems.registry import rebuild
 from .borders import borders_at
 from .layout import FOLD, GROWTH, KNOWN, PERIOD
 from .on_mesh import on_mesh
-from .problem import LocusProblem, Work, described
+from .problem import LocusProblem, Work
 
 
 class AdaptiveLocus(LocusProblem):
@@ -136,5 +135,4 @@ class AdaptiveLocus(LocusProblem):
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AdaptiveLocus | None:
     """The AdaptiveLocus that `describe` described; None where functions of the user's own are not at hand."""
-    problem = rebuild(description["problem"], trust)
-    return None if problem is None else AdaptiveLocus(problem, **described(description))
+    return AdaptiveLocus.rebuilt(description, trust)

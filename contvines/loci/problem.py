@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from typing import Any, NamedTuple, TypedDict
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -318,6 +318,26 @@ class LocusProblem(ProblemDefaults):
             "factory": "contvines.loci.problem:from_description" if about.get("factory") else None,
         }
 
+    @classmethod
+    def rebuilt(cls, description: Mapping[str, Any], trust: bool) -> Self | None:
+        """The locus that `describe` described; None where functions of the user's own are not at hand."""
+        from ..problems.registry import rebuild
+
+        problem, (low, high) = rebuild(description["problem"], trust), description["bounds"]
+        if problem is None:
+            return None
+        return cls(
+            problem,
+            description["kind"],
+            description["parameter"],
+            description["index"],
+            (low, high),
+            np.array(description["borders"]),
+            description["reference"],
+            description["masked"],
+            description.get("unit", 1.0),
+        )
+
 
 def has_natural_units(problem: Problem) -> bool:
     """Whether all unknowns of a problem are of order 1 by themselves, so that nothing has to be learned of their sizes."""
@@ -326,35 +346,4 @@ def has_natural_units(problem: Problem) -> bool:
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> LocusProblem | None:
     """The LocusProblem that `describe` described; None where functions of the user's own are not at hand."""
-    from ..problems.registry import rebuild
-
-    problem = rebuild(description["problem"], trust)
-    return None if problem is None else LocusProblem(problem, **described(description))
-
-
-class Described(TypedDict):
-    """Arguments of a LocusProblem."""
-
-    kind: str
-    over: str
-    index: int
-    bounds: tuple[float, float]
-    borders: np.ndarray
-    reference: float
-    masked: Sequence[int]
-    unit: float
-
-
-def described(description: Mapping[str, Any]) -> Described:
-    """The arguments of a LocusProblem, without the problem, from its description."""
-    low, high = description["bounds"]
-    return Described(
-        kind=description["kind"],
-        over=description["parameter"],
-        index=description["index"],
-        bounds=(low, high),
-        borders=np.array(description["borders"]),
-        reference=description["reference"],
-        masked=description["masked"],
-        unit=description.get("unit", 1.0),
-    )
+    return LocusProblem.rebuilt(description, trust)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 #: for their files.
 FACTORIES = {
     "contvines.flows.files:from_description": "contvines.flows.files:from_description",
+    "contvines.loci.adaptive:from_description": "contvines.loci.adaptive:from_description",
     "contvines.loci.problem:from_description": "contvines.loci.problem:from_description",
     "contvines.problems.algebraic:from_description": "contvines.problems.algebraic:from_description",
     "contvines.problems.maps:from_description": "contvines.problems.maps:from_description",

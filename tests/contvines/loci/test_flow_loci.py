@@ -106,7 +106,7 @@ def test_folds_of_cycles_of_a_nerve_end_at_its_generalized_hopf_point():
     assert point.value == pytest.approx((17 / 24, 15 / 16), abs=1e-11)
 
 
-def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable():
+def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable(tmp_path):
     graph = cv.diagram(
         cv.FlowProblem(bautin, [0.0, 0.0], {"b1": -1.0, "b2": -0.5}), over="b1", within=(-1, 1)
     )
@@ -127,6 +127,9 @@ def test_a_chart_finds_the_folds_of_cycles_and_names_what_is_stable():
         )
         assert sorted(region.words) == wanted
         assert not region.others
+    chart.save(tmp_path / "bautin.vines")
+    (folds,) = (each for each in cv.load(tmp_path / "bautin.vines").loci.values() if each.kind == "fold")
+    assert folds.at(1.0) == pytest.approx([-0.25], abs=1e-10)
 
 
 def test_loci_of_cycles_meet_at_a_resonance():
