@@ -84,17 +84,15 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
     seeds = []
     # the simulator is asked only where no proposal stands
     border = placed(problem, u, p, index)
-    for candidate in chain(proposals(border), _with_room(problem, u, p, index), _simulated(problem, u, p)):
-        other, v, q, tangent, note = candidate
-        orbit = other.orbit(v, q)
-        if not _followed(other, v, q, orbit):
+    for found, note in chain(proposals(border), _with_room(problem, u, p, index), _simulated(problem, u, p)):
+        orbit = found.orbit()
+        if not _followed(found, orbit):
             continue
-        smallest, v, tangent = _simplest(other, orbit, v, tangent)
-        persistence = bool(np.sign(q - p) != old_side)
+        simplest, persistence = _simplest(found, orbit), bool(np.sign(found.p - p) != old_side)
         kind = "persistence" if persistence else "nonsmooth fold"
-        seeds.append(Seed(smallest, v, q, tangent, "border", f"{note}: {kind}", persistence))
-        if smallest is not other:
-            seeds.extend(_onwards(smallest, v, p))
+        seeds.append(Seed(*simplest, "border", f"{note}: {kind}", persistence))
+        if simplest is not found:
+            seeds.extend(_onwards(simplest.problem, simplest.u, p))
         break
     if (every or not seeds) and len(problem.word):
         beside = [(*turned(problem, *near, index)[:2], near[1]) for near in nearby if near is not None]
@@ -110,27 +108,23 @@ def _with_word(seed: Seed) -> Seed:
     return seed._replace(note=f"{seed.note}, the word becomes {text}")
 
 
-def _with_room(
-    problem: CycleProblem, u: np.ndarray, p: float, index: int
-) -> Iterator[tuple[CycleProblem, np.ndarray, float, np.ndarray, str]]:
+def _with_room(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Iterator[tuple[Grown, str]]:
     """What the local rules propose where the border is read with more events on either side."""
     for read, v, place in islice(readings(problem, u, p, index), 1, None):
         yield from proposals(place_at(read, v, place, p))
 
 
-def _followed(problem: CycleProblem, u: np.ndarray, p: float, orbit: Orbit) -> bool:
-    return bool(margins_of(problem, u, p).min() >= REAL) and orbit.replay() < REPLAYING.followed
+def _followed(found: Grown, orbit: Orbit) -> bool:
+    return bool(margins_of(*found[:3]).min() >= REAL) and orbit.replay() < REPLAYING.followed
 
 
-def _simplest(
-    problem: CycleProblem, orbit: Orbit, u: np.ndarray, tangent: np.ndarray | None
-) -> tuple[CycleProblem, np.ndarray, np.ndarray | None]:
+def _simplest(found: Grown, orbit: Orbit) -> Grown:
     """The orbit in the smallest problem that has it: it may repeat a shorter one, or be symmetric."""
-    root = orbit.root()
+    problem, root = found.problem, orbit.root()
     smallest = problem.sibling(root.word, root.periods, root.symmetric)
     if smallest.periods == problem.periods and smallest.symmetric == problem.symmetric:
-        return problem, u, tangent
-    return smallest, smallest.reduce(root.nodes), None
+        return found
+    return Grown(smallest, smallest.reduce(root.nodes), found.p, None)
 
 
 def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
@@ -139,10 +133,9 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
     if not residual < SOLVING.residual:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
-    for other, v, q, tangent, note in proposals(placed(problem, at_border, p, index)):
-        if _followed(other, v, q, other.orbit(v, q)):
-            text = f"{note}: the branches meet at the border"
-            yield Seed(other, v, q, tangent, "border", text, False)
+    for found, note in proposals(placed(problem, at_border, p, index)):
+        if _followed(found, found.orbit()):
+            yield Seed(*found, "border", f"{note}: the branches meet at the border", False)
             return
 
 
@@ -173,17 +166,15 @@ def escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]])
             found = _grown_in(problem, wider, whole, p, wanted, rounds, changed)
             if found is None:
                 continue
-            (other, v, q, tangent), note = found
-            there = other.orbit(v, q)
+            other, there = found[0].problem, found[0].orbit()
             root = there.root()
             if (len(root.word), root.periods) != (len(other.word), other.periods) or (
                 there.symmetric and not other.symmetric
             ):
                 continue
-            if not _followed(other, v, q, there):
-                continue
-            what = escape(problem.symmetric, rounds)
-            yield Seed(other, v, q, tangent, "border", f"{note}: {what}", False)
+            if _followed(found[0], there):
+                note = f"{found[1]}: {escape(problem.symmetric, rounds)}"
+                yield Seed(*found[0], "border", note, False)
 
 
 def _repeated(problem: CycleProblem, orbit: Orbit, rounds: int) -> tuple[CycleProblem, Orbit]:
@@ -238,9 +229,7 @@ def _real_part(
     return found
 
 
-def _simulated(
-    problem: CycleProblem, u: np.ndarray, p: float
-) -> Iterator[tuple[CycleProblem, np.ndarray, float, None, str]]:
+def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple[Grown, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
     from orbits.borders.settling import settled
 
@@ -258,7 +247,7 @@ def _simulated(
         nearer = _nearer(other, v, q, p)
         if nearer is None or not tends(distance(orbit, nearer), lambda found=found: distance(orbit, found)):
             continue  # an attractor somewhere else: nothing joins it to the border
-        yield other, v, q, None, "the simulator goes on"
+        yield Grown(other, v, q, None), "the simulator goes on"
 
 
 def _key(orbit: Orbit) -> Hashable:

@@ -79,12 +79,16 @@ def readings(
 
 
 class Grown(NamedTuple):
-    """An orbit next to the border, of a branch that begins at it; `tangent` leads away."""
+    """An orbit next to the border, of a branch that begins at it; `tangent`, where it is known, leads away."""
 
     problem: CycleProblem
     u: np.ndarray
     p: float
-    tangent: np.ndarray
+    tangent: np.ndarray | None
+
+    def orbit(self) -> Orbit:
+        """The orbit itself."""
+        return self.problem.orbit(self.u, self.p)
 
 
 class Begun:
@@ -148,8 +152,8 @@ def place_at(problem: CycleProblem, u: np.ndarray, index: int, p: float) -> Plac
     return Place(problem, u, p, index, orbit, edits_at(orbit, index, problem.length), {})
 
 
-def proposals(border: Place) -> Iterator[tuple[CycleProblem, np.ndarray, float, np.ndarray, str]]:
-    """Solutions next to the border with the words that the local rules propose."""
+def proposals(border: Place) -> Iterator[tuple[Grown, str]]:
+    """Solutions next to the border with the words that the local rules propose, and what changes."""
     problem, u, p, index, orbit, edits, _ = border
     values = margins_of(problem, u, p)
     together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < BORDERING.together]
@@ -165,7 +169,7 @@ def proposals(border: Place) -> Iterator[tuple[CycleProblem, np.ndarray, float, 
             begun = border.begun(first) if len(several) == 1 else Begun(problem, orbit, p, several)
             found = grown(begun)
             if found is not None:
-                yield found.problem, found.u, found.p, found.tangent, first.change.what.value
+                yield found, first.change.what.value
 
 
 def _overlap(a: Change, b: Change) -> bool:
