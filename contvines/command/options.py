@@ -56,7 +56,9 @@ def refuse_alone(context: typer.Context, **needed: str) -> None:
     line = given(context)
     for name, other in needed.items():
         if f"--{name}" in line and other not in line:
-            raise ValueError(f"{line[f'--{name}']}: this goes with {other}.")
+            raise ValueError(
+                f"{line[f'--{name}']}: this goes with {other}; give {other}, too, or leave --{name} out."
+            )
 
 
 def picture(path: Path | None) -> Path | None:
