@@ -342,13 +342,14 @@ def vanishing(locus: LocusProblem, ends: Sequence[Solved], within: tuple[float, 
     before = next((one for one in places if problem.center(one.u)[1] > SHRINKS * size), None)
     if before is None or not problem.free_period:
         return None
-    ahead = (np.subtract(last[1:], before[1:])) * size / (problem.center(before.u)[1] - size)
+    behind = np.subtract(last[1:], before[1:])
+    ahead = behind * size / (problem.center(before.u)[1] - size)
     rest = on_mesh(locus.at(last.q)).root(problem.resting(last.u, mean), last.p)
     if rest is None:
         return None
-    found = beginning(locus, ends[-1], within, Becomes("hopf", *rest), float(np.abs(ahead).max()))
+    found = beginning(locus, ends[-1], within, Becomes("hopf", *rest), float(np.abs(behind).max()))
     missed = np.inf if found is None else np.abs(np.subtract(found.value, last[1:]) - ahead).max()
-    return found if missed <= np.abs(ahead).max() else None
+    return found if missed <= np.abs(behind).max() else None  # the smallest cycles are known to few digits
 
 
 def beginning(
