@@ -1,7 +1,7 @@
 // Elementary maps of a shaken cavity between consecutive events, with exact derivatives, and margins. A node is (Psi, B+) at an impact
 // and (Psi, w) at a turn, stick or slip. In mode s = -1 or +1, with d = (Psi - Psi_0)/Omega and beta = v' - w' at the start,
 //     w' = C Omega cos Psi - beta - (b + s a_s) d,   w = w_0 + C (sin Psi - sin Psi_0) - beta d - (b + s a_s) d^2 / 2.
-// The reference: orbits/machines/reference/maps.py and shaken_margins.py.
+// The reference: orbits/machines/reference/maps.py and margins.py.
 #pragma once
 #include "cavity_law.hpp"
 #include "cycles.hpp"

@@ -1,6 +1,6 @@
 // Elementary maps of the absorber on its oscillator between consecutive events, with exact derivatives, and margins. A node is
 // (Psi, B+, v, v') at an impact and (Psi, w, v, v') at a turn, stick or slip; v = q1 + eps q2, w = q1 - q2, B = v' - w' = (1 + eps) q2'.
-// In words: orbits/machines/reference/maps.py, driven_margins.py and law.py.
+// In words: orbits/machines/reference/maps.py, margins.py and law.py.
 #pragma once
 #include "coupled.hpp"
 #include "cycles.hpp"

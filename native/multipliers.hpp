@@ -8,6 +8,8 @@
 namespace algebra {
 
 constexpr double UNIT_ROUNDOFF = 0x1p-53, LARGE = 0x1p200, SMALL = 0x1p-200, LARGEST = 0x1p1023, LEAST = 0x1p-1021;
+// A multiplier from the scaled product is trusted up to the relative error CERTIFIED; up to PASSABLE, too, where its bound exceeds the
+// effect of rounding the factors themselves by less than EXCESS.
 constexpr double CERTIFIED = 1e-10, EXCESS = 50.0, PASSABLE = 1e-7;
 enum Certainty { UNDEFINED = -1, UNCERTAIN = 0, CERTAIN = 1, BROKEN = 2 };
 
