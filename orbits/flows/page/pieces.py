@@ -130,10 +130,9 @@ class Pieces(Against[Machine]):
             for j, contact in enumerate(machine.contacts)
             if isinstance(contact, DryFriction) and all(mode[j] == STUCK for mode in word.contact_modes)
         ]
-        resting = self._resting(stuck)
-        self.trivial = len(self.loose) + len(stuck) + len(resting)
+        self.trivial = len(self.loose) + len(stuck)
         self.still = () if symmetric else self._still(stuck)
-        self.resting = () if symmetric else resting
+        self.anywhere = self._anywhere(stuck)
         self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
         self.n_margins = len(word.alphabet.columns) * self.length
         self.period_shift = np.zeros(self.dimension) if self.forced else None
@@ -158,22 +157,17 @@ class Pieces(Against[Machine]):
             found.append((places[-1], self.machine.compiled.event(letter, 0, key, (self.index,))))
         return tuple(found)
 
-    def _resting(self, frictions: Sequence[int]) -> tuple[int, ...]:
-        """The places of what sticks for ever: states whose rate is a velocity that is zero all along. Their closing says nothing, and is
-        replaced by that they stay where they are."""
+    def _anywhere(self, frictions: Sequence[int]) -> tuple[str, ...]:
+        """Names of the frictions that stick for ever where nothing says at which place: its rate is a velocity that is zero all along."""
         e, names = self.machine.equations, self.machine.equations.layout.states
         patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.contact_modes)]
-        velocities = [variables_of(e.velocity[j]) & set(names) for j in frictions]
-        return tuple(
-            k
-            for k, name in enumerate(names)
-            if k not in self.loose
-            and any(
-                name not in velocity
-                and all(variables_of(pattern.rates[k]) == velocity for pattern in patterns)
-                for velocity in velocities
-            )
-        )
+        found = []
+        for j in frictions:
+            velocity = variables_of(e.velocity[j]) & set(names)
+            places = [k for k, name in enumerate(names) if k not in self.loose and name not in velocity]
+            if any(all(variables_of(pattern.rates[k]) == velocity for pattern in patterns) for k in places):
+                found.append(self.machine.contacts[j].name)
+        return tuple(found)
 
     def _assign(self) -> None:
         """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
