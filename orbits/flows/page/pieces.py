@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.contacts.dry_friction import STUCK, DryFriction
+from orbits.contacts.dry_friction import SLIDE_BACK, SLIDE_ON, STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
 from orbits.flows.against import Against
 from orbits.flows.protocol import PLAIN
@@ -133,6 +133,7 @@ class Pieces(Against[Machine]):
         self.trivial = len(self.loose) + len(stuck)
         self.still = () if symmetric else self._still(stuck)
         self.anywhere = self._anywhere(stuck)
+        self.comes_back = not any(map(self._slips_one_way, range(self.contacts)))
         self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
         self.n_margins = len(word.alphabet.columns) * self.length
         self.period_shift = np.zeros(self.dimension) if self.forced else None
@@ -168,6 +169,19 @@ class Pieces(Against[Machine]):
             if any(all(variables_of(pattern.rates[k]) == velocity for pattern in patterns) for k in places):
                 found.append(self.machine.contacts[j].name)
         return tuple(found)
+
+    def _slips_one_way(self, j: int) -> bool:
+        """Whether a friction slips, and always to the same side, though its velocity is the rate of a state, which then does not come back."""
+        e = self.machine.equations
+        modes = {mode[j] for mode in self.word.contact_modes} - {STUCK}
+        if j not in e.velocity or modes not in ({SLIDE_BACK}, {SLIDE_ON}):
+            return False
+        velocity = e.velocity[j]
+        patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.contact_modes)]
+        return velocity.operation == "variable" and any(
+            all((rate.operation, rate.operands) == ("variable", velocity.operands) for rate in rates)
+            for rates in zip(*(pattern.rates for pattern in patterns))
+        )
 
     def _assign(self) -> None:
         """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
@@ -225,8 +239,8 @@ class Pieces(Against[Machine]):
         ]
 
     def allowed(self, p: float) -> bool:
-        """Whether the parameter may have this value."""
-        return not (self.machine.phase_rate == self.parameter and p <= 0.0)
+        """Whether there may be such motions at a value of the parameter."""
+        return self.comes_back and not (self.machine.phase_rate == self.parameter and p <= 0.0)
 
     def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Clock at the beginning and the end of every flight, from the nodes (L, n + 1)."""
