@@ -83,17 +83,6 @@ class OrbitProblem(Simulated, Relatives, Answers):
         self.path, self.data, self.period_shift = system.path, system.data, system.period_shift
         self.flip_kind = "symmetry-breaking" if self.twist < 0.0 else "period-doubling"
 
-    @property
-    def stuck(self) -> str:
-        """Why no step can be made from any solution; empty where steps can be made."""
-        names = self.equations.anywhere
-        if not names:
-            return ""
-        return (
-            f"{' and '.join(f'friction {name!r}' for name in names)} stick{'s' * (len(names) == 1)} all the time, and what it holds may lie anywhere in a band, "
-            "so that such motions fill a band, too, and none is alone; hold it at one place in the machine file (leave out its friction and its states)"
-        )
-
     # ------------------------------------------------------------------ numerics
     @property
     def kernels(self):

@@ -430,8 +430,6 @@ def orbits_of(m: Machine, rng: np.random.Generator) -> list[Any]:
             break
     if attractor is None or attractor.orbit is None or not len(attractor.orbit.word):
         return []
-    if attractor.orbit.problem("forcing").stuck:
-        return []  # a body sticks anywhere in a band
     graph = cv.diagram(
         attractor.orbit, over="forcing", within=(0.8, 1.25), depth=1, settings=cv.Settings(max_branches=6)
     )

@@ -17,7 +17,8 @@ from .segment import Segment
 
 MARGIN_ROUNDING = 2.0 * EPSILON  # of margins, in units of the machine's own size
 NEARER = 0.1, 0.01  # parts of the distance of the point close before a border
-TOLD = 10.0  # times rounding: a difference of margins that is none; times what one sample tells: an error
+TOLD = 10.0  # times that: a difference of margins which is no rounding
+ONE_SAMPLE = 10.0  # times an error that is seen once: what is stated
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 
 
@@ -135,7 +136,8 @@ def rounding(segment: Segment, root: Root, index: int, before: Solved | None) ->
 def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solved) -> float:
     """How far unknowns that are not known to the last digits, as where two events fall together, may move the parameter value of a border.
 
-    They show in its margin, which is the farther from the parabola through the border and two points beside it.
+    They show in the margin, close before the border, as its distance from the parabola through the border and two points farther away: a
+    smooth margin lies on it. Of a margin that jumps at the border nothing is said.
     """
     j = 2 * segment.engine.m + index
     points = segment.several([root.position + part * reach for part in NEARER])
@@ -143,11 +145,11 @@ def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solv
     if len(rises) < 3 or not np.isfinite(rises).all():
         return 0.0
     if not abs(rises[2]) < 0.5 * abs(rises[0]):
-        return 0.0  # it jumps
+        return 0.0
     one, other = NEARER
     bend = (rises[1] / one - rises[0]) / (one - 1.0)
     apart = abs(rises[2] - other * (rises[0] + (other - 1.0) * bend))
-    return TOLD * apart / abs(rises[0]) * abs(aside.p - root.point.p)
+    return ONE_SAMPLE * apart / abs(rises[0]) * abs(aside.p - root.point.p)
 
 
 def _finite(margins: np.ndarray) -> np.ndarray:

@@ -121,8 +121,6 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
     found = engine.start(u, p)
     if found is None:
         residual = engine.residual(u, p)
-        if stuck := getattr(engine.problem, "stuck", ""):
-            raise ValueError(f"from the start at {name} = {p:.10g} no step can be made: {stuck}")
         why = f"does not converge (its residual is {residual:.3g})"
         if residual < SOLUTION.solved:
             why = "is a solution, but where the derivatives of the equations vanish or are singular, in the parameter, too"

@@ -321,6 +321,8 @@ def transpose(data: Collocated, work: CycleWork, column: np.ndarray, other: Cycl
     other.derivative[:] = column
 
 
-KERNELS = Kernels(linearise, bordered, inspect, False, assign, flip, transpose, 1, matrix)
+KERNELS = Kernels(
+    linearise, bordered, inspect, compiled=False, assign=assign, flip=flip, transpose=transpose, column=1, matrix=matrix
+)  # fmt: skip
 
 SPARSE = Kernels(linearise, bordered, inspect, compiled=False, assign=assign, column=1)

@@ -231,4 +231,6 @@ def transpose(data: Equations, work: DenseWork, column: np.ndarray, other: Dense
     other.derivative[:] = column
 
 
-KERNELS = Kernels(linearise, bordered, inspect, False, assign, flip, transpose, 2, matrix)
+KERNELS = Kernels(
+    linearise, bordered, inspect, compiled=False, assign=assign, flip=flip, transpose=transpose, column=2, matrix=matrix
+)  # fmt: skip

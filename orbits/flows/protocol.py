@@ -396,8 +396,6 @@ class Equations(Protocol[Data, Work]):
         Closure: the first node returns with its phase plus `shift`, all else times `twist`.
     movable : bool
         Whether solutions may be shifted as a whole, but for the mirror that holds them.
-    anywhere : tuple of str
-        Frictions that stick all the time and whose bodies may lie anywhere in a band, where other bodies feel it: such solutions fill a band, too.
     period_shift : float array (N,) or None
         What a turn of the forcing adds to the unknowns.
     path : float array (2, P)
@@ -424,8 +422,6 @@ class Equations(Protocol[Data, Work]):
     def shift(self) -> float: ...
     @property
     def movable(self) -> bool: ...
-    @property
-    def anywhere(self) -> tuple[str, ...]: ...
     @property
     def period_shift(self) -> np.ndarray | None: ...
     @property

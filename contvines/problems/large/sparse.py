@@ -323,4 +323,6 @@ def eigenvectors(matrix: sp.csc_array | Operator, values: np.ndarray) -> np.ndar
     return np.array(columns).T.reshape(n, len(columns))
 
 
-KERNELS = Kernels(linearise, bordered, inspect, False, assign, flip, transpose, 1, matrix)
+KERNELS = Kernels(
+    linearise, bordered, inspect, compiled=False, assign=assign, flip=flip, transpose=transpose, column=1, matrix=matrix
+)  # fmt: skip

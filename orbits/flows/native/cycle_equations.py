@@ -51,8 +51,6 @@ class Equations(Against[Model]):
         If the parameter is unknown, or `symmetric` is asked where there is no symmetry.
     """
 
-    anywhere: tuple[str, ...] = ()
-
     def __init__(
         self,
         model: Model,

@@ -21,7 +21,6 @@ class RestEquations(Against[Model]):
     length, n_margins = 0, 1
     twist, shift = 1.0, 2.0 * np.pi
     movable, units = False, PLAIN
-    anywhere: tuple[str, ...] = ()
     period_shift = None
     unit = np.ones((0, 1))  # there are no nodes
 

@@ -132,6 +132,8 @@ def linearise(data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
         work.drift[j] = residual[-1, 1 + j]
         residual[-1, 1 + j] = nodes[:, 1 + j].mean()
         derivative[-1, 1 + j] = 0.0
+    for j in data.resting:
+        residual[-1, 1 + j] = derivative[-1, 1 + j] = 0.0
     for row, values in data.still:  # what sticks for ever has no velocity
         table = values(nodes[:1, 1:], begin[:1], numbers[:1])[0]
         residual[-1, 1 + row], derivative[-1, 1 + row] = table[0], table[n + 2]
@@ -184,6 +186,10 @@ def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
     for row, _ in data.still:
         own = own.copy()
         own[1 + row], following[1 + row] = 0.0, work.still[row]
+    for j in data.resting:
+        own = own.copy()
+        own[1 + j] = following[1 + j] = 0.0
+        following[1 + j, 1 + j] = 1.0
     return own, following
 
 

@@ -130,9 +130,10 @@ class Pieces(Against[Machine]):
             for j, contact in enumerate(machine.contacts)
             if isinstance(contact, DryFriction) and all(mode[j] == STUCK for mode in word.contact_modes)
         ]
-        self.trivial = len(self.loose) + len(stuck)
+        resting = self._resting(stuck)
+        self.trivial = len(self.loose) + len(stuck) + len(resting)
         self.still = () if symmetric else self._still(stuck)
-        self.anywhere = self._anywhere(stuck)
+        self.resting = () if symmetric else resting
         self.comes_back = not any(map(self._slips_one_way, range(self.contacts)))
         self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
         self.n_margins = len(word.alphabet.columns) * self.length
@@ -158,17 +159,22 @@ class Pieces(Against[Machine]):
             found.append((places[-1], self.machine.compiled.event(letter, 0, key, (self.index,))))
         return tuple(found)
 
-    def _anywhere(self, frictions: Sequence[int]) -> tuple[str, ...]:
-        """Names of the frictions that stick for ever where nothing says at which place: its rate is a velocity that is zero all along."""
+    def _resting(self, frictions: Sequence[int]) -> tuple[int, ...]:
+        """The places of what sticks for ever: states whose rate is a velocity that is zero all along. Their closing says nothing, and is
+        replaced by that they stay where they are."""
         e, names = self.machine.equations, self.machine.equations.layout.states
         patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.contact_modes)]
-        found = []
-        for j in frictions:
-            velocity = variables_of(e.velocity[j]) & set(names)
-            places = [k for k, name in enumerate(names) if k not in self.loose and name not in velocity]
-            if any(all(variables_of(pattern.rates[k]) == velocity for pattern in patterns) for k in places):
-                found.append(self.machine.contacts[j].name)
-        return tuple(found)
+        velocities = [variables_of(e.velocity[j]) & set(names) for j in frictions]
+        return tuple(
+            k
+            for k, name in enumerate(names)
+            if k not in self.loose
+            and any(
+                name not in velocity
+                and all(variables_of(pattern.rates[k]) == velocity for pattern in patterns)
+                for velocity in velocities
+            )
+        )
 
     def _slips_one_way(self, j: int) -> bool:
         """Whether a friction slips, and always to the same side, though its velocity is the rate of a state, which then does not come back."""

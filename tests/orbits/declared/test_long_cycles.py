@@ -28,7 +28,9 @@ def test_by_blocks_as_the_whole_matrix_has_it(states, length, transposed):
         work.turned[0] = 1.0
     whole[:size, size], whole[size] = work.derivative.ravel(), border
     expected = np.linalg.solve(whole, np.column_stack([[*-work.residual.ravel(), 0.7], np.eye(size + 1)[-1]]))
-    data = SimpleNamespace(dimension=size, size=states, length=length, pinned=(), turned=mirror, still=())
+    data = SimpleNamespace(
+        dimension=size, size=states, length=length, pinned=(), turned=mirror, still=(), resting=()
+    )
     step, tangent = np.empty((2, size + 1))
     sign = flights.by_blocks(data, work, border, 0.7, step, tangent)
     assert sign == np.linalg.slogdet(whole)[0]

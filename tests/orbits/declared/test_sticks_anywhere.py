@@ -1,7 +1,8 @@
-"""Bodies that always stick, at any place of a band: one alone is followed where it lies; beside one that moves no motion is alone, and the friction is named."""
+"""Bodies that always stick, at any place of a band: each motion is followed where it lies, alone or beside a body that moves."""
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import contvines as cv
@@ -10,30 +11,38 @@ from orbits.machines.page.loading import load_page
 from orbits.symbols import cos
 
 EXAMPLES = Path(__file__).parents[3] / "examples" / "machines"
+FREQUENCY, DRAG, GRIP = 1.3, 0.3, 1.5
 
-MACHINE = Machine(
+PAIR = Machine(
     name="pair",
     states=("x", "y", "v", "w"),
-    parameters={"forcing": 1.0, "frequency": 1.3, "grip": 5.0, "rub": 0.1},
+    parameters={"forcing": 0.3, "frequency": FREQUENCY, "grip": GRIP},
     phase_rate="frequency",
     motion=lambda s, phase, p, contact: (
         s.v,
         s.w,
         s.y - 2 * s.x + contact.grip,
-        p.forcing * cos(phase) + s.x - 2 * s.y - 0.3 * s.w + contact.rub,
+        p.forcing * cos(phase) + s.x - 2 * s.y - DRAG * s.w,
     ),
-    contacts=[
-        DryFriction("grip", lambda s, phase, p: s.v, "grip"),
-        DryFriction("rub", lambda s, phase, p: s.w, "rub", letters=("T", "S", "U")),
-    ],
+    contacts=[DryFriction("grip", lambda s, phase, p: s.v, "grip")],
 )
 
 
-@pytest.mark.parametrize("place", [0.0, 0.2])
-def test_the_friction_is_named(place: float) -> None:
-    found = MACHINE.attractor({"x": place})
-    assert abs(found.orbit.nodes[0, 1] - place) < 1e-12
-    assert "'grip'" in found.orbit.problem("forcing").stuck  # said where no step can be made
+@pytest.mark.parametrize("place", [0.0, 0.2, -0.3])
+def test_a_body_is_followed_where_it_lies_beside_one_that_moves(place: float) -> None:
+    """y = x/2 + A cos(phase + angle) pulls at it with y - 2 x: it slips where A + 3/2 |x| is what friction holds."""
+    rest = PAIR.attractor({"x": place}).orbit
+    graph = cv.diagram(rest, over="forcing", within=(0.1, 1.0), depth=0)
+    branch, slips = graph["B1"], graph["ST1"]
+    response = 1.0 / np.hypot(2.0 - FREQUENCY**2, DRAG * FREQUENCY)
+    assert slips.value == pytest.approx((GRIP - 1.5 * abs(place)) / response, rel=1e-12)
+    assert np.abs(branch.points[:, 1] - place).max() < 1e-12
+    assert branch.stable.all()
+    assert (len(graph.branches) > 1) == (
+        place == 0.0
+    )  # elsewhere it slips one way only, and does not come back
+    poles = np.exp(2.0 * np.pi / FREQUENCY * np.roots([1.0, DRAG, 2.0]))
+    np.testing.assert_allclose(np.sort_complex(rest.multipliers), np.sort_complex(poles), atol=1e-10)
 
 
 @pytest.mark.parametrize("place", [0.0, 0.1])
@@ -44,3 +53,5 @@ def test_a_body_alone_is_followed_where_it_lies(place: float) -> None:
     graph = cv.diagram(rest, over="forcing", within=(0.02, 0.6), depth=0)
     assert graph["ST1"].branch == "B1"
     assert abs(graph["ST1"].value - (0.3 - place)) < 1e-9
+    assert graph["B1"].stable.all()
+    assert (len(graph.branches) > 1) == (place == 0.0)
