@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import CodeType
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from contvines.shared.near_names import did_you_mean
 
 if TYPE_CHECKING:
     from ..problems.parameters import Parameters
@@ -35,7 +39,7 @@ WORDS = {
     "sign": np.sign,
     "pi": np.pi,
 }
-NAME = re.compile(r"[A-Za-z_]\w*")
+TOKEN = re.compile(r"\d[\d.]*(?:e[+-]?\d+)?|([a-z_]\w*)")  # a number, or a name
 ALLOWED = re.compile(r"^[\w\s.+\-*/(),]*$")
 DECLARED = re.compile(
     r"(par\w*|p|number|num|init|i)\s+(?=[a-z_]\w*\s*=)"
@@ -54,12 +58,28 @@ def name_of(symbol: object) -> str:
 def compiled_expressions(
     expressions: Sequence[object], states: Sequence[object], parameters: Sequence[str], time: object = None
 ) -> tuple[Callable, Callable]:
-    """f and its Jacobian from SymPy expressions of states and parameters."""
+    """f and its Jacobian from SymPy expressions of states and parameters.
+
+    Raises
+    ------
+    ValueError
+        If an expression cannot be read, a symbol has no value, or one name stands for two of them.
+    """
     import sympy
 
+    if len(expressions) != len(states):
+        raise ValueError(
+            f"there are {len(expressions)} expressions for {len(states)} states; give one for each"
+        )
+    names = [*(name_of(s) for s in states), *parameters, *([] if time is None else [name_of(time)])]
+    twice = next((name for k, name in enumerate(names) if name in names[:k]), None)
+    if twice is not None:
+        raise ValueError(
+            f"the name {twice!r} is there twice among states, params and time; choose another one"
+        )
     # real symbols: the derivative of an absolute value is a sign
     plain = {s: sympy.Symbol(name_of(s), real=True) for s in (*states, *([] if time is None else [time]))}
-    rates = sympy.Matrix([sympy.sympify(e) for e in expressions]).subs(plain)
+    rates = sympy.Matrix([_expression(e) for e in expressions]).subs(plain)
     rates = rates.subs({s: sympy.Symbol(str(s), real=True) for s in rates.free_symbols})
     own = [
         *(plain[s] for s in states),
@@ -71,7 +91,9 @@ def compiled_expressions(
         raise ValueError(f"the expressions have {', '.join(unknown)}; give a value in params for each")
     d = len(states)
     value = sympy.lambdify(own, list(rates), modules="numpy")
-    slope = sympy.lambdify(own, rates.jacobian(own[:d]).tolist(), modules="numpy")
+    # the derivative of a step is zero beside it
+    slopes = rates.jacobian(own[:d]).replace(sympy.DiracDelta, lambda *_: sympy.Integer(0))
+    slope = sympy.lambdify(own, slopes.tolist(), modules="numpy")
 
     def arguments(x: np.ndarray, p: Parameters, t: tuple[object, ...]) -> list[object]:
         return [*(x[j] for j in range(d)), *(getattr(p, name) for name in parameters), *t]
@@ -85,8 +107,48 @@ def compiled_expressions(
     return f, jacobian
 
 
-def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[str, float]]:
-    """f, the names of the states, their starts and the parameters from an .ode file.
+def _expression(given: object) -> object:
+    import sympy
+
+    try:
+        found = sympy.sympify(given)
+    except (sympy.SympifyError, TypeError, AttributeError):
+        found = None
+    if not isinstance(found, sympy.Expr):
+        raise ValueError(f"expressions: {given!r} is no expression of SymPy")
+    return found
+
+
+class Formula(NamedTuple):
+    """The right-hand side of a line.
+
+    Attributes
+    ----------
+    where : str
+        The line, for messages.
+    code : CodeType
+        Its names end with an underscore: words of Python are names as any others.
+    names : set of str
+        Quantities.
+    calls : list of (str, int)
+        Functions, and with how many arguments each of them is called.
+    """
+
+    where: str
+    code: CodeType
+    names: set[str]
+    calls: list[tuple[str, int]]
+
+
+class Function(NamedTuple):
+    """A function of the file."""
+
+    arguments: list[str]
+    body: Formula
+
+
+def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[str, float], str]:
+    """f, the names of the states, their starts and the parameters from an .ode file, and the line that depends on time, or nothing.
 
     Read are ``x'=...`` and ``dx/dt=...``, ``par``, ``number``, ``init`` and ``x(0)=``, functions ``f(x,y)=...`` and fixed quantities
     ``name=...``; lines that begin with ``aux``, ``@``, ``#`` or ``done`` are passed over.
@@ -96,12 +158,25 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
     ValueError
         For what cannot be read; the sentence has the line.
     """
-    rates: dict[str, str] = {}
+    rates: dict[str, Formula] = {}
     starts: dict[str, float] = {}
     parameters: dict[str, float] = {}
-    fixed: list[tuple[str, str]] = []
-    functions: list[tuple[str, list[str], str]] = []
-    for number, raw in enumerate(Path(path).read_text(encoding="utf-8").splitlines(), start=1):
+    fixed: dict[str, Formula] = {}
+    functions: dict[str, Function] = {}
+    begun: dict[str, str] = {}  # states with starts, and where
+
+    def new(name: str, where: str) -> str:
+        if name == "t" or callable(WORDS.get(name)):
+            raise ValueError(
+                f"{where}: the name {name!r} is that of {'the time' if name == 't' else 'a function'}; choose another one"
+            )
+        if any(name in there for there in (rates, parameters, fixed, functions)):
+            raise ValueError(f"{where}: the name {name!r} is there twice; choose another one")
+        return name
+
+    for number, raw in enumerate(
+        Path(path).read_text(encoding="utf-8", errors="replace").splitlines(), start=1
+    ):
         line = raw.split("#")[0].strip()
         low = line.lower()
         if not line or PASSED.match(low):
@@ -110,59 +185,78 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
             break
         where = f"{path}, line {number}: {raw.strip()!r}"
         if declared := DECLARED.match(low):
-            target = starts if declared[1].startswith("i") else parameters
-            for name, value in PARAMETER.findall(line[declared.end() :]):
-                target[name.lower()] = _number(value, where)
+            for name, value in PARAMETER.findall(low[declared.end() :]):
+                if declared[1].startswith("i"):
+                    starts[name], begun[name] = _number(value, where), where
+                else:
+                    parameters[new(name, where)] = _number(value, where)
             continue
         if re.match(r"(par|number|init)\w*(\s|$)", low) and "=" not in low:
             raise ValueError(f"{where}: no name=value is there")
-        found = re.match(r"([a-z_]\w*)\s*'\s*=(.*)$|d([a-z_]\w*)/dt\s*=(.*)$", low)
-        if found:
+        if found := re.match(r"([a-z_]\w*)\s*'\s*=(.*)$|d([a-z_]\w*)/dt\s*=(.*)$", low):
             name, text = (found[1], found[2]) if found[1] else (found[3], found[4])
-            rates[name] = _checked(text, where)
-            continue
-        found = re.match(r"([a-z_]\w*)\(0\)\s*=(.*)$", low)
-        if found:
-            starts[found[1]] = _number(found[2], where)
-            continue
-        found = re.match(r"([a-z_]\w*)\(([^)]*)\)\s*=(.*)$", low)
-        if found:
-            names = [part.strip() for part in found[2].split(",")]
-            functions.append((found[1], names, _checked(found[3], where)))
-            continue
-        found = re.match(r"([a-z_]\w*)\s*=(.*)$", low)
-        if found:
-            fixed.append((found[1], _checked(found[2], where)))
-            continue
-        raise ValueError(
-            f"{where}: only x'=..., dx/dt=..., par, init, functions and fixed quantities can be read"
-        )
+            rates[new(name, where)] = _formula(text, where)
+        elif found := re.match(r"([a-z_]\w*)\(0\)\s*=(.*)$", low):
+            starts[found[1]], begun[found[1]] = _number(found[2], where), where
+        elif found := re.match(r"([a-z_]\w*)\(([^)]*)\)\s*=(.*)$", low):
+            names = [part.strip() for part in found[2].split(",") if part.strip()]
+            functions[new(found[1], where)] = Function(names, _formula(found[3], where))
+        elif found := re.match(r"([a-z_]\w*)\s*=(.*)$", low):
+            fixed[new(found[1], where)] = _formula(found[2], where)
+        else:
+            raise ValueError(
+                f"{where}: only x'=..., dx/dt=..., par, init, functions and fixed quantities can be read"
+            )
     if not rates:
         raise ValueError(f"{path}: it has no equation x'=... or dx/dt=...")
+    for name, where in begun.items():
+        if name not in rates:
+            raise ValueError(
+                f"{where}: {name!r} is no state{did_you_mean(name, rates)}; states are {', '.join(rates)}"
+            )
+    timed = _refuse_unknown(rates, parameters, fixed, functions)
+    if not parameters:
+        raise ValueError(f"{path}: it has no parameter; add a line such as par a=1")
     states = list(rates)
-    known = {
-        *WORDS,
-        *states,
-        *parameters,
-        *(name for name, _ in fixed),
-        *(name for name, _, _ in functions),
-        "t",
-    }
-    for owner, text, own in [
-        *((name, text, []) for name, text in [*rates.items(), *fixed]),
-        *((name, text, names) for name, names, text in functions),
-    ]:
-        for name in NAME.findall(re.sub(r"\d[\d.]*e[+-]?\d+", "0", text)):
-            if name not in known and name not in own:
+    f = _evaluator(rates, fixed, functions, list(parameters))
+    return f, states, [starts.get(s, 0.0) for s in states], parameters, timed
+
+
+def _refuse_unknown(
+    rates: Mapping[str, Formula],
+    parameters: Mapping[str, float],
+    fixed: Mapping[str, Formula],
+    functions: Mapping[str, Function],
+) -> str:
+    """Refuse names that stand for nothing; the line that depends on time, or nothing."""
+    counts = {name: len(function.arguments) for name, function in functions.items()}
+    words = {name for name, word in WORDS.items() if callable(word)}
+    quantities = {*WORDS, *rates, *parameters, "t"} - words
+    timed = ""
+    lines: list[tuple[Formula, list[str]]] = [
+        *((formula, list(fixed)[:k]) for k, formula in enumerate(fixed.values())),  # those above
+        *((function.body, [*fixed, *function.arguments]) for function in functions.values()),
+        *((formula, list(fixed)) for formula in rates.values()),
+    ]
+    for formula, own in lines:
+        known = {*quantities, *own}
+        for name in sorted(formula.names - known):
+            if name in fixed:
                 raise ValueError(
-                    f"{path}: {owner} has {name!r}, which is no state, parameter, function or fixed quantity"
+                    f"{formula.where}: {name!r} is further down; fixed quantities may have those above alone"
                 )
-    return (
-        _evaluator(rates, fixed, functions, list(parameters)),
-        states,
-        [starts.get(s, 0.0) for s in states],
-        parameters,
-    )
+            hint = did_you_mean(name, [*known, *functions, *words])
+            raise ValueError(f"{formula.where}: {name!r} is no state, parameter or fixed quantity{hint}")
+        for name, count in formula.calls:
+            if name not in words and name not in counts:
+                raise ValueError(
+                    f"{formula.where}: {name!r} is no function{did_you_mean(name, [*functions, *words])}"
+                )
+            if counts.get(name, count) != count:
+                raise ValueError(f"{formula.where}: {name} has {counts[name]} argument(s), not {count}")
+        if "t" in formula.names and "t" not in own:
+            timed = timed or formula.where
+    return timed
 
 
 def _number(text: str, where: str) -> float:
@@ -172,34 +266,48 @@ def _number(text: str, where: str) -> float:
         raise ValueError(f"{where}: {text.strip()!r} is no number") from None
 
 
-def _checked(text: str, where: str) -> str:
+def _formula(text: str, where: str) -> Formula:
     text = text.strip().replace("^", "**")
     if not ALLOWED.match(text) or "__" in text or re.search(r"[a-z_)]\s*\.", text):
         raise ValueError(f"{where}: only numbers, names, + - * / ^ ( ) and commas can be read")
-    return text
+    text = TOKEN.sub(lambda found: found[0] + "_" if found[1] else found[0], text)
+    try:
+        tree = ast.parse(text, mode="eval")
+    except SyntaxError:
+        raise ValueError(
+            f"{where}: this is no formula, as numbers and names with + - * / ^ ( ) between them are"
+        ) from None
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    called = {id(node.func) for node in calls}
+    names = {node.id[:-1] for node in ast.walk(tree) if isinstance(node, ast.Name) and id(node) not in called}
+    if any(isinstance(node, ast.Tuple) for node in ast.walk(tree)) or not all(
+        isinstance(node.func, ast.Name) for node in calls
+    ):
+        raise ValueError(f"{where}: this is no formula: a comma or a bracket is where none can be")
+    own = [(node.func.id[:-1], len(node.args)) for node in calls if isinstance(node.func, ast.Name)]
+    return Formula(where, compile(tree, where, "eval"), names, own)
 
 
 def _evaluator(
-    rates: Mapping[str, str],
-    fixed: Sequence[tuple[str, str]],
-    functions: Sequence[tuple[str, list[str], str]],
+    rates: Mapping[str, Formula],
+    fixed: Mapping[str, Formula],
+    functions: Mapping[str, Function],
     parameters: Sequence[str],
 ) -> Callable:
-    codes = [compile(text, name, "eval") for name, text in rates.items()]
-    quantities = [(name, compile(text, name, "eval")) for name, text in fixed]
-    bodies = [(name, names, compile(text, name, "eval")) for name, names, text in functions]
     states = list(rates)
 
     def f(x: np.ndarray, p: Parameters, *t: object) -> list[object]:
-        scope: dict[str, object] = {"__builtins__": {}, **WORDS, "t": t[0] if t else 0.0}
-        scope.update({name: getattr(p, name) for name in parameters})
-        scope.update({name: x[j] for j, name in enumerate(states)})
-        for name, names, body in bodies:
-            scope[name] = lambda *given, names=names, body=body: eval(
-                body, {**scope, **dict(zip(names, given, strict=True))}
+        scope: dict[str, object] = {f"{name}_": word for name, word in WORDS.items()}
+        scope |= {"__builtins__": {}, "t_": t[0] if t else 0.0}
+        scope |= {f"{name}_": getattr(p, name) for name in parameters}
+        scope |= {f"{name}_": x[j] for j, name in enumerate(states)}
+        for name, (arguments, body) in functions.items():
+            keys = [f"{argument}_" for argument in arguments]
+            scope[f"{name}_"] = lambda *given, keys=keys, body=body: eval(
+                body.code, {**scope, **dict(zip(keys, given, strict=True))}
             )
-        for name, code in quantities:
-            scope[name] = eval(code, scope)
-        return [eval(code, scope) for code in codes]
+        for name, formula in fixed.items():
+            scope[f"{name}_"] = eval(formula.code, scope)
+        return [eval(formula.code, scope) for formula in rates.values()]
 
     return f

@@ -84,6 +84,10 @@ class Field:
             start,
             values,
             "the right-hand side",
+            start_name="x0",
+            called="(x, p), or with period= as (x, p, t)"
+            if period is None
+            else "(x, p, t), as there is period=",
         )
         self.lengths, self.complex_step = self.functions.lengths, self.functions.complex_step
         if not self.complex_step and not self.functions.noise.any():
@@ -118,9 +122,12 @@ class Field:
             If it is not positive.
         """
         assert self.period is not None
-        period = self.period(self.values.at(p))
-        if not np.real(period) > 0.0:
-            raise NotEvaluable(f"period = {period!r} must be positive")
+        try:
+            period = self.period(self.values.at(p))
+        except (ArithmeticError, ValueError) as error:
+            raise NotEvaluable(f"period raises {type(error).__name__}: {error}") from error
+        if not 0.0 < np.real(period) < np.inf:
+            raise NotEvaluable(f"period = {period!r} must be positive and finite")
         return period
 
     # ------------------------------------------------------------------ values

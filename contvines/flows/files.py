@@ -54,8 +54,6 @@ def read_ode(
 ) -> FlowProblem:
     """A flow from an .ode file of XPP: equations, parameters, functions and fixed quantities. Only arithmetic of the file is evaluated.
 
-    Nothing of the file is run but arithmetic.
-
     Parameters
     ----------
     path : str or Path
@@ -67,9 +65,11 @@ def read_ode(
     Raises
     ------
     ValueError
-        For what cannot be read; the sentence has the line.
+        For what cannot be read, or depends on time without ``period=``; the sentence has the line.
     """
-    f, states, starts, parameters = read_text(path)
+    f, states, starts, parameters, timed = read_text(path)
+    if timed and options.get("period") is None:
+        raise ValueError(f"{timed} depends on the time t; give period=, that of the forcing")
     options.setdefault("name", Path(path).stem)
     options.setdefault("states", states)
     return FlowProblem(f, starts if x0 is None else x0, parameters, **options)

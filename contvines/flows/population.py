@@ -132,14 +132,23 @@ class FlowPopulation:
         self.work = 0.0
         box = flow.box if box is None else box
         if box is None:
+            if around is not None and np.shape(around)[1:] != (self.node,):
+                raise ValueError(
+                    f"around has shape {np.shape(around)}; (n, {self.node}) is needed, a row per state of the flow"
+                )
             points = np.array(flow.x0)[None] if around is None else np.vstack([flow.x0, around])
             reach = np.maximum(
                 np.ptp(points, axis=0), np.maximum(self.field.lengths, np.abs(points).max(axis=0))
             )
             self._box = np.column_stack([points.min(axis=0) - reach, points.max(axis=0) + reach])
         else:
-            self._box = np.array(box, dtype=float)
-            if self._box.shape != (self.node, 2) or not np.all(self._box[:, 0] < self._box[:, 1]):
+            try:
+                self._box = np.array(box, dtype=float)
+            except (TypeError, ValueError):
+                self._box = np.empty(0)
+            if self._box.shape != (self.node, 2) or not (
+                np.isfinite(self._box).all() and (self._box[:, 0] < self._box[:, 1]).all()
+            ):
                 raise ValueError(f"box = {box!r}: give {self.node} pairs (low, high), one per state")
         self.size = np.ptp(self._box, axis=1)
 

@@ -137,7 +137,7 @@ class FlowProblem:
         self.error = self.settings.error if error is None else error
         if not (isinstance(self.error, (int, float)) and 0.0 < self.error < 1.0):
             raise ValueError(f"error = {error!r} must be a number between 0 and 1")
-        self.x0, self.degree, self.name = flat_start(x0), int(degree), name
+        self.x0, self.degree, self.name = flat_start(x0, "x0"), int(degree), name
         if isinstance(f, CompiledRates):
             names = list(ParameterSet(params, parameter).values)
             jacobian = jacobian or (f.jacobian if f.dfdx is not None else None)
@@ -210,6 +210,12 @@ class FlowProblem:
         ValueError
             If a symbol has no value.
         """
+        if not isinstance(params, Mapping):
+            raise ValueError(f"params = {params!r} must be values by name, such as {{'a': 1.0}}")
+        if (time is None) != (options.get("period") is None):
+            raise ValueError(
+                "time= and period= belong together: the symbol of the time, and the period of the forcing"
+            )
         f, jacobian = compiled_expressions(expressions, states, list(params), time)
         return cls(f, x0, params, jacobian=jacobian, states=[name_of(state) for state in states], **options)
 
@@ -344,9 +350,14 @@ class FlowProblem:
             If the motion escapes, comes to rest, or does not recur.
         """
         parameters = self.values.against(self.values.varying, values)
-        start = self.x0 if x0 is None else flat_start(x0)
+        start = self.x0 if x0 is None else flat_start(x0, "x0")
         if len(start) != len(self.x0):
             raise ValueError(f"x0 has {len(start)} numbers; the flow has {len(self.x0)} states")
+        if not np.isfinite(start).all():
+            raise ValueError(f"x0 = {start.tolist()} must be finite")
+        if transient is not None and not (_is_number(transient) and 0.0 < transient < np.inf):
+            raise ValueError(f"transient = {transient!r} must be a positive time")
+        longest, doublings = _at_least_one("longest", longest), _at_least_one("doublings", doublings)
         field = self.field.against(parameters)
         for name, value in zip(
             self.events.names,
@@ -380,11 +391,15 @@ class FlowProblem:
         ValueError
             If the data are no cycle, or Newton's method does not lead from them to one.
         """
-        t, x = np.asarray(times, dtype=float), np.asarray(states, dtype=float)
+        t, x = _numbers("times", times), _numbers("states", states)
         if t.ndim != 1 or len(t) < 5 or not (np.diff(t) > 0.0).all():
             raise ValueError("times must be at least five increasing numbers")
         if x.shape != (len(t), len(self.x0)):
             raise ValueError(f"states has shape {x.shape}; ({len(t)}, {len(self.x0)}) is needed")
+        if not np.isfinite(x).all():
+            raise ValueError("states must be finite")
+        if rounds is not None:
+            rounds = _at_least_one("rounds", rounds)
         parameters = self.values.against(self.values.varying, values)
         field = self.field.against(parameters)
         if field.forced and rounds is None:
@@ -411,7 +426,7 @@ class FlowProblem:
             found = found or settled(cycles, guess, parameters.start)
         if found is None:
             raise ValueError(
-                "Newton's method does not converge from these states; give a longer transient=, or more exact states"
+                "Newton's method does not converge from these states; give a longer transient= (of attractor), or times and states nearer to one period of a cycle"
             )
         cycles, u = found
         # rest of a forced flow is a motion with the period of its forcing
@@ -576,13 +591,40 @@ def _shortly(value: complex) -> str:
     return f"{value.real:.4g}" if value.imag == 0.0 else f"{value:.4g}"
 
 
-def _period(given: Callable | float | None, values: ParameterSet) -> Callable | None:
-    if given is None or callable(given):
-        return given
+def _is_number(given: object) -> bool:
+    return isinstance(given, (int, float, np.integer, np.floating)) and not isinstance(given, bool)
+
+
+def _at_least_one(name: str, given: float) -> int:
+    if not _is_number(given) or given != int(given) or given < 1:
+        raise ValueError(f"{name} = {given!r} must be a whole number, 1 or more")
+    return int(given)
+
+
+def _numbers(name: str, given: ArrayLike) -> np.ndarray:
     try:
-        period = float(given)
+        return np.asarray(given, dtype=float)
     except (TypeError, ValueError):
-        raise ValueError(f"period = {given!r} must be a positive number or a function of p") from None
-    if not period > 0.0:
-        raise ValueError(f"period = {given!r} must be positive")
-    return lambda p: period
+        raise ValueError(f"{name} must be numbers") from None
+
+
+def _period(given: Callable | float | None, values: ParameterSet) -> Callable | None:
+    """The period of f in time as a function of the parameters.
+
+    Raises
+    ------
+    ValueError
+        If it is none at the start.
+    """
+    if given is None:
+        return None
+    if not (callable(given) or _is_number(given)):
+        raise ValueError(f"period = {given!r} must be a positive number or a function of p")
+    period = given if callable(given) else lambda p: float(given)
+    try:
+        length = period(values.at(values.start))
+    except Exception as error:  # a user's function may fail in any way
+        raise ValueError(f"period raises {type(error).__name__}: {error}, at the start") from error
+    if not (_is_number(length) and 0.0 < length < np.inf):
+        raise ValueError(f"period is {length!r} at the start; it must be a positive number there")
+    return period

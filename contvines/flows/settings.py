@@ -99,6 +99,8 @@ class FlowSettings:
         """
         if isinstance(given, FlowSettings):
             return given
+        if not isinstance(given, Mapping | None):
+            raise ValueError(f"settings = {given!r} must be values by name, such as {{'longest': 1e4}}")
         known = [field.name for field in fields(cls)]
         for name, value in (given or {}).items():
             if name not in known:

@@ -14,7 +14,7 @@ from contvines.shared.floating_point import COMPLEX_STEP
 
 from .differences import Difference, along, bend, noise_of, roughness
 from .extents import measured, of_parameter
-from .functions import NotEvaluable, Operator, Sparse, UserFunction, as_matrix
+from .functions import CALLED, NotEvaluable, Operator, Sparse, UserFunction, as_matrix
 from .parameters import ParameterSet
 from .settings import DERIVATIVES
 
@@ -44,6 +44,8 @@ class Differentiated:
         Of f, for messages.
     sparsity : Colouring, optional
         Where the Jacobian has entries at all.
+    start_name, called : str
+        What u is called, and with what f is called, for messages.
 
     Attributes
     ----------
@@ -75,8 +77,10 @@ class Differentiated:
         parameters: ParameterSet,
         name: str = "F",
         sparsity: Colouring | None = None,
+        start_name: str = "u0",
+        called: str = CALLED,
     ) -> None:
-        self.sparsity = sparsity
+        self.sparsity, self.start_name, self.called = sparsity, start_name, called
         self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
         self.parameters, self.name = parameters, name
         self.structure = "dense"
@@ -107,13 +111,15 @@ class Differentiated:
         given = self.given_derivative
         if isinstance(given, Mapping):
             given = given.get(self.parameters.varying)
-        self._value = UserFunction(self.f, self.name, self.parameters)
+        self._value = UserFunction(self.f, self.name, self.parameters, self.called)
         self.given_matrix = (
             None
             if self.given_jacobian is None
-            else UserFunction(self.given_jacobian, "jacobian", self.parameters)
+            else UserFunction(self.given_jacobian, "jacobian", self.parameters, self.called)
         )
-        self.given_slope = None if given is None else UserFunction(given, "derivative", self.parameters)
+        self.given_slope = (
+            None if given is None else UserFunction(given, "derivative", self.parameters, self.called)
+        )
         self._gives_derivative = given is not None
 
     def against(self, parameters: ParameterSet) -> Differentiated:
@@ -189,7 +195,7 @@ class Differentiated:
         return value
 
     def _where(self, u: np.ndarray, p: float) -> str:
-        return f"u0 = {np.array2string(u, threshold=6)}, {self.parameters.varying} = {p:.10g}"
+        return f"{self.start_name} = {np.array2string(u, threshold=6)}, {self.parameters.varying} = {p:.10g}"
 
     def value(self, u: np.ndarray, p: float) -> np.ndarray:
         """f(u, p) as float array."""

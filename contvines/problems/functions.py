@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
 FLOAT = np.dtype(np.float64)
+CALLED = "two arguments, the unknowns and the parameters"
 
 
 @runtime_checkable
@@ -57,12 +58,18 @@ class UserFunction:
     name : str
         For messages.
     parameters : ParameterSet
+    called : str
+        With what, for messages.
     """
 
     def __init__(
-        self, f: Callable[..., ArrayLike | Sparse | Operator], name: str, parameters: ParameterSet
+        self,
+        f: Callable[..., ArrayLike | Sparse | Operator],
+        name: str,
+        parameters: ParameterSet,
+        called: str = CALLED,
     ) -> None:
-        self.f, self.name, self.parameters = f, name, parameters
+        self.f, self.name, self.parameters, self.called = f, name, parameters, called
         self.alone = not parameters.named
 
     def raw(self, u: np.ndarray, p: complex) -> ArrayLike | Sparse | Operator:
@@ -81,7 +88,7 @@ class UserFunction:
             if isinstance(error, ValueError) and "read-only" in str(error):
                 hint = f" ({self.name} must not change its argument; let it work on u.copy())"
             elif isinstance(error, TypeError) and "positional argument" in str(error):
-                hint = " (it is called with two arguments, the unknowns and the parameters)"
+                hint = f" (it is called with {self.called})"
             raise NotEvaluable(f"{self.name} raises {type(error).__name__}: {error}{hint}") from error
 
     def __call__(self, u: np.ndarray, p: complex) -> np.ndarray:

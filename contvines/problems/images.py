@@ -53,6 +53,16 @@ def image_map(
                 raise ValueError(f"{name} returns {len(found)} numbers for {n} unknowns; as many are needed")
             return found
 
+        try:
+            tried = image(_probe(n))
+        except ValueError:
+            raise
+        except Exception as error:  # a user's function may fail in any way
+            raise ValueError(f"{name} raises {type(error).__name__}: {error}, for {n} unknowns") from error
+        if not np.isfinite(tried).all():
+            raise ValueError(
+                f"{name} returns {tried.tolist()} for {_probe(n).tolist()}; finite numbers are needed"
+            )
         return image
     matrix = np.asarray(symmetry)
     if matrix.ndim == 1 and len(matrix) == n and np.array_equal(np.sort(matrix), np.arange(n)):
@@ -65,6 +75,10 @@ def image_map(
         f"{name} must be a function of u, a matrix of shape ({n}, {n}) or a permutation of 0 to {n - 1}; "
         f"this one has shape {matrix.shape}"
     )
+
+
+def _probe(n: int) -> np.ndarray:
+    return np.modf(np.sqrt(2.0) * np.arange(1.0, n + 1.0))[0]
 
 
 def images_of(generators: list[Callable[[np.ndarray], np.ndarray]], n: int) -> list[Callable]:
@@ -80,7 +94,7 @@ def images_of(generators: list[Callable[[np.ndarray], np.ndarray]], n: int) -> l
     ValueError
         If there are more than `MOST` elements: the group is not finite, or too large to be listed.
     """
-    probe = np.modf(np.sqrt(2.0) * np.arange(1.0, n + 1.0))[0]
+    probe = _probe(n)
     known, elements = [probe], []
     todo = list(generators)
     while todo:

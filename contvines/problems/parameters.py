@@ -69,7 +69,7 @@ class ParameterSet:
         self.named = isinstance(given, Mapping)
         values: dict[str, Any] = dict(given) if isinstance(given, Mapping) else {varying: given}
         if not values:
-            raise ValueError("p0 = {}: give at least one parameter, for example {'p': 1.0}")
+            raise ValueError("there is no parameter; give at least one, for example {'p': 1.0}")
         for name, value in values.items():
             if not (isinstance(name, str) and name.isidentifier()) and self.named:
                 raise ValueError(

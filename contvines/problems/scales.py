@@ -56,8 +56,14 @@ class Scales:
         )
 
 
-def flat_start(u0: ArrayLike) -> np.ndarray:
+def flat_start(u0: ArrayLike, name: str = "u0") -> np.ndarray:
     """A user's start as a flat array of its own.
+
+    Parameters
+    ----------
+    u0 : array_like
+    name : str
+        What it is called, for messages.
 
     Raises
     ------
@@ -67,12 +73,12 @@ def flat_start(u0: ArrayLike) -> np.ndarray:
     try:
         start = np.array(u0, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"u0 = {u0!r} must be numbers, one for each unknown: {error}") from None
+        raise ValueError(f"{name} = {u0!r} must be numbers, one for each unknown: {error}") from None
     if start.size == 0:
-        raise ValueError("u0 is empty; give a start for each unknown")
+        raise ValueError(f"{name} is empty; give a start for each unknown")
     if start.ndim > 1:
         raise ValueError(
-            f"u0 has shape {start.shape}; the equations see their unknowns in a row: give u0 of shape ({start.size},)"
+            f"{name} has shape {start.shape}; the equations see their unknowns in a row: give {name} of shape ({start.size},)"
         )
     return start.reshape(-1)
 

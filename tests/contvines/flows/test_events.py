@@ -59,11 +59,39 @@ def test_motions_stop_at_an_event():
         ({"states": ("x", "x")}, "'x' is there twice"),
         ({"states": ("x", "period")}, "that of a measure"),
         ({"states": "xy"}, "must be names"),
+        ({"period": np.inf}, "period is inf at the start"),
+        ({"period": "2"}, "period = '2' must be a positive number"),
+        ({"period": lambda p: p.omega}, "period raises AttributeError: there is no parameter 'omega'"),
+        ({"period": 2.0}, "called with .x, p, t., as there is period="),
+        ({"settings": "loose"}, "settings = 'loose' must be values by name"),
+        ({"mirror": lambda x: x[5]}, "mirror raises IndexError"),
+        ({"mirror": lambda x: np.nan * x}, "mirror returns .nan, nan."),
     ],
 )
 def test_bad_events_and_names_are_refused(options, message):
     with pytest.raises(ValueError, match=message):
         cv.FlowProblem(stuart_landau, [0.0, 0.0], {"mu": 1.0}, **options)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda flow: flow.attractor([np.nan, 0.0]), "x0 = .nan, 0.0. must be finite"),
+        (lambda flow: flow.attractor(transient=np.nan), "transient = nan must be a positive time"),
+        (lambda flow: flow.attractor(transient=-1.0), "transient = -1.0 must be a positive time"),
+        (lambda flow: flow.attractor(longest=0), "longest = 0 must be a whole number, 1 or more"),
+        (lambda flow: flow.attractor(doublings=1.5), "doublings = 1.5 must be a whole number"),
+        (lambda flow: flow.cycle(range(6), np.full((6, 2), np.nan)), "states must be finite"),
+        (lambda flow: flow.cycle("abc", np.ones((6, 2))), "times must be numbers"),
+        (lambda flow: flow.cycle(range(6), np.ones((6, 2)), rounds=0), "rounds = 0 must be a whole number"),
+        (lambda flow: flow.population(box=[(0.0, 1.0), (1.0,)]), "give 2 pairs"),
+        (lambda flow: flow.population(box=[(0.0, 1.0), (1.0, np.inf)]), "give 2 pairs"),
+        (lambda flow: flow.population(around=np.ones((4, 3))), "around has shape .4, 3."),
+    ],
+)
+def test_bad_arguments_of_methods_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call(cv.FlowProblem(stuart_landau, [0.5, 0.0], {"mu": 1.0}))
 
 
 def test_a_start_that_is_no_solution_is_told_by_the_name_of_the_state():

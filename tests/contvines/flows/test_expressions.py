@@ -7,6 +7,8 @@ import sympy
 import contvines as cv
 from contvines.flows import read_ode
 
+t = sympy.Symbol("t")
+
 ODE = """# van der Pol with a function and a fixed quantity
 par mu=1, k=1.0
 init x=1, y=0
@@ -95,9 +97,57 @@ def test_names_that_begin_like_words_of_xpp(tmp_path):
         ("table f % 10", "can be read"),
         ("par a=one\nx'=a*x", "no number"),
         ("par a=1", "no equation"),
+        ("x'=-x", "no parameter"),
+        ("par a=1\nx'=a*+x*/2", "line 2.*no formula"),
+        ("par a=1\nx'=(a,x)", "line 2.*no formula"),
+        ("par a=1\nx'=a*x\nx'=-x", "line 3.*'x' is there twice"),
+        ("par a=1\na=2\nx'=a*x", "'a' is there twice"),
+        ("par exp=1\nx'=-x", "'exp' is that of a function"),
+        ("par a=1\ninit y=2\nx'=a*x", "line 2.*'y' is no state"),
+        ("par a=1\nx'=b\nb=c\nc=a", "line 3.*'c' is further down"),
+        ("par a=1\nf(u,v)=u*v\nx'=f(a)", "f has 2 argument"),
+        ("par a=1\nx'=a(x)", "'a' is no function"),
+        ("par a=1\nx'=sin", "'sin' is no state"),
+        ("par a=1\nx'=cos(t)-a*x", "line 2.*depends on the time t; give period="),
+        ("par a=1\nb(s)=s*t\nx'=b(x)-a*x", "line 2.*depends on the time t"),
     ],
 )
 def test_what_cannot_be_read_is_told_with_its_line(tmp_path, line, words):
     (tmp_path / "bad.ode").write_text(line + "\n")
     with pytest.raises(ValueError, match=words):
         read_ode(tmp_path / "bad.ode")
+
+
+def test_a_forced_file_of_xpp_with_words_of_python(tmp_path):
+    """x' = -lambda x + cos t settles on (lambda cos t + sin t) / (lambda^2 + 1)."""
+    (tmp_path / "forced.ode").write_bytes(
+        b"# \xe9tude\npar lambda=2\nif=cos(t)\ndecay(t)=lambda*t\nx'=if-decay(x)\ndone\n"
+    )
+    flow = read_ode(tmp_path / "forced.ode", period=2 * np.pi)
+    assert flow.attractor()(1.0)[0] == pytest.approx((2 * np.cos(1.0) + np.sin(1.0)) / 5, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("expressions", "options", "words"),
+    [
+        (["v"], {}, "1 expressions for 2 states"),
+        (["v +", "-x"], {}, "'v .' is no expression"),
+        ([None, "-x"], {}, "None is no expression"),
+        (["v", "-c*v - x + cos(t)"], {"time": t}, "time= and period= belong together"),
+        (["v", "-c*v - x"], {"period": 1.0}, "time= and period= belong together"),
+        (["v", "-c*v - x"], {"params": 1.0}, "params = 1.0 must be values by name"),
+        (["v", "-c*v - x"], {"params": {"v": 1.0}}, "'v' is there twice"),
+    ],
+)
+def test_what_cannot_be_read_of_sympy(expressions, options, words):
+    with pytest.raises(ValueError, match=words):
+        cv.FlowProblem.from_sympy(
+            expressions, ["x", "v"], [1.0, 0.5], options.pop("params", {"c": 0.3}), **options
+        )
+
+
+def test_a_step_of_sympy():
+    """Beside the step its derivative is zero."""
+    x, a = sympy.symbols("x a")
+    flow = cv.FlowProblem.from_sympy([a * sympy.Heaviside(x) - x], [x], [0.5], {"a": 1.0})
+    assert flow.field.jacobian(np.array([[0.5]]), 1.0)[0, 0, 0] == -1.0
