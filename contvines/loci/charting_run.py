@@ -147,7 +147,7 @@ class Charting:
         if point.problem is None:
             raise ValueError(without_problem(point.label))
         value = point.problem.parameters.get(self.over)
-        if value is None:
+        if value is None or self.over == point.problem.parameter:
             begin(point.problem, point.kind, point.u, point.value, self.over)  # says why
             return
         if not self.within[0] <= value <= self.within[1]:
