@@ -35,12 +35,13 @@ inline void at_gauss_points(const Cycle& y, const double* x) {
 }
 
 // Residual and derivatives from f, df/dx and df/dp (null of forced flows) at the Gauss points; the phase condition is of unit length. Returns what
-// its length was: 0 where nothing moves.
+// its length was: 0 where nothing moves, NaN where one of the numbers is not finite.
 inline double assemble(const Cycle& y, const double* widths, double period, const double* f, const double* jacobian, const double* slope) {
     const whole m = y.degree, d = y.node, width = (m + 1) * d, states = y.count * m * d;
     for (whole i = 0; i < states + y.free + y.count; i++) y.residual[i] = y.derivative[i] = 0.0;
     if (y.free)
         for (whole i = 0; i < states; i++) y.phase[i] = 0.0;
+    double given = 0.0;
     for (whole i = 0; i < y.count; i++) {
         const double step = period * widths[i];
         double *own = y.phase + i * m * d, *after = i + 1 < y.count ? own + m * d : y.phase;
@@ -55,6 +56,8 @@ inline double assemble(const Cycle& y, const double* widths, double period, cons
                     for (whole b = 0; b < d; b++) row[j * d + b] = v * J[b] * y.scale[b];
                     row[j * d + a] += slopes[j];
                 }
+                for (whole b = 0; b < d; b++) given += J[b];
+                given += f[at] + (slope ? slope[at] : 0.0);
                 y.residual[at] = y.rates[at] - step * f[at];
                 if (slope) y.derivative[at] = -step * slope[at];
                 if (!y.free) continue;
@@ -71,7 +74,7 @@ inline double assemble(const Cycle& y, const double* widths, double period, cons
     const double length = sqrt(square);
     if (length > 0.0)
         for (whole i = 0; i < states; i++) y.phase[i] /= length;
-    return length;
+    return isfinite(given) ? length : NAN;
 }
 
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
@@ -347,13 +350,14 @@ inline bool solve_plain(double* a, double* b, whole n, whole s) {
     return true;
 }
 
-// Shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d), in units of the scale; -1 where one is singular.
-inline double distance_to_rest(const double* jacobian, const double* rates, const double* scale, whole n, whole d, double* room) {
-    double least = HUGE_VAL, *a = room, *b = room + d * d;
-    for (whole i = 0; i < n; i++) {
+// Shortest Newton step to an equilibrium from the Gauss points, in units of the scale, from f and df/dx there; -1 where a Jacobian is singular.
+inline double distance_to_rest(const Cycle& y, const double* f, const double* jacobian) {
+    const whole d = y.node;
+    double least = HUGE_VAL, *a = y.room, *b = a + d * d;
+    for (whole i = 0; i < y.count * y.degree; i++) {
         for (whole r = 0; r < d; r++) {
-            for (whole c = 0; c < d; c++) a[r * d + c] = jacobian[(i * d + r) * d + c] / scale[r] * scale[c];
-            b[r] = rates[i * d + r] / scale[r];
+            for (whole c = 0; c < d; c++) a[r * d + c] = jacobian[(i * d + r) * d + c] / y.scale[r] * y.scale[c];
+            b[r] = f[i * d + r] / y.scale[r];
         }
         if (!solve_plain(a, b, d, 1)) return -1.0;
         double square = 0.0;
@@ -363,11 +367,11 @@ inline double distance_to_rest(const double* jacobian, const double* rates, cons
     return sqrt(least);
 }
 
-// The maps from each mesh point to the next one between the planes across the motion (speeds (N, d)): (N, d - 1, d - 1). Returns the product of the
-// factors by which the motion's own direction grows, 1 but for errors; -1 where the cycle stands still or a factor is singular.
-inline double across(const double* left, const double* right, const double* speeds, whole count, whole d, double* maps, double* room) {
-    const whole e = d - 1;
-    double product = 1.0, *a = room, *b = a + d * d, *v = b + d * d, *w = v + d;
+// The maps from each mesh point to the next one between the planes across the motion (speeds (N, d)): (N, d - 1, d - 1), from `left` and `right`. Returns the product
+// of the factors by which the motion's own direction grows, 1 but for errors; -1 where the cycle stands still or a factor is singular.
+inline double across(const Cycle& y, const double* speeds, double* maps) {
+    const whole count = y.count, d = y.node, e = d - 1;
+    double product = 1.0, *a = y.room, *b = a + d * d, *v = b + d * d, *w = v + d;
     auto mirror = [&](const double* speed, double* to) {  // the reflection that takes the direction of motion to the first axis
         double square = 0.0;
         for (whole r = 0; r < d; r++) square += speed[r] * speed[r];
@@ -376,7 +380,7 @@ inline double across(const double* left, const double* right, const double* spee
         return copysign(size, -speed[0]);
     };
     for (whole i = 0; i < count; i++) {
-        for (whole r = 0; r < d * d; r++) a[r] = right[i * d * d + r], b[r] = -left[i * d * d + r];
+        for (whole r = 0; r < d * d; r++) a[r] = y.right[i * d * d + r], b[r] = -y.left[i * d * d + r];
         const double here = mirror(speeds + i * d, v), there = mirror(speeds + (i + 1 < count ? i + 1 : 0) * d, w);
         if (!(fabs(here) > 0.0) || !solve_plain(a, b, d, d)) return -1.0;
         for (whole r = 0; r < d; r++) {  // b (1 - v v')

@@ -92,9 +92,7 @@ EXPORT double core_cycle_bordered(const collocation::Cycle* cycle, double closur
 }
 EXPORT double core_collocation(const collocation::System* system) { return collocation::solve(*system); }
 EXPORT whole core_collocation_room(whole count, whole inner, whole d, whole k, whole s) { return collocation::room_for(count, inner, d, k, s); }
-EXPORT double core_distance_to_rest(const double* jacobian, const double* rates, const double* scale, whole n, whole d, double* room) {
-    return collocation::distance_to_rest(jacobian, rates, scale, n, d, room);
+EXPORT double core_cycle_distance_to_rest(const collocation::Cycle* cycle, const double* f, const double* jacobian) {
+    return collocation::distance_to_rest(*cycle, f, jacobian);
 }
-EXPORT double core_across(const double* left, const double* right, const double* speeds, whole count, whole d, double* maps, double* room) {
-    return collocation::across(left, right, speeds, count, d, maps, room);
-}
+EXPORT double core_cycle_across(const collocation::Cycle* cycle, const double* speeds, double* maps) { return collocation::across(*cycle, speeds, maps); }

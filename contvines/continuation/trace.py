@@ -158,9 +158,10 @@ def _chunks(
 
 
 def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[Solved]:
-    """The last points on a mesh that suits the last one, whose phase is kept from now on."""
-    problem.anchor(None)
+    """The last points on a mesh that suits the last one; its phase is kept from now on where it is another one."""
     last, image = history[-1], problem.adapted(history[-1].u)
+    if image is None and problem.in_phase(last.u):
+        return history
     while True:
         problem.anchor(last.u if image is None else image(last.u), last.p)
         # the last one, too: its tangent is that of the phase which was kept before

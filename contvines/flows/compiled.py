@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..core.library import address
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -69,13 +71,7 @@ class CompiledRates:
         )
         out = np.empty((len(x), *shape))
         times = None if t is None else np.ascontiguousarray(np.broadcast_to(t, len(x)), dtype=float)
-        call(
-            len(x),
-            x.ctypes.data,
-            None if times is None else times.ctypes.data,
-            p.ctypes.data,
-            out.ctypes.data,
-        )
+        call(len(x), address(x), None if times is None else address(times), address(p), address(out))
         return out
 
     def _one(

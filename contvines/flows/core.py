@@ -73,6 +73,8 @@ class CoreCycle:
         self._bordered = function(
             "core_cycle_bordered", NUMBER, POINTER, NUMBER, NUMBER, POINTER, NUMBER, *[POINTER] * 2
         )
+        self._distance = function("core_cycle_distance_to_rest", NUMBER, *[POINTER] * 3)
+        self._across = function("core_cycle_across", NUMBER, *[POINTER] * 3)
 
     def at_gauss_points(self, x: np.ndarray) -> np.ndarray:
         """The states at the Gauss points, shape (N m, d), in an array that is used again."""
@@ -83,11 +85,11 @@ class CoreCycle:
     def assemble(
         self, widths: np.ndarray, period: float, f: np.ndarray, jacobian: np.ndarray, slope: np.ndarray | None
     ) -> float:
-        """Residual, derivatives and phase condition; returns the length that the row of the phase condition had."""
-        arrays = [np.ascontiguousarray(array, dtype=float) for array in (widths, f, jacobian)]
+        """Residual, derivatives and phase condition; returns the length that the row of the phase condition had, NaN where a number is not finite."""
         by = None if slope is None else np.ascontiguousarray(slope, dtype=float)
-        at = [address(array) for array in arrays]
-        return self._assemble(self.at, at[0], period, *at[1:], None if by is None else address(by))
+        return self._assemble(
+            self.at, place(widths), period, place(f), place(jacobian), None if by is None else address(by)
+        )
 
     def bordered(
         self,
@@ -102,31 +104,24 @@ class CoreCycle:
         border = np.ascontiguousarray(border, dtype=float)
         return self._bordered(self.at, closure, corner, address(border), n, place(step), place(tangent))
 
+    def distance_to_rest(self, jacobian: np.ndarray, rates: np.ndarray) -> float | None:
+        """The shortest Newton step to an equilibrium from the Gauss points, in units of the scale; None where a Jacobian is singular."""
+        found = self._distance(self.at, place(rates), place(jacobian))
+        return found if found >= 0.0 else None
 
-def distance_to_rest(jacobian: np.ndarray, rates: np.ndarray, scale: np.ndarray) -> float | None:
-    """The shortest Newton step to an equilibrium from points with Jacobians (n, d, d) and rates (n, d); None where a Jacobian is singular."""
-    arrays = [np.ascontiguousarray(array, dtype=float) for array in (jacobian, rates, scale)]
-    d, room = len(scale), np.empty(len(scale) * (len(scale) + 1))
-    call = function("core_distance_to_rest", NUMBER, *[POINTER] * 3, WHOLE, WHOLE, POINTER)
-    found = call(*map(place, arrays), len(jacobian), d, place(room))
-    return found if found >= 0.0 else None
+    def across(self, left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:
+        """Maps from each mesh point to the next one between the planes across the motion, (N, d - 1, d - 1), and the factor by which the
+        direction of motion grows round the cycle: the trivial multiplier, as computed.
 
-
-def across(left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:
-    """Maps from each mesh point to the next one between the planes across the motion, (N, d - 1, d - 1), and the factor by which the
-
-    direction of motion grows round the cycle: the trivial multiplier, as computed.
-
-    Raises
-    ------
-    LinAlgError
-        If an interval's equations are singular.
-    """
-    count, d = speeds.shape
-    maps, room = np.empty((count, d - 1, d - 1)), np.empty(2 * d * (d + 1))
-    arrays = [np.ascontiguousarray(array, dtype=float) for array in (left, right, speeds)]
-    call = function("core_across", NUMBER, *[POINTER] * 3, WHOLE, WHOLE, POINTER, POINTER)
-    product = call(*map(place, arrays), count, d, place(maps), place(room))
-    if product == -1.0:
-        raise np.linalg.LinAlgError("the equations of an interval are singular")
-    return maps, product
+        Raises
+        ------
+        LinAlgError
+            If an interval's equations are singular.
+        """
+        self.left[:], self.right[:] = left, right
+        count, d = speeds.shape
+        maps = np.empty((count, d - 1, d - 1))
+        product = self._across(self.at, place(np.ascontiguousarray(speeds, dtype=float)), place(maps))
+        if product == -1.0:
+            raise np.linalg.LinAlgError("the equations of an interval are singular")
+        return maps, product

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,6 @@ from contvines.shared.floating_point import TINY
 from ..problems.functions import NotEvaluable
 from ..problems.protocol import margin_of
 from . import mesh
-from .core import distance_to_rest
 from .cycle_mesh import CycleMesh
 from .events import FINER
 from .kernels import CycleWork
@@ -39,19 +39,19 @@ class CycleBorders(CycleMesh):
 
     # ------------------------------------------------------------------ homoclinic orbits
     def _from_homoclinic(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
-        x = u[: self.states].reshape(-1, self.node) / self.node_scale
-        size, s = float(np.ptp(x, axis=0).max()), self.flow.settings
-        short = float(np.log10(s.longest * self.clock / max(float(u[self.states]), TINY)))
+        x, s = u[: self.states].reshape(-1, self.node), self.flow.settings
+        size = float(((x.max(axis=0) - x.min(axis=0)) / self.node_scale).max())
+        short = math.log10(s.longest * self.clock / max(float(u[self.states]), TINY))
         _, _, jacobian, f = work.along
-        closeness = distance_to_rest(jacobian, f, self.node_scale) if work.core is not None else None
+        closeness = None if work.core is None else work.core.distance_to_rest(jacobian, f)
         if work.sparse is not None:
             closeness = rest_of_sparse(work.sparse.pattern, jacobian, f, self.node_scale)
         elif closeness is None:
             scaled = jacobian * (self.node_scale / self.node_scale[:, None])
             closeness = _distance_to_rest(scaled, f / self.node_scale)
-        if not size > 0.0 or not np.isfinite(closeness):
-            return np.array([np.inf, short])
-        return np.array([float(np.log10(max(closeness / size, TINY) / s.homoclinic)), short])
+        if not size > 0.0 or not closeness < math.inf:
+            return np.array([math.inf, short])
+        return np.array([math.log10(max(closeness / size, TINY) / s.homoclinic), short])
 
     def from_rest(self, u: np.ndarray, p: float) -> float:
         """How near the cycle comes to an equilibrium, relative to its size in each direction: the same in all coordinates of the states, as beside Bogdanov-Takens
@@ -77,8 +77,7 @@ class CycleBorders(CycleMesh):
         """The smallest value of each event along the cycle, and where."""
         x, period, widths = self.parts(u, p)
         inside = np.arange(FINER * self.rule.degree) / (FINER * self.rule.degree)
-        begins = np.append(0.0, np.cumsum(widths)[:-1])
-        edges = (begins[:, None] + widths[:, None] * inside).reshape(-1)
+        edges = mesh.places(widths, inside)
         try:
             return self.flow.events.closest(
                 lambda places: mesh.evaluate(self.rule, widths, x, places), edges, period, self.values.at(p)

@@ -52,25 +52,24 @@ class CycleProblem(CycleRelatives):
         NotEvaluable
             If the right-hand side fails, or the period is not positive.
         """
-        r, count = self.rule, self.intervals
+        r = self.rule
         x, period, widths = self.parts(u, p)
         if not period > 0.0:
             raise NotEvaluable(f"the period would be {period:.3g}")
         core = work.core
         points = self._at_gauss_points(r.values, x) if core is None else core.at_gauss_points(x)
-        begins = np.append(0.0, np.cumsum(widths)[:-1])
-        places = (begins[:, None] + widths[:, None] * r.points).reshape(-1) if self.field.forced else None
+        places = mesh.places(widths, r.points) if self.field.forced else None
         times = None if places is None else period * places
-        f = self.field(points, p, times)
+        f = np.ascontiguousarray(self.field(points, p, times), dtype=float)
         derivative = self.field.jacobian if work.sparse is None else self.field.jacobian_entries
-        jacobian = derivative(points, p, times)
+        jacobian = np.ascontiguousarray(derivative(points, p, times), dtype=float)
         slope = self.field.slope(points, p) if places is None else None
-        if not math.isfinite(f.sum() + jacobian.sum() + (0.0 if slope is None else slope.sum())):
-            raise NotEvaluable("the right-hand side or its derivative is not finite along the cycle")
         if core is not None:
             size = core.assemble(widths, period, f, jacobian, slope)
         else:
             size = self._assemble(work, x, widths, period, f, jacobian, slope)
+        if math.isnan(size):
+            raise NotEvaluable("the right-hand side or its derivative is not finite along the cycle")
         work.along, work.steps = (np.array(x[:, 0]), p, jacobian, f), period * widths
         if places is not None:
             by = self.field.along(lambda q: self._moved(points, q, places, widths), p)
@@ -79,10 +78,10 @@ class CycleProblem(CycleRelatives):
         if not size > 0.0:  # an equilibrium, which moves in no direction
             work.phase[0, 0] = 1.0
         if self.reference is not None:
-            phase, origin = self.reference
-            work.phase[:] = phase
-            gap = (x / self.node_scale).reshape(count, -1) - origin
-            work.residual[self.states] = (phase * gap).sum()
+            work.phase[:], origin = self.reference
+            work.residual[self.states] = (
+                work.phase * (x / self.node_scale - origin).reshape(work.phase.shape)
+            ).sum()
 
     def _at_gauss_points(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
         return np.einsum("cj,ijk->ick", matrix, mesh.closed(x)).reshape(-1, self.node)
@@ -99,6 +98,8 @@ class CycleProblem(CycleRelatives):
     ) -> float:
         """Residual, derivatives and phase condition, in numpy; see :meth:`contvines.flows.core.CoreCycle.assemble`."""
         r, count, d, m = self.rule, self.intervals, self.node, self.rule.degree
+        if not math.isfinite(f.sum() + jacobian.sum() + (0.0 if slope is None else slope.sum())):
+            return math.nan
         steps = np.repeat(period * widths, m)[:, None]
         if work.sparse is not None:
             work.entries = work.sparse.entries(period * widths, jacobian, self.node_scale)
@@ -124,6 +125,7 @@ class CycleProblem(CycleRelatives):
         return size
 
     reference: tuple[np.ndarray, np.ndarray] | None = None
+    """Row of the phase condition that is kept, and the nodes that fulfil it, in units of the scale."""
 
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
         """Keep the phase of a cycle for those that follow; None: corrections alone are orthogonal to the motion.
@@ -135,8 +137,17 @@ class CycleProblem(CycleRelatives):
             return
         work = self.workspace()
         self.evaluate(u, p, work)
-        x = u[: self.states].reshape(self.intervals, -1, self.node) / self.node_scale
-        self.reference = work.phase.copy(), x.reshape(self.intervals, -1)
+        self.reference = work.phase.copy(), self._curve(u)[0] / self.node_scale
+
+    def in_phase(self, u: np.ndarray) -> bool:
+        """Whether a cycle is enough like the one whose phase is kept."""
+        if self.reference is None:
+            return not self.free_period
+        x, widths = self._curve(u)
+        return (
+            mesh.alike(self.rule, widths, x / self.node_scale, self.reference[1])
+            > self.flow.settings.in_phase
+        )
 
     def _moved(self, points: np.ndarray, p: complex, places: np.ndarray, widths: np.ndarray) -> np.ndarray:
         """Period times width times f, of forced flows, as a function of the parameter alone."""

@@ -62,9 +62,7 @@ class Return:
         self.points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
         self.steps = np.repeat(period * widths, m)
         self.widths = np.repeat(widths, m)
-        begins = np.append(0.0, np.cumsum(widths)[:-1])
-        places = (begins[:, None] + widths[:, None] * r.points).reshape(-1)
-        self.times = period * places if problem.field.forced else None
+        self.times = period * mesh.places(widths, r.points) if problem.field.forced else None
         self.jacobian = problem.field.jacobian(self.points, p, self.times)
         f = problem.field(self.points, p, self.times)
         self.size = self.states + self.free

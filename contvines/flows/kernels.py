@@ -11,7 +11,7 @@ from ..core.library import native
 from ..problems.functions import NotEvaluable
 from ..problems.interpreted import assign
 from ..problems.protocol import Kernels
-from .core import CoreCycle, across
+from .core import CoreCycle
 from .elimination import condense, multipliers_of, solve_collocation
 from .sparse import SparseEquations, leading_multipliers, solve_bordered
 
@@ -219,7 +219,9 @@ def spectrum(data: Collocated, work: CycleWork) -> tuple[np.ndarray, float]:
         values = multipliers_of(left, right)
         return np.delete(values, int(np.argmin(np.abs(values - 1.0)))), 0.0
     maps, product = found
-    return multipliers_of(maps, np.broadcast_to(-np.eye(maps.shape[1]), maps.shape)), abs(product - 1.0)
+    ahead = np.empty_like(maps)
+    ahead[:] = -np.eye(maps.shape[1])
+    return multipliers_of(maps, ahead), abs(product - 1.0)
 
 
 def growth_of_volume(data: Collocated, work: CycleWork) -> float:
@@ -236,14 +238,14 @@ def _across(
         return None
     points, p, _, _ = work.along
     speeds = data.field(points, p) / data.node_scale
-    sizes = np.linalg.norm(speeds, axis=1)
-    if not sizes.min() > data.field.settings.solved * (1.0 + sizes.max()):
+    squares = np.einsum("ij,ij->i", speeds, speeds)
+    if not math.sqrt(squares.min()) > data.field.settings.solved * (1.0 + math.sqrt(squares.max())):
         return None
-    return (planes if work.core is None else across)(left, right, speeds)
+    return (planes if work.core is None else work.core.across)(left, right, speeds)
 
 
 def planes(left: np.ndarray, right: np.ndarray, speeds: np.ndarray) -> tuple[np.ndarray, float]:
-    """:func:`contvines.flows.core.across` in numpy."""
+    """:meth:`contvines.flows.core.CoreCycle.across` in numpy."""
     steps, sizes = -np.linalg.solve(right, left), np.linalg.norm(speeds, axis=1)
     units = speeds / sizes[:, None]
     here = np.linalg.qr(units[:, :, None], mode="complete")[0][:, :, 1:]

@@ -28,10 +28,24 @@ def evaluate(rule: Rule, widths: np.ndarray, x: np.ndarray, places: np.ndarray) 
     return np.einsum("ij,ijk->ik", rule.interpolation(local), closed(x)[i])
 
 
+def places(widths: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    """Places at these parts of each interval, in units of the period, shape (N len(inside),)."""
+    begins = np.append(0.0, np.cumsum(widths)[:-1])
+    return (begins[:, None] + widths[:, None] * inside).reshape(-1)
+
+
 def node_places(rule: Rule, widths: np.ndarray) -> np.ndarray:
     """Places of the nodes, the last one of each interval left out, in units of the period, shape (N m,)."""
-    begins = np.append(0.0, np.cumsum(widths)[:-1])
-    return (begins[:, None] + widths[:, None] * rule.nodes[:-1]).reshape(-1)
+    return places(widths, rule.nodes[:-1])
+
+
+def alike(rule: Rule, widths: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
+    """Cosine of the angle between the directions of motion along two curves on one mesh, in the mean over the period."""
+    a, b = (np.einsum("cj,ijk->ick", rule.slopes, closed(z)) for z in (x, y))
+    aa, ab, bb = (
+        np.einsum("i,c,ick,ick->", 1.0 / widths, rule.weights, *pair) for pair in ((a, a), (a, b), (b, b))
+    )
+    return float(ab / np.sqrt(aa * bb))
 
 
 def onto(rule: Rule, widths: np.ndarray, x: np.ndarray, new: np.ndarray) -> np.ndarray:

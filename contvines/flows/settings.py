@@ -42,6 +42,8 @@ class FlowSettings:
         Ends: size, in units of the scale, of a cycle that has shrunk to an equilibrium, and distance of halves of a cycle that is one of half the period.
     halving : float
         Ends: distance of a cycle from itself half a period later, relative to its size, below which it is followed on a mesh with equal halves.
+    in_phase : float
+        Phase: cosine of the angle between the directions of motion of two cycles, in the mean over the period, above which one keeps the phase of the other.
     homoclinic, longest : float
         Ends: distance from an equilibrium relative to the size of a cycle, and period in units of the first one, at which a cycle counts as homoclinic.
     touch : float
@@ -77,6 +79,7 @@ class FlowSettings:
     same: float = 1e-7
     at_rest: float = 1e-3
     halving: float = 0.2
+    in_phase: float = 0.9
     homoclinic: float = 1e-6
     longest: float = 1e3
     touch: float = 1e-4

@@ -93,6 +93,10 @@ class AdaptiveLocus(LocusProblem):
             work.borders[:] = borders_at(self.at(p), self.condition, inner, float(value), work.borders)
             work.state[KNOWN] = min(work.state[KNOWN], 0.0)  # slopes belong to the borders
 
+    def in_phase(self, u: np.ndarray) -> bool:
+        """Never: the borders are those of the last point."""
+        return False
+
     def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a better mesh; None where the mesh is good."""
         own = self.mesh.adapted(u[: self.size])

@@ -137,3 +137,20 @@ def test_a_branch_whose_mesh_has_no_equal_halves_ends_where_its_cycles_become_sh
     (end,) = graph.of_kind("period-doubling")
     assert end.value == pytest.approx(0.63030200616, abs=1e-9)
     assert graph["B1"].range[1] == end.value
+
+
+def test_cycles_that_turn_over_keep_no_phase_that_does_not_suit_them():
+    """The unit circle in a plane that turns by the angle q: where q = pi, motions are orthogonal, in the mean, to those where q = 0."""
+
+    def f(x, p):
+        c, s = np.cos(p.q), np.sin(p.q)
+        y, z = c * x[1] + s * x[2], c * x[2] - s * x[1]
+        growth = 1.0 - x[0] ** 2 - y**2
+        a, b, d = growth * x[0] - y, x[0] + growth * y, -2.0 * z
+        return [a, c * b - s * d, s * b + c * d]
+
+    flow = cv.FlowProblem(f, [1.0, 0.0, 0.0], {"q": 0.0})
+    branch = cv.diagram(flow.attractor(), over="q", within=(0.0, 2.0 * np.pi), depth=0)["B1"]
+    assert branch.range == (0.0, 2.0 * np.pi)
+    assert np.allclose(branch.measure("period"), 2.0 * np.pi, rtol=1e-9)
+    assert np.allclose(branch.measure("max x2"), np.abs(np.sin(branch.values)), atol=1e-6)
