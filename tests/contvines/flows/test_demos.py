@@ -18,6 +18,7 @@ pytestmark = pytest.mark.slow
 EXPECTED = json.loads(TABLE.read_text(encoding="utf-8"))
 BY_NAME = {demo.name: demo for demo in DEMOS}
 LONG = {
+    "pen",
     "neural mass",
     "wav",
     "oxidation of CO",
