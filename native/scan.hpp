@@ -6,6 +6,7 @@ namespace continuation {
 
 constexpr double MARGIN = -1e-12;  // of contvines/continuation/layout.py
 
+constexpr double FASTER = 2.0;     // times the rate that neighbouring segments tell
 constexpr double PAST = 1e-10;  // multipliers of a conservative system lie on the circle up to roundoff
 
 // Of one problem. Signed permutations T: u - T(u) of column j is u[j] - (signs[j] u[orders[j]] + constants[j]), modulo `shift`.
@@ -16,13 +17,24 @@ struct Scanner {
     const double *signs, *constants, *shift;
     double* room;  // (2, symmetries, unknowns)
 };
+// Where a multiplier is: the logarithm of its size and its direction (of an eigenvalue real and imaginary part, NaN where nothing is known);
+// how far the nearest one of the next point is, and of the one before, all in all and from the line, whether one of a pair is real there, and which it is.
+struct Link {
+    double gap, towards;
+    whole born, at;
+};
+struct Place {
+    double size, x, y;
+    Link ahead, back;
+};
 // A chunk, and what is found: one array after the other from `lengths` on.
 struct Scanned : Scanner {
     whole count;
     double flat;  // slopes up to this are rounding
     const double *points, *values, *tangents, *rows, *determinants;
-    double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *past = near + 3 * count, *pairs = past + 3 * count,
-           *low = pairs + count, *sizes = low + row - 2 * multipliers, *turns = sizes + symmetries * count;
+    double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *past = near + 3 * count, *reached = past + 3 * count,
+           *low = reached + count - 1, *sizes = low + row - 2 * multipliers, *turns = sizes + symmetries * count;
+    Place* places = (Place*)(turns + symmetries * (count - 1));  // (count, multipliers)
 };
 
 // Terms joined in four parts, so that the order is that of vector instructions whether there are any or not.
@@ -40,22 +52,64 @@ template <class Term> inline double sum(whole n, Term term) {
 
 // Of each sort (near 1, near -1, pairs) the distance of the nearest from the circle, negative where an odd number is past it.
 inline void multipliers_of(const Scanned& s, const double* row, whole i) {
-    double near[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, past[3] = {}, paired = 0.0;
+    double near[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, past[3] = {};
+    Place* place = s.places + i * s.multipliers;
     for (whole k = 0; k < s.multipliers && s.kind != NONE; k++) {
         const double re = row[2 * k], im = row[2 * k + 1];
         const bool real = im == 0.0, map = s.kind == MAP;
         const int sort = s.kind == REAL ? 0 : !real ? 2 : map && !(re > 0.0) ? 1 : 0;
+        place[k] = {NAN, NAN, NAN, {HUGE_VAL, 0.0, 0, k}, {HUGE_VAL, 0.0, 0, k}};
         if (s.kind != REAL && !real && !(im > 0.0)) continue;
-        const double size = map ? logarithm(real ? fabs(re) : hypotenuse(re, im)) : re;
+        const double modulus = real ? fabs(re) : hypotenuse(re, im), size = map ? logarithm(modulus) : re;
         past[sort] += size > PAST, near[sort] = fabs(size) < near[sort] ? fabs(size) : near[sort];
-        if (sort == 2 && isfinite(size)) paired = 1.0;
+        const double x = map ? re / modulus : 0.0, y = map ? im / modulus : im;
+        if (isfinite(size) && isfinite(x) && isfinite(y)) place[k].size = size, place[k].x = x, place[k].y = y;
     }
     for (int sort = 0; sort < 3; sort++) {
         const bool told = near[sort] > PAST && near[sort] < HUGE_VAL;
         s.near[sort * s.count + i] = told ? (whole(past[sort]) % 2 ? -near[sort] : near[sort]) : NAN;
         s.past[sort * s.count + i] = past[sort];
     }
-    s.pairs[i] = paired;
+}
+
+// The nearest multiplier at the next point of each one of point i - 1, and at the point before of each one of point i.
+inline void join(const Scanned& s, whole i) {
+    Place *before = s.places + (i - 1) * s.multipliers, *here = before + s.multipliers;
+    for (whole j = 0; j < s.multipliers; j++)
+        for (whole k = 0; k < s.multipliers; k++) {
+            const double along = here[k].size - before[j].size, x = here[k].x - before[j].x, y = here[k].y - before[j].y;
+            const double gap = sqrt(along * along + (x * x + y * y));
+            const double* row = s.rows + i * s.row;
+            const whole born = (row[2 * k + 1] > 0.0) != (row[2 * j + 1 - s.row] > 0.0);
+            if (gap < before[j].ahead.gap) before[j].ahead = {gap, fabs(along), born, k};
+            if (gap < here[k].back.gap) here[k].back = {gap, fabs(along), born, j};
+        }
+}
+// Whether one of a pair at one end of segment i, or at the other, may have reached the circle between; see `reached` in the reference.
+inline bool reaches(const Scanned& s, whole i) {
+    const whole m = s.multipliers;
+    const double length = s.lengths[i];
+    for (whole j = 0; j < 2 * m; j++) {
+        const bool last = j >= m;
+        const whole from = last ? i + 1 : i, to = last ? i : i + 1;
+        const Place& a = s.places[from * m + j % m];
+        const Link own = last ? a.back : a.ahead;
+        if (!(s.rows[from * s.row + 2 * (j % m) + 1] > 0.0 && own.gap < HUGE_VAL)) continue;
+        const Place& b = s.places[to * m + own.at];
+        const Place &left = last ? b : a, &right = last ? a : b;
+        double anyway = 0.0, towards = 0.0;
+        whole born = 0;
+        const auto heed = [&](const Link& link, double over) {
+            if (!(link.gap < HUGE_VAL)) return;
+            anyway = larger(anyway, link.gap / over), towards = larger(towards, link.towards / over), born |= link.born;
+        };
+        heed(own, length);
+        if (i > 0) heed(left.back, s.lengths[i - 1]);
+        if (i + 2 < s.count) heed(right.ahead, s.lengths[i + 1]);
+        const double way = larger(own.gap, FASTER * length * (born ? anyway : towards));
+        if (smaller(fabs(a.size), fabs(b.size)) > PAST && way >= fabs(a.size) + fabs(b.size)) return true;
+    }
+    return false;
 }
 
 // Below the lowest of three points a parabola falls by a part of the changes between them: at most a quarter of the square of the longer
@@ -78,7 +132,6 @@ inline bool open_at(const Scanned& s, whole i) {
     const double one = fabs(here), other = fabs(there), mean = (here > 0.0 ? s.values[i] - s.values[i - 1] : s.values[i - 1] - s.values[i]) / length;
     const double bend = 3.0 * (one + other - 2.0 * mean), middle = 2.0 * one + other - 3.0 * mean;
     if (bend > 0.0 && middle > 0.0 && middle < bend && one * bend < middle * middle) return true;  // the cubic turns twice
-    if (s.pairs[i] != s.pairs[i - 1]) return true;
     for (int sort = 0; sort < 3; sort++)
         if (s.past[sort * s.count + i] != s.past[sort * s.count + i - 1]) return true;
     if (i < 2) return false;
@@ -114,12 +167,17 @@ inline bool scan(const Scanned& s) {
         const double change = s.values[i] - s.values[i - 1], squares = sum(n, [&](whole j) { return (point[j] - last[j]) * (point[j] - last[j]); });
         s.lengths[i - 1] = sqrt(s.metric.of_unknowns * squares + s.metric.of_parameter * change * change);
         quiet = quiet && !open_at(s, i);
+        join(s, i);
         if (i == 1) continue;
         const double part = fall(s.lengths[i - 2], s.lengths[i - 1]), *b = c - s.row, *a = b - s.row;
         for (whole j = 0; j < width; j++) {
             const double least = smaller(smaller(fabs(a[j]), fabs(b[j])), fabs(c[j])) + MARGIN, most = larger(fabs(b[j] - a[j]), fabs(c[j] - b[j]));
             s.low[j] = (least < part * most) & (most < HUGE_VAL) ? 1.0 : s.low[j];
         }
+    }
+    for (whole i = 0; i + 1 < s.count; i++) {
+        s.reached[i] = (s.kind == MAP || s.kind == FLOW) && reaches(s, i) ? 1.0 : 0.0;
+        quiet &= s.reached[i] == 0.0;
     }
     return quiet && sum(width, [&](whole j) { return s.low[j]; }) == 0.0;
 }

@@ -14,12 +14,12 @@ from ..continuation.layout import MARGIN
 from ..problems.abilities import Nearing
 from ..shared.floating_point import EPSILON
 from .consistency import at_one, inexact, leap
-from .evidence import SLOPE, evidence, filled, may_be_real, pairs_born, pointed, suspicious
+from .evidence import SLOPE, evidence, filled, may_be_real, pointed, suspicious
 from .kinks import kinked, nearest
 from .locate import locate
 from .located import NOWHERE, Located, Role
 from .multiplier_counts import counts
-from .scan import Scan, scanner
+from .scan import Scan, reached, scanner
 from .segment import Segment
 from .segment_search import SegmentSearch
 
@@ -78,24 +78,26 @@ class Detector(SegmentSearch):
         smallest = seen.first_margin - 1
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
-        born = pairs_born(seen) if engine.m > 2 else np.zeros(len(lengths), dtype=bool)
+        apart = scanned.reached > 0.0
         sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths)
         if engine.many:
             inside[:, SLOPE + 1 : SLOPE + 4] = False
         told = ((sides[1:] != sides[:-1]).any(axis=1) | borders | meets)[extra:]
         meets, lands = meets[extra:], lands[extra:]
-        inside, born, sharp = inside[extra:], born[extra:] & ~meets, sharp[extra:] & ~meets
+        inside, apart, sharp = inside[extra:], apart[extra:] & ~meets, sharp[extra:] & ~meets
         inside[meets] = (
             False  # a branch that comes back to a symmetry is marginal there: no point to cut it at
         )
         movable = lands if chunk.status == Status.RUNNING else lands[:-1]
         landed = int(movable.argmax()) if movable.any() else None
         events: list[Located] = []
-        for i in np.flatnonzero((told | sharp | born | inside.any(axis=1))[:landed]).tolist():
+        for i in np.flatnonzero((told | sharp | apart | inside.any(axis=1))[:landed]).tolist():
             signs = sides[i + extra : i + extra + 2, 1].tolist()
             segment = Segment(engine, chunk.solved(i, signs[0]), chunk.solved(i + 1, signs[1]))
             suspects = columns[inside[i]].tolist()
-            split = self.inside(segment, real, suspects) if suspects or born[i] else None
+            split = self.inside(segment, real, suspects) if suspects else None
+            if split is None and apart[i]:
+                split = self.halved(segment, real, _neighbours(wide, lengths, i + extra))
             if engine.many and sharp[i]:
                 found = self._closely(segment, real)
             elif split is not None:
@@ -157,7 +159,8 @@ class Detector(SegmentSearch):
         if start is None or seen is None:
             return []
         segment = Segment(self.engine, start, first)
-        split = None if real else self.passed(segment)
+        apart = reached(self.engine, np.array([start.row, first.row]), np.ones(1))[0]
+        split = self.halved(segment, real) if apart else None if real else self.passed(segment)
         if share < beyond:
             split = (beyond - share) / (1.0 - share), seen
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)
@@ -277,6 +280,12 @@ class Detector(SegmentSearch):
         return self.engine.distance(event.point, stop.point) > (
             settings.at_end if own else settings.one_place
         )
+
+
+def _neighbours(chunk: Chunk, lengths: np.ndarray, i: int) -> list[tuple[float, np.ndarray]]:
+    """The points before and behind segment i of a chunk: their places on it, and their rows."""
+    before = [(-lengths[i - 1] / lengths[i], chunk.rows[i - 1])] if i > 0 else []
+    return before + ([(1.0 + lengths[i + 1] / lengths[i], chunk.rows[i + 2])] if i + 1 < len(lengths) else [])
 
 
 def _plain(place: float, point: Solved) -> Located:

@@ -17,9 +17,6 @@ from .multiplier_counts import balance
 from .scan import Scan, Spectra
 
 UNLIKE = 0.2  # part of the largest of three distances of a pair by which its bend may differ between them
-NEARBY = np.log(
-    2.0
-)  # distance from the circle of a pair that may have been past it since two real multipliers met
 SLOPE, PAIR = 0, 3  # columns of `distances`
 AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
 
@@ -37,14 +34,11 @@ class Evidence(NamedTuple):
         circle, users' tests, the smallest margin.
     margins : ndarray, shape (n, w)
         All of them, of which the distances follow those in ``distances``.
-    pairs : ndarray, shape (n,)
-        Not 0 where there are complex pairs.
     """
 
     sides: np.ndarray
     distances: np.ndarray
     margins: np.ndarray
-    pairs: np.ndarray
 
     @property
     def first_margin(self) -> int:
@@ -104,7 +98,7 @@ def evidence(
         *(np.where(values >= 0.0, 1, -1) for values in tests),
     ]
     distances = np.column_stack([slopes, *spectra.near, own, smallest - MARGIN])
-    return Evidence(np.column_stack(sides).astype(int), distances, rows[:, 2 * engine.m :], spectra.pairs)
+    return Evidence(np.column_stack(sides).astype(int), distances, rows[:, 2 * engine.m :])
 
 
 def filled(sides: np.ndarray) -> np.ndarray:
@@ -188,16 +182,6 @@ def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np
     if len(lengths) > 1:
         inside[0], inside[-1] = behind[0] < EDGE, before[-1] < EDGE
     return (signs[:-1] == signs[1:]) & inside
-
-
-def pairs_born(seen: Evidence) -> np.ndarray:
-    """Segments in which a complex pair near the circle comes about or vanishes, or next to these: nothing is smooth there, no parabola tells."""
-    near = np.abs(seen.distances[:, PAIR]) < NEARBY
-    changes = seen.pairs[:-1] != seen.pairs[1:]
-    beside = changes.copy()
-    beside[1:] |= changes[:-1]
-    beside[:-1] |= changes[1:]
-    return beside & (near[:-1] | near[1:])
 
 
 def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:

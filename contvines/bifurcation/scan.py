@@ -32,13 +32,10 @@ class Spectra(NamedTuple):
         axis), negative where an odd number is past it; NaN where there are none, or one on the circle to rounding.
     past : ndarray, shape (3, n)
         How many are past the circle.
-    pairs : ndarray, shape (n,)
-        Not 0 where there are complex pairs.
     """
 
     near: np.ndarray
     past: np.ndarray
-    pairs: np.ndarray
 
 
 class Scan(NamedTuple):
@@ -50,6 +47,8 @@ class Scan(NamedTuple):
     smallest : ndarray, shape (n,)
         Smallest margins, infinity without margins.
     spectra : Spectra
+    reached : ndarray, shape (n - 1,)
+        Not 0 where a pair may have reached the circle between two points; see `reached`.
     low : ndarray, shape (w,)
         Not 0 for margins that a parabola through three neighbours may bring to zero: below the lowest of three points it falls by a part of the
         changes between them, at most a quarter of the square of the longer length over the shorter one.
@@ -64,6 +63,7 @@ class Scan(NamedTuple):
     lengths: np.ndarray
     smallest: np.ndarray
     spectra: Spectra
+    reached: np.ndarray
     low: np.ndarray
     sizes: np.ndarray
     turns: np.ndarray
@@ -85,7 +85,54 @@ def spectra(engine: Engine, rows: np.ndarray) -> Spectra:
         near = np.fmin.reduce(np.abs(sizes), axis=2, initial=np.inf)
         told = (near > LOCATING.past) & (near < np.inf)
         near = np.where(told, np.where(past % 2, -near, near), np.nan)
-        return Spectra(near, past, np.isfinite(sizes[2]).any(axis=1))
+        return Spectra(near, past)
+
+
+def reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Segments between neighbouring rows on which one of a pair of multipliers may have reached the circle (the axis), shape (n - 1,).
+
+    In the plane of logarithms the circle is a line, and so is the axis in that of eigenvalues. A multiplier is the nearest one at the next point, be
+    that real or one of a pair. It may have reached the line if it goes as far as both its places at the ends of the segment are from the line, together;
+    on two sides it has passed. It goes as far as from one place to the other, or as `Locating.faster` times the largest of its rates on this segment and those
+    beside it have it: rates towards the line, or, where two real ones become a pair on one of these, in any direction. On the line to rounding nothing tells.
+    """
+    m, kind = engine.m, engine.detection
+    if kind not in ("map", "flow") or m < 2:
+        return np.zeros(len(lengths), dtype=bool)
+    re, im = rows[:, : 2 * m : 2], rows[:, 1 : 2 * m : 2]
+    with np.errstate(all="ignore"):
+        modulus = np.where(im == 0.0, np.abs(re), np.hypot(re, im))
+        size = np.log(modulus) if kind == "map" else re
+        place = np.array([size, re / modulus, im / modulus] if kind == "map" else [size, im])
+        told, pairs = np.isfinite(place).all(axis=0) & (im >= 0.0), im > 0.0
+        steps = place[:, 1:, None, :] - place[:, :-1, :, None]
+        gaps = np.where(told[:-1, :, None] & told[1:, None, :], np.sqrt((steps**2).sum(axis=0)), np.inf)
+        rates = gaps, np.abs(steps[0]), (pairs[:-1, :, None] != pairs[1:, None, :]) * lengths[:, None, None]
+        links = [_nearest(gaps, np.array(rates) / lengths[:, None, None], axis) for axis in (2, 1)]
+        nothing, found = np.zeros((3, 1, m)), np.zeros(len(lengths), dtype=bool)
+        before = np.concatenate([nothing, links[1][1][:, :-1]], axis=1)
+        behind = np.concatenate([links[0][1][:, 1:], nothing], axis=1)
+        first, last = slice(-1), slice(1, None)
+        for axis, (at, own), one, other, here, there in (
+            (2, links[0], first, last, before, behind),
+            (1, links[1], last, first, behind, before),
+        ):
+            a, b = np.abs(size[one]), np.abs(np.take_along_axis(size[other], at, 1))
+            anyway, towards, born = np.maximum(np.maximum(own, here), np.take_along_axis(there, at[None], 2))
+            gap, faster = (
+                gaps.min(axis=axis),
+                LOCATING.faster * lengths[:, None] * np.where(born > 0.0, anyway, towards),
+            )
+            sure = pairs[one] & (gap < np.inf) & (np.minimum(a, b) > LOCATING.past)
+            found |= (sure & (np.maximum(gap, faster) >= a + b)).any(axis=1)
+    return found
+
+
+def _nearest(gaps: np.ndarray, numbers: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
+    """Of each multiplier at one end of segments which one at the other is the nearest, and some numbers of both, (k, n - 1, m); 0 where there is none."""
+    at = gaps.argmin(axis=axis)
+    found = np.take_along_axis(numbers, np.expand_dims(at, (0, axis + 1)), axis + 1).squeeze(axis + 1)
+    return at, np.where(gaps.min(axis=axis) < np.inf, found, 0.0)
 
 
 def with_arrays(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk) -> Scan:
@@ -104,6 +151,7 @@ def with_arrays(engine: Engine, symmetries: Sequence[SymmetryTest], chunk: Chunk
             lengths,
             engine.smallest_margin(chunk.rows),
             spectra(engine, chunk.rows),
+            reached(engine, chunk.rows, lengths),
             np.asarray(((least < part * most) & (most < np.inf)).any(axis=0)),
             np.array([np.abs(gap).max(axis=1, initial=0.0) for gap in gaps]),
             np.array([np.einsum("ij,ij->i", gap[1:], gap[:-1]) for gap in gaps]),
@@ -130,20 +178,22 @@ class NativeScan:
     def __call__(self, chunk: Chunk) -> Scan:
         """Scan a chunk."""
         n, k, w = len(chunk), self.symmetries, self.margins
-        found = np.empty(9 * n - 1 + w + k * (2 * n - 1))
+        places = 11 * n * self.engine.m  # room for those of multipliers
+        found = np.empty(9 * n - 2 + w + k * (2 * n - 1) + places)
         quiet = _native()(
             address(self.frame), n, self.engine.upright(float(chunk.values[0])), place(chunk.points), place(chunk.values),
             place(chunk.tangents), place(chunk.rows), place(chunk.signs), address(found),
         )  # fmt: skip
-        spectra, low = found[2 * n - 1 : 9 * n - 1], 9 * n - 1
+        spectra, low = found[2 * n - 1 : 8 * n - 1], 9 * n - 2
         sizes, turns = low + w, low + w + k * n
         return Scan(
             found[: n - 1],
             found[n - 1 : 2 * n - 1],
-            Spectra(spectra[: 3 * n].reshape(3, n), spectra[3 * n : 6 * n].reshape(3, n), spectra[6 * n :]),
+            Spectra(spectra[: 3 * n].reshape(3, n), spectra[3 * n :].reshape(3, n)),
+            found[8 * n - 1 : low],
             found[low:sizes],
             found[sizes:turns].reshape(k, n),
-            found[turns:].reshape(k, n - 1),
+            found[turns : turns + k * (n - 1)].reshape(k, n - 1),
             bool(quiet),
         )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,7 @@ from .located import NOWHERE, Located, Role
 from .location_error import blurred
 from .one_sided_limits import one_sided
 from .point_on_branch import PointOnBranch
-from .scan import spectra
+from .scan import reached, spectra
 from .segment import Segment
 from .settings import LIMITS
 from .symmetry_test import SymmetryTest
@@ -271,18 +272,7 @@ class SegmentSearch:
         smallest = ends.first_margin - 1
 
         def look(low: float, high: float) -> tuple[list[tuple[float, Solved]], Evidence, np.ndarray]:
-            """Points between two places, what they tell, and which of them tell something new."""
-            places = low + (high - low) * PLACES
-            found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
-            if not found:
-                return found, ends, np.zeros(0, dtype=bool)
-            seen, (one, other) = self.evidence_of([point for _, point in found]), ends.sides
-            new = ((seen.sides - one) * (seen.sides - other) * seen.sides * one * other != 0).any(axis=1)
-            if real and not ends.outside.any():
-                new |= seen.outside
-            elif not real and ends.outside.all():
-                new |= seen.distances[:, smallest] > self.engine.settings.shown
-            return found, seen, new
+            return self._at(segment, low + (high - low) * PLACES, ends, real)
 
         first = look(0.0, 1.0)
         for column in [None, *columns]:
@@ -301,6 +291,44 @@ class SegmentSearch:
                     break
                 low, high, ends_here = around[k - 1], around[k + 1], three[::2]
                 found, seen, new = look(low, high)
+        return None
+
+    def _at(
+        self, segment: Segment, places: np.ndarray, ends: Evidence, real: bool
+    ) -> tuple[list[tuple[float, Solved]], Evidence, np.ndarray]:
+        """Points of a segment at some places, what they tell, and which of them tell what its ends do not."""
+        found = [(s, p) for s, p in zip(places.tolist(), segment.several(places)) if p is not None]
+        if not found:
+            return found, ends, np.zeros(0, dtype=bool)
+        seen, (one, other) = self.evidence_of([point for _, point in found]), ends.sides
+        new = ((seen.sides - one) * (seen.sides - other) * seen.sides * one * other != 0).any(axis=1)
+        if real and not ends.outside.any():
+            new |= seen.outside
+        elif not real and ends.outside.all():
+            new |= seen.distances[:, ends.first_margin - 1] > self.engine.settings.shown
+        return found, seen, new
+
+    def halved(
+        self, segment: Segment, real: bool, neighbours: Sequence[tuple[float, np.ndarray]] = ()
+    ) -> tuple[float, Solved] | None:
+        """A point inside a segment that tells what neither end tells, with its place, or None, where a pair may have reached the circle.
+
+        The segment is halved, then those of its parts on which, as far as the points now tell, a pair may have. `neighbours` are rows of points
+        before and behind, with their places.
+        """
+        ends = self.evidence_of([segment.a, segment.b])
+        known = sorted([*neighbours, (0.0, segment.a.row), (1.0, segment.b.row)], key=itemgetter(0))
+        halves = np.array([0.5])
+        for _ in range(NARROWER):
+            found, _, new = self._at(segment, halves, ends, real)
+            if new.any():
+                return found[int(new.argmax())]
+            known = sorted([*known, *((s, point.row) for s, point in found)], key=itemgetter(0))
+            places, rows = np.array([s for s, _ in known]), np.array([row for _, row in known])
+            open_ = reached(self.engine, rows, np.diff(places)) & (places[:-1] >= 0.0) & (places[1:] <= 1.0)
+            halves = 0.5 * (places[:-1] + places[1:])[open_]
+            if not (found and len(halves)):
+                return None
         return None
 
     def passed(self, segment: Segment) -> tuple[float, Solved] | None:

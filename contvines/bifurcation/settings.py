@@ -23,6 +23,8 @@ class Locating:
         Times the noise of the equations: places are no better than this, and matrices no nearer to singular ones.
     past : float
         How far past the circle (the axis) a multiplier is more than rounding; native/scan.hpp has the same.
+    faster : float
+        Times the rate that three neighbouring segments tell that a pair may go at on the middle one; native/scan.hpp has the same.
     bent : float
         Condition of the second derivatives from which one Newton step for a branch point says nothing; the demo "chu" meets singular ones.
     """
@@ -33,6 +35,7 @@ class Locating:
     halved: float = 1e-3
     noisy: float = 2e3
     past: float = 1e-10
+    faster: float = 2.0
     bent: float = 1e6
 
 

@@ -6,6 +6,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
+from contvines.bifurcation.detect import Detector
+from contvines.continuation.engine import Engine
+from contvines.continuation.settings import Settings
 from contvines.problems.dense import KERNELS, dense_workspace
 from contvines.problems.protocol import Kernels, ProblemDefaults
 
@@ -156,3 +159,31 @@ def test_told_errors_of_borders_cover_the_rounding_of_flat_margins(slope):
     border = cv.diagram(flat, within=(-1.0, 1.0))["VG1"]
     assert abs(border.value - 0.3) <= border.location_error
     assert 1e-16 / slope < border.location_error < 1e-15 / slope + 1e-15
+
+
+class Bulge(Line):
+    """u = p; the logarithms of a pair go from -depth + i angle to -depth + i (angle + turn) at p = 1e-4, by way of -depth + height halfway."""
+
+    n_multipliers, n_margins, width = 2, 0, 1e-4
+
+    def __init__(self, depth, height, turn):
+        def inspect_pair(data, u, p, work, row):
+            s = p / self.width
+            z = np.exp(complex(-depth + 4.0 * height * s * (1.0 - s), 0.3 + turn * s))
+            row[:] = z.real, z.imag, z.real, -z.imag
+
+        super().__init__()
+        self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, inspect_pair)
+
+
+@pytest.mark.parametrize("turn", [0.3, -0.25])
+@pytest.mark.parametrize("height", [0.06, 0.08, 0.12])
+def test_a_pair_that_passes_the_circle_and_comes_back_before_the_first_point_of_a_branch(height, turn):
+    """Two points, and none before or behind: that it may have, its way along the circle tells."""
+    problem, depth = Bulge(0.05, height, turn), 0.05
+    engine = Engine(problem, (-1.0, 1.0), Settings())
+    origin, first = (engine.at_value(np.array([p]), p) for p in (0.0, problem.width))
+    found = Detector(engine).beside(origin, first)
+    off = 0.5 * np.sqrt(1.0 - depth / height)
+    assert [event.kind for event in found] == ["neimark-sacker"] * 2
+    assert [event.point.p / problem.width for event in found] == pytest.approx([0.5 - off, 0.5 + off])

@@ -72,10 +72,45 @@ def test_numbers_known_by_hand(scan):
     ]  # a pair on the circle tells nothing
     np.testing.assert_allclose(found.spectra.near, near, rtol=1e-14)
     np.testing.assert_allclose(found.spectra.past, [[1, 0, 2], [0, 0, 0], [0, 0, 0]])
-    np.testing.assert_allclose(found.spectra.pairs, [0, 1, 0])
+    np.testing.assert_allclose(found.reached, [0, 0])
     np.testing.assert_allclose(found.low, [0, 1])  # the second one changes its sign
     np.testing.assert_allclose(found.sizes, [[1.0, 7.0, 7.0]])
     np.testing.assert_allclose(found.turns, [[-7.0, 49.0]])
+
+
+def places(*multipliers):
+    """Rows of points with one pair, or two real multipliers, each."""
+    return np.array([[z.real, z.imag, w.real, w.imag] for z, w in multipliers])
+
+
+def pair(size, angle):
+    """Multipliers whose logarithms have such parts."""
+    z = np.exp(complex(size, angle))
+    return z, z.conjugate()
+
+
+@pytest.mark.parametrize("scan", BOTH)
+@pytest.mark.parametrize(
+    ("multipliers", "reached"),
+    [
+        # along the circle by a chord of 0.4: discs of sizes 0.1 and 0.2 do not overlap, those of 0.2 and 0.3 do
+        ([pair(-0.1, 1.0), pair(-0.2, 1.4)], [1]),
+        ([pair(-0.2, 1.0), pair(-0.3, 1.4)], [0]),
+        ([pair(0.1, 1.0), pair(0.2, 1.4)], [1]),
+        ([pair(-0.1, 1.0), pair(0.2, 1.0)], [1]),  # on both sides
+        # a pair that comes nearer by 0.3 on one segment may go by 0.6 on the next: from 0.2 to the circle and back to 0.3
+        ([pair(-0.5, 1.0), pair(-0.2, 1.0), pair(-0.3, 1.0)], [0, 1]),
+        ([pair(-0.9, 1.0), pair(-0.5, 1.0), pair(-0.6, 1.0)], [0, 0]),
+        # where two real ones become a pair 0.4 away
+        ([(0.8, 0.7), pair(np.log(0.8), 0.4), pair(np.log(0.7), 0.4)], [1, 1]),
+        ([(0.4, 0.3), pair(np.log(0.4), 0.4), pair(np.log(0.3), 0.4)], [0, 0]),
+    ],
+)
+def test_segments_on_which_a_pair_may_have_reached_the_circle(scan, multipliers, reached):
+    rows = places(*((complex(z), complex(w)) for z, w in multipliers))
+    points = np.arange(float(len(rows)))[:, None]
+    found = scan(Shown(1, 2, 0), [], chunk(points, 0.0 * points[:, 0], rows))
+    np.testing.assert_array_equal(found.reached, reached)
 
 
 NUMBERS = st.one_of(
@@ -102,6 +137,6 @@ def test_native_and_numpy_agree(data):
         data.draw(arrays(float, (count, 2 * m + w), elements=NUMBERS)),
     )
     one, other = (scan(engine, symmetries, drawn) for scan in (with_arrays, in_native))
-    flat = [[*found[:2], *found.spectra, *found[3:6]] for found in (one, other)]
+    flat = [[*found[:2], *found.spectra, *found[3:7]] for found in (one, other)]
     for expected, numbers in zip(*flat):
         np.testing.assert_allclose(numbers, np.reshape(expected, numbers.shape), rtol=1e-13, atol=1e-11)
