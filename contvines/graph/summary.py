@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..continuation.settings import Settings
 from ..shared.number_text import PART, figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .graph import Graph
@@ -43,7 +44,8 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     listed = [row for row in found if row[0] >= PART * length][:MOST] or found[:MOST]
     short = told_apart(word for _, (word, _), _ in listed)
     rows, ends_of = [], [_united(parts) for _, _, parts in listed]
-    number = figures_in(graph.within, [end for ends in ends_of for interval in ends for end in interval])
+    known = [end for stable in ends_of for interval in stable for end in interval]
+    number = figures_in(graph.within, known, same=Settings.located * length)  # one point, seen from two branches
     for (_, (word, kind), parts), stable in zip(listed, ends_of):
         top = max((at_points(part) for part in parts), key=lambda top: top.response)
         ends = [f"{number(a)}..{number(b)}" for a, b in stable]

@@ -53,14 +53,16 @@ def complex_figures(values: Iterable[complex]) -> str:
     return ", ".join(text(value) for value in values)
 
 
-def figures_in(within: tuple[float, float], others: Sequence[float] = ()) -> Callable[[float], str]:
-    """`figures` for values of a parameter in an interval: a thousandth of it can be distinguished, and so can the different ones of some values."""
+def figures_in(
+    within: tuple[float, float], others: Sequence[float] = (), same: float = 0.0
+) -> Callable[[float], str]:
+    """`figures` for values of a parameter in an interval: a thousandth of it can be distinguished, and so can those of some values that are farther than `same` apart."""
     width = within[1] - within[0]
     apart = PART * width if 0.0 < width < math.inf else 0.0
     known = sorted(others)
 
     def text(value: float) -> str:
-        gaps = [abs(value - other) for other in known if abs(value - other) > ROUNDED * abs(value)]
+        gaps = [abs(value - other) for other in known if abs(value - other) > max(same, ROUNDED * abs(value))]
         return figures(value, min([apart, *(0.5 * gap for gap in gaps)]))
 
     return text
