@@ -80,8 +80,8 @@ def setup(app):
         return ("", None) if len(signature) > 300 or "<" in signature else None
 
     def own(app, what, name, obj, options, lines):
-        """Of a tuple, what the page says of it, not what Python says of tuples."""
-        if what == "data" and isinstance(obj, tuple):
+        """Of data, what the page says of it, not what Python says of its class."""
+        if what == "data":
             lines.clear()
 
     app.connect("build-finished", copy)

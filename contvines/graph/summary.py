@@ -45,7 +45,9 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     short = told_apart(word for _, (word, _), _ in listed)
     rows, ends_of = [], [_united(parts) for _, _, parts in listed]
     known = [end for stable in ends_of for interval in stable for end in interval]
-    number = figures_in(graph.within, known, same=Settings.located * length)  # one point, seen from two branches
+    number = figures_in(
+        graph.within, known, same=Settings.located * length
+    )  # one point, seen from two branches
     for (_, (word, kind), parts), stable in zip(listed, ends_of):
         top = max((at_points(part) for part in parts), key=lambda top: top.response)
         ends = [f"{number(a)}..{number(b)}" for a, b in stable]
@@ -66,7 +68,10 @@ def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
     )
     lines = Table(head, rows).lines(width) if rows else ["no stable motion on these branches"]
     if rows:
-        lines.insert(0, fitted(f"stable motions of {len(graph.branches)} branches, the widest first"))
+        count = len(graph.branches)
+        lines.insert(
+            0, fitted(f"stable motions of {count} branch{'' if count == 1 else 'es'}, the widest first")
+        )
     if len(found) > len(listed):
         lines.append(f"and {len(found) - len(listed)} more, on narrow stretches")
     open_ = gaps(graph)

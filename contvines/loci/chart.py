@@ -40,7 +40,7 @@ class Chart(Resumable):
     Attributes
     ----------
     parameters : (str, str)
-        The parameter of the diagrams (drawn upright) and the second one (drawn across).
+        The parameter of the diagrams (drawn across) and the second one (drawn upright).
     within : ((float, float), (float, float))
         Their intervals.
     loci : dict of Locus

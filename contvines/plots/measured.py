@@ -94,7 +94,7 @@ def plot_densities(
     """
     looks = {
         "bare": (BARE, (0, (4, 1.5)), "without absorber"),
-        "tuned": (DATA, (0, (1, 1)), "tuned absorber"),
+        "tuned": (DATA, (0, (1, 1.6)), "tuned absorber"),
     }
     with drawing(axes, style, figsize) as (figure, axes, own):
         colors = iter([OURS, "#2e7d32", "#8e5a00", "#6a1b9a"] * len(densities))

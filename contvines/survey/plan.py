@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from ..coexistence.settings import ATLAS
+from ..shared.near_names import did_you_mean
 
 SAMPLINGS = ("latin", "sobol", "random")
 MOST = 1_000_000
@@ -135,7 +136,10 @@ def _axis(name: str, said: object) -> np.ndarray | None:
     if isinstance(said, Mapping):
         unknown = [key for key in said if key not in KEYS]
         if unknown:
-            raise PlanError(f"{place}.{unknown[0]}: there is no such field; {', '.join(KEYS)} are known")
+            hint = did_you_mean(str(unknown[0]), KEYS)
+            raise PlanError(
+                f"{place}.{unknown[0]}: there is no such field{hint}; {', '.join(KEYS)} are known"
+            )
         if "values" in said:
             said = said["values"]
         elif "count" in said:

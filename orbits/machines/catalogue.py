@@ -42,8 +42,9 @@ def model_class(name: str) -> type[Model]:
         If there is none.
     """
     if name not in PLACES:
+        known = (*NAMES, *PAGES)
         raise ParameterError(
-            f"name = {name!r}: there is no such machine{did_you_mean(name, NAMES)}; choose one of {', '.join(NAMES)}"
+            f"name = {name!r}: there is no such machine{did_you_mean(name, known)}; choose one of {', '.join(known)}"
         )
     module, place = PLACES[name]
     return getattr(importlib.import_module(module), place)

@@ -54,7 +54,7 @@ class Machine(Varying):
         Ranges of the states among which atlases and basins draw their starts; by default twice what the motion from rest reaches.
     units : mapping of str to str, optional
         Units of parameters and states by name, ``{"gap": "mm", "frequency": "Hz"}``: in them they are given (a text such as "1.2 mm" in any of
-        its kind) and shown. The formulas of the page see SI units; what has no unit here they see as it is.
+        its kind) and shown. The formulas of the file see SI units; what has no unit here they see as it is.
 
     energy : callable, optional
         ``(state, phase, p)`` -> kinetic and potential energy of all bodies, in joules: with it impacts have masses, and orbits and transients the
@@ -67,7 +67,7 @@ class Machine(Varying):
     Raises
     ------
     PageError
-        If the page is no machine; the sentence names the contact and the way out.
+        If this declares no machine; the sentence names the contact and the way out.
     """
 
     flow = "page"
