@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add_root(run: Run, problem: Problem, u: np.ndarray, p: float, depth: int = 0) -> None:
-    """Trace a solution with all that leaves it; alone where `max_branches`, which limits no roots, is reached.
+    """Trace a solution with all that leaves it; alone where `max_branches` or `max_unknowns`, which limit no roots, is reached.
 
     Its branch counts as one that `depth` others lie before.
 

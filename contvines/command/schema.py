@@ -95,6 +95,7 @@ class ContinueSection(Section):
     ] = None
     max_points: Annotated[int | None, text("a whole number >= 1, for example 20000", ge=1)] = None
     max_branches: Annotated[int | None, text("a whole number >= 1, for example 200", ge=1)] = None
+    max_unknowns: Annotated[int | None, text("a whole number >= 1, for example 50000000", ge=1)] = None
     bounds: Annotated[
         dict[str, Annotated[list[Unbounded], Field(min_length=2, max_length=2)]],
         text("two numbers for each measure, for example bounds = { B = [-inf, 3.0] }"),

@@ -115,7 +115,8 @@ class Study:
             depth=go.depth,
             virtual=go.virtual,
             settings=go.model_dump(
-                include={"tolerance", "angle", "max_step", "max_points", "max_branches"}, exclude_none=True
+                include={"tolerance", "angle", "max_step", "max_points", "max_branches", "max_unknowns"},
+                exclude_none=True,
             ),
             bounds={measure: (low, high) for measure, (low, high) in go.bounds.items()},
             kinds=go.kinds,

@@ -48,8 +48,8 @@ class Settings:
         Ends: steps (in the metric) shorter than this, many in a row, lead nowhere.
     escape : float
         Ends: a branch whose unknowns are further than this (rms) from its start has run away.
-    max_branches : int
-        Ends: the automatic diagram stops there.
+    max_branches, max_unknowns : int
+        Ends: the automatic diagram begins no branch when it has so many, or their points so many unknowns, sixteen bytes each.
     resolution : float
         Special points: length of a segment that is not halved any more. Two branches with a gap narrower than this are not told
         from a branch point; what the ends of so short a segment say and the points found between do not is *unresolved*.
@@ -129,6 +129,7 @@ class Settings:
     creep: float = 1e-6
     escape: float = 50.0
     max_branches: int = 200
+    max_unknowns: int = 50_000_000
     resolution: float = 3e-7
     halvings: int = 16
     parts: int = 5000

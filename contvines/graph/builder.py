@@ -76,8 +76,8 @@ def work(run: Run) -> None:
     with listening():
         try:
             while run.queue:
-                if len(graph.branches) >= run.settings.max_branches:
-                    leave_waiting(run)
+                if limit := limit_reached(run):
+                    leave_waiting(run, limit)
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
@@ -100,17 +100,25 @@ def finish(run: Run) -> None:
     run.tell(graph.message, float("nan"))
 
 
-def leave_waiting(run: Run) -> None:
-    """End a graph at `max_branches`: its message counts what waits, and special points name why it is not followed."""
-    most, graph = run.settings.max_branches, run.graph
+def limit_reached(run: Run) -> str:
+    """The setting that ends the automatic diagram here; empty where none does."""
+    branches = run.graph.branches.values()
+    if len(branches) >= run.settings.max_branches:
+        return "max_branches"
+    return "max_unknowns" if sum(b.points.size for b in branches) >= run.settings.max_unknowns else ""
+
+
+def leave_waiting(run: Run, limit: str) -> None:
+    """End a graph at a limit: its message counts what waits, and special points name why it is not followed."""
+    most, graph = getattr(run.settings, limit), run.graph
     graph.complete = False
     graph.message = (
-        f"stopped at max_branches = {most} with {len(run.queue)} branches waiting: "
-        "the graph is not complete; raise max_branches, or lower depth"
+        f"stopped at {limit} = {most} with {len(run.queue)} branches waiting: "
+        f"the graph is not complete; raise {limit}, or lower depth"
     )
     for pending in run.queue if most > 1 else ():  # of a single branch nobody expects others
         if pending.point is not None and not pending.reached:
-            run.remark(pending.point, f"a branch that leaves here is not followed: max_branches = {most}")
+            run.remark(pending.point, f"a branch that leaves here is not followed: {limit} = {most}")
 
 
 def tell_dead_ends(run: Run) -> None:

@@ -108,7 +108,7 @@ class Graph(Resumable):
     start : str
         A sentence where the start that was given is no solution: where the branch begins instead.
     complete : bool
-        False where branches were left waiting at ``max_branches``, or the budget of an atlas was used up.
+        False where branches were left waiting at ``max_branches`` or ``max_unknowns``, or the budget of an atlas was used up.
     looked : bool
         Whether simulation has looked for motions that the finished graph does not have; they are `missing`.
     proofs : dict of dict

@@ -74,12 +74,13 @@ def test_a_cascade_is_followed_where_doublings_lie_closer_than_the_first_step():
     assert (b - a) / (c - b) == pytest.approx(4.669201609, abs=1e-2)
 
 
-def test_max_branches_is_said():
+@pytest.mark.parametrize("limit, most, traced", [("max_branches", 2, 2), ("max_unknowns", 20, 1)])
+def test_the_limit_that_ends_a_diagram_is_said(limit, most, traced):
     problem = cv.MapProblem(logistic, [0.5], 2.5, parameter="r")
-    graph = cv.diagram(problem, within=(2.4, 3.55), depth=3, settings={"max_branches": 2})
-    assert len(graph) == 2 and "max_branches" in graph.message
-    left = [point for point in graph.special.values() if any("max_branches = 2" in r for r in point.remarks)]
-    assert left and not any(s.point == point.label for s in graph.switches for point in left)
+    graph = cv.diagram(problem, within=(2.4, 3.55), depth=3, settings={limit: most})
+    assert len(graph) == traced and f"{limit} = {most}" in graph.message and not graph.complete
+    left = [p for p in graph.special.values() if any(f"{limit} = {most}" in r for r in p.remarks)]
+    assert left and not any(s.point == p.label for s in graph.switches for p in left)
 
 
 def test_switch_extends_a_graph():
