@@ -113,19 +113,19 @@ inline bool reaches(const Scanned& s, whole i) {
 }
 
 // Below the lowest of three points a parabola falls by a part of the changes between them: at most a quarter of the square of the longer
-// length over the shorter one. Of a pair (`unlike`) see contvines/bifurcation/evidence.py.
+// length over the shorter one.
 inline double fall(double one, double other) {
     const double uneven = larger(one / other, other / one);
     return 0.5 * uneven * uneven;
 }
-inline bool may_fall(const double* to, double part, double unlike = 0.0) {
+inline bool may_fall(const double* to, double part) {
     const double a = fabs(to[-2]), b = fabs(to[-1]), c = fabs(to[0]);
-    return smaller(smaller(a, b), c) - unlike * larger(larger(a, b), c) < part * larger(fabs(to[-1] - to[-2]), fabs(to[0] - to[-1]));
+    return smaller(smaller(a, b), c) < part * larger(fabs(to[-1] - to[-2]), fabs(to[0] - to[-1]));
 }
 
 // Whether the slopes, signs and multipliers of the last two or three points up to i leave open that there is something between them.
 inline bool open_at(const Scanned& s, whole i) {
-    constexpr double UNLIKE = 0.2, STRAIGHT = 4.0;  // a straight line falls further than a parabola
+    constexpr double STRAIGHT = 4.0;  // a straight line falls further than a parabola
     const whole n = s.unknowns;
     const double *slope = s.tangents + i * (n + 1) + n, here = slope[-n - 1], there = slope[0], length = s.lengths[i - 1];
     if (!(fabs(here) > s.flat && fabs(there) > s.flat && here * there > 0.0 && s.determinants[i] * s.determinants[i - 1] > 0.0)) return true;
@@ -137,7 +137,7 @@ inline bool open_at(const Scanned& s, whole i) {
     if (i < 2) return false;
     const double part = fall(s.lengths[i - 2], length), slopes[] = {slope[-2 * n - 2], here, there};
     return may_fall(slopes + 2, part) || may_fall(s.near + i, STRAIGHT * part) || may_fall(s.near + s.count + i, part) ||
-           may_fall(s.near + 2 * s.count + i, part, UNLIKE);
+           may_fall(s.near + 2 * s.count + i, part);
 }
 
 // Returns whether nothing is open.
@@ -171,7 +171,8 @@ inline bool scan(const Scanned& s) {
         if (i == 1) continue;
         const double part = fall(s.lengths[i - 2], s.lengths[i - 1]), *b = c - s.row, *a = b - s.row;
         for (whole j = 0; j < width; j++) {
-            const double least = smaller(smaller(fabs(a[j]), fabs(b[j])), fabs(c[j])) + MARGIN, most = larger(fabs(b[j] - a[j]), fabs(c[j] - b[j]));
+            const double least = smaller(smaller(smaller(HUGE_VAL, fabs(a[j])), fabs(b[j])), fabs(c[j])) + MARGIN;
+            const double most = larger(larger(-1.0, fabs(b[j] - a[j])), fabs(c[j] - b[j]));  // passing over what is no number
             s.low[j] = (least < part * most) & (most < HUGE_VAL) ? 1.0 : s.low[j];
         }
     }

@@ -12,12 +12,10 @@ import numpy as np
 
 from ..continuation.engine import Engine
 from ..continuation.layout import MARGIN
-from ..shared.floating_point import TINY
 from .multiplier_counts import balance
 from .scan import Scan, Spectra
 
-UNLIKE = 0.2  # part of the largest of three distances of a pair by which its bend may differ between them
-SLOPE, PAIR = 0, 3  # columns of `distances`
+SLOPE = 0  # column of `distances`
 AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
 
 
@@ -129,7 +127,6 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
         uneven = lengths[1:] / lengths[:-1]
         part = 0.5 * float(np.fmax.reduce(np.fmax(uneven, 1.0 / uneven), initial=1.0)) ** 2
         least = np.fmin.reduce(size, axis=0)
-        least[PAIR] -= UNLIKE * np.fmax.reduce(size[:, PAIR])
         low = np.flatnonzero(least < part * np.fmax.reduce(np.abs(np.diff(seen.distances, axis=0)), axis=0))
     low_margins = first + np.flatnonzero(scan.low)
     found = np.zeros((len(lengths), first + len(low_margins)), dtype=bool)
@@ -138,10 +135,6 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
             continue
         values = seen.distance(columns)
         three = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
-        pair = three[:, :, columns == PAIR]
-        three[:, :, columns == PAIR] = np.where(
-            pair > 0.0, np.maximum(pair - UNLIKE * pair.max(axis=0), TINY), pair
-        )
         dip = parabola_dips(three[0], three[1], three[2], lengths[:-1, None], lengths[1:, None])
         found[:-1, places] |= dip
         found[1:, places] |= dip

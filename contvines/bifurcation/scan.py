@@ -97,9 +97,9 @@ def reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray
     beside it have it: rates towards the line, or, where two real ones become a pair on one of these, in any direction. On the line to rounding nothing tells.
     """
     m, kind = engine.m, engine.detection
-    if kind not in ("map", "flow") or m < 2:
-        return np.zeros(len(lengths), dtype=bool)
     re, im = rows[:, : 2 * m : 2], rows[:, 1 : 2 * m : 2]
+    if kind not in ("map", "flow") or not (im > 0.0).any():
+        return np.zeros(len(lengths), dtype=bool)
     with np.errstate(all="ignore"):
         modulus = np.where(im == 0.0, np.abs(re), np.hypot(re, im))
         size = np.log(modulus) if kind == "map" else re
@@ -118,13 +118,13 @@ def reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray
             (1, links[1], last, first, behind, before),
         ):
             a, b = np.abs(size[one]), np.abs(np.take_along_axis(size[other], at, 1))
-            anyway, towards, born = np.maximum(np.maximum(own, here), np.take_along_axis(there, at[None], 2))
+            anyway, towards, born = np.fmax(np.fmax(own, here), np.take_along_axis(there, at[None], 2))
             gap, faster = (
                 gaps.min(axis=axis),
                 LOCATING.faster * lengths[:, None] * np.where(born > 0.0, anyway, towards),
             )
             sure = pairs[one] & (gap < np.inf) & (np.minimum(a, b) > LOCATING.past)
-            found |= (sure & (np.maximum(gap, faster) >= a + b)).any(axis=1)
+            found |= (sure & (np.fmax(gap, faster) >= a + b)).any(axis=1)
     return found
 
 

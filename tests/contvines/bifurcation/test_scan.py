@@ -137,6 +137,10 @@ def test_native_and_numpy_agree(data):
         data.draw(arrays(float, (count, 2 * m + w), elements=NUMBERS)),
     )
     one, other = (scan(engine, symmetries, drawn) for scan in (with_arrays, in_native))
-    flat = [[*found[:2], *found.spectra, *found[3:7]] for found in (one, other)]
+    flat = [[*found[:2], *found.spectra, *found[4:7]] for found in (one, other)]
     for expected, numbers in zip(*flat):
         np.testing.assert_allclose(numbers, np.reshape(expected, numbers.shape), rtol=1e-13, atol=1e-11)
+    # ways as long as they have to be: at equal numbers the last bit would decide
+    drawn.rows *= 1.0 + 1e-3 * np.sin(1.0 + np.arange(drawn.rows.size).reshape(drawn.rows.shape))
+    one, other = (scan(engine, symmetries, drawn).reached for scan in (with_arrays, in_native))
+    np.testing.assert_array_equal(one, other)
