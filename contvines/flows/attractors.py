@@ -136,7 +136,7 @@ def _free(
         # a plane across the motion where it is fastest, in units of its size
         own = ranges / field.lengths
         unit = field.lengths * np.maximum(own, s.least * own.max())
-        speeds = np.linalg.norm([rate(0.0, y) / unit for y in run.y.T], axis=1)
+        speeds = np.linalg.norm(field(run.y.T, p) / unit, axis=1)
         place = run.y[:, int(np.argmax(speeds))]
         normal = rate(0.0, place) / unit**2
         if _returned(run, normal, place, s.nearly * unit, longest) is not None:

@@ -43,7 +43,8 @@ class March:
     def __init__(self, field: Field | Rates, p: float, x: np.ndarray, size: np.ndarray) -> None:
         self.field, self.p, self.size = field, p, size
         self.x, self.t = np.array(x, dtype=float), np.zeros(len(x))
-        self.slope = self._rates(self.x, self.t)
+        with np.errstate(all="ignore"):
+            self.slope = self._rates(self.x, self.t)
         speed = np.abs(self.slope / size).max(axis=1)
         self.h = FIRST / np.where(np.isfinite(speed) & (speed > 0.0), speed, 1.0)
         self.steps = 0
@@ -52,11 +53,10 @@ class March:
 
     def _rates(self, x: np.ndarray, t: np.ndarray) -> np.ndarray:
         field = self.field
-        with np.errstate(all="ignore"):
-            try:
-                return np.asarray(field(x, self.p, t if field.forced else None), dtype=float)
-            except NotEvaluable:
-                return np.array([self._one(y, s) for y, s in zip(x, t, strict=True)])
+        try:
+            return np.asarray(field(x, self.p, t if field.forced else None), dtype=float)
+        except NotEvaluable:
+            return np.array([self._one(y, s) for y, s in zip(x, t, strict=True)])
 
     def _one(self, x: np.ndarray, t: float) -> np.ndarray:
         try:
@@ -87,10 +87,10 @@ class March:
             k[0] = self.slope[rows]
             with np.errstate(all="ignore"):
                 for s in range(1, 6):
-                    k[s] = self._rates(x + h[:, None] * np.einsum("j,jnd->nd", a[s, :s], k[:s]), t + c[s] * h)
-                new = x + h[:, None] * np.einsum("j,jnd->nd", b, k[:6])
+                    k[s] = self._rates(x + h[:, None] * _mean(a[s, :s], k[:s]), t + c[s] * h)
+                new = x + h[:, None] * _mean(b, k[:6])
                 k[6] = self._rates(new, t + h)
-                wrong = h[:, None] * np.einsum("j,jnd->nd", e, k)
+                wrong = h[:, None] * _mean(e, k)
                 allowed = absolute * self.size + relative * np.maximum(np.abs(x), np.abs(new))
                 error = np.sqrt(np.mean((wrong / allowed) ** 2, axis=1))
                 factor = np.clip(SAFETY * error**-0.2, SHRINK, GROW)
@@ -107,3 +107,7 @@ class March:
             )
             self.x[rows[lost]] = np.nan
             self.steps += len(rows)
+
+
+def _mean(weights: np.ndarray, k: np.ndarray) -> np.ndarray:
+    return (weights @ k.reshape(len(k), -1)).reshape(k.shape[1:])
