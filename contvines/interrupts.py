@@ -10,9 +10,9 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from types import FrameType, TracebackType
+from types import FrameType, MappingProxyType, TracebackType
 from typing import Any
 
 # what `signal` hands on to: it makes enumerations of handlers, which takes longer than solving a point
@@ -130,9 +130,12 @@ class Resumable:
     rest : callable or None
         Goes on with the interrupted work, from what is done, and returns the whole result; None where nothing was interrupted,
         and in results from files.
+    origin : mapping
+        Of a result from a file: the ``study`` that the file keeps, seeds included, and with what it was ``made``.
     """
 
     rest: Callable[[], Any] | None = None
+    origin: Mapping[str, Any] = MappingProxyType({})
 
     @property
     def stopped(self) -> bool:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import platform
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
 
 from .core.library import variant
+
+if TYPE_CHECKING:
+    from .interrupts import Resumable
 
 PACKAGES = ("contvines", "numpy", "scipy")
 
@@ -35,6 +40,23 @@ def provenance() -> dict[str, str]:
         "core": variant(),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
     }
+
+
+def carried(result: Resumable) -> dict[str, Any]:
+    """What an export of a result says of its making: ``made``, of a result from a file as the file has it, ``settings``, and the ``study``, where the file keeps one."""
+    about = {"made": result.origin.get("made") or provenance(), "settings": getattr(result, "settings", {})}
+    study = result.origin.get("study")
+    return {**about, "study": study} if study else about
+
+
+def comments(result: Resumable) -> list[str]:
+    """`carried` in lines of comments for people: with what it was made, and the study."""
+    about = carried(result)
+    study = about.get("study") or {}
+    source = study.get("source") or {}
+    said = source.get("text") or json.dumps(study)
+    named = f"contvines {source.get('command', '')} {source.get('study', '')}".rstrip()
+    return [as_text(about["made"]), *([f"{named}, the study:", *said.splitlines()] if study else [])]
 
 
 def as_text(made: dict[str, str]) -> str:

@@ -63,7 +63,7 @@ def export(
     ending = ENDINGS.get(to.value, to.value)
     target = output or beside(file, f".{ending}")
     if to is not Format.auto:
-        check_target(target, ending)
+        check_target(target, to.value if target.suffix == f".{to.value}" else ending)
     measures = to in (Format.csv, Format.mat, Format.auto, Format.xpp)
     from contvines.loci.chart import Chart
     from contvines.store import load

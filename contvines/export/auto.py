@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..flows.cycle_mesh import CycleMesh
-from ..provenance import as_text, provenance
+from ..provenance import comments
 from .columns import measures_of
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def _rows(values: Iterable[float]) -> Iterator[str]:
 
 # ---------------------------------------------------------------------- d.NAME
 def _meanings(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
-    yield f"# {as_text(provenance())}"
+    yield from (f"# {line}".rstrip() for line in comments(graph))
     yield "# number here, label of contvines, kind, branch here, label of contvines, value"
     numbers = {name: k for k, name in enumerate(graph.branches, 1)}
     for label, number in labels.items():

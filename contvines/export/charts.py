@@ -6,6 +6,7 @@ import csv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..provenance import carried
 from .files import check_target
 from .standard_json import json_text
 
@@ -34,7 +35,7 @@ def export_chart(chart: Chart, form: str, path: Path) -> Path:
         raise ValueError(f"--to {form}: a chart is written as {' or '.join(FORMATS)}.")
     check_target(path, form)
     if form == "json":
-        path.write_text(json_text(chart.to_dict()) + "\n", encoding="utf-8")
+        path.write_text(json_text({**chart.to_dict(), **carried(chart)}) + "\n", encoding="utf-8")
         return path
     names = [name + (f" [{chart.units[name]}]" if chart.units.get(name) else "") for name in chart.parameters]
     with path.open("w", newline="", encoding="utf-8") as file:

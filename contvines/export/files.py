@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..file_names import is_database, refuse_ending, refuse_place
-from ..provenance import provenance
+from ..provenance import carried
 from ..shared.extras import needed
 from .auto import places, write_auto
 from .columns import graph_columns, measures_of
@@ -62,7 +62,8 @@ def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
         raise ValueError(f"--to {to}: there is no such format; choose one of {', '.join(FORMATS)}.")
     path = Path(path)
     for place in places(path) if to == "auto" else (path,):
-        check_target(place, place.suffix.lstrip(".") if to == "auto" else ENDINGS.get(to, to))
+        own = place.suffix.lstrip(".").lower()
+        check_target(place, own if to in ("auto", own) else ENDINGS.get(to, to))
     try:
         return writers[to](graph, path) or path
     except OSError as error:
@@ -113,7 +114,7 @@ def _written(value: object) -> object:
 
 
 def _json(graph: "Graph", path: Path) -> None:
-    path.write_text(json_text({**graph.to_dict(), "made": provenance()}) + "\n", encoding="utf-8")
+    path.write_text(json_text({**graph.to_dict(), **carried(graph)}) + "\n", encoding="utf-8")
 
 
 def _graphml(graph: "Graph", path: Path) -> None:
@@ -129,7 +130,7 @@ def _graphml(graph: "Graph", path: Path) -> None:
             ElementTree.SubElement(element, "data", key=key.attrib["id"]).text = text
 
     body = ElementTree.Element("graph", edgedefault="directed")
-    describe(body, "graph", {"parameter": graph.parameter, "finished": graph.finished})
+    describe(body, "graph", {"parameter": graph.parameter, "finished": graph.finished, **carried(graph)})
     for label, data in graph.nodes():
         describe(ElementTree.SubElement(body, "node", id=label), "node", data)
     for source, target, data in graph.edges():
@@ -190,11 +191,10 @@ def _mat(graph: "Graph", path: Path) -> None:
         "special": special,
         "switches": np.array([_fields(s.to_dict()) for s in graph.switches], dtype=object),
         "model": _fields(graph.model),
-        "settings": _fields(graph.settings),
         "parameter": graph.parameter,
         "within": np.array(graph.within),
         "finished": graph.finished,
-        "made": provenance(),
+        **_fields(carried(graph)),
     }
     savemat(path, everything, long_field_names=True)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..graph.table import branches_table, special_table, title
-from ..provenance import as_text, provenance
+from ..provenance import comments
 from ..text_table import Table
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _POWER = re.compile(r"e([-+]?)0*(\d+)$")
 def write_latex(graph: Graph, path: Path) -> None:
     """Both tables, to be read with ``\\input``; the preamble needs ``\\usepackage{booktabs}``."""
     tables = [branches_table(graph)] + ([special_table(graph, reasons=False)] if graph.special else [])
-    lines = [f"% {title(graph)}", f"% {as_text(provenance())}", r"% \usepackage{booktabs}"]
+    lines = [f"% {line}".rstrip() for line in (title(graph), *comments(graph), r"\usepackage{booktabs}")]
     for table in tables:
         lines += ["", *tabular(table)]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -241,8 +241,11 @@ class Store:
             if "chart" in entries:
                 from contvines.loci.chart import chart_from_entries
 
-                return chart_from_entries(entries, problems=problems, trust=trust)
-            return graph_from_entries(entries, problems=problems, trust=trust)
+                found = chart_from_entries(entries, problems=problems, trust=trust)
+            else:
+                found = graph_from_entries(entries, problems=problems, trust=trust)
+            found.origin = {"study": self.study, "made": self.made}
+            return found
         except OSError as error:  # a page that the graph needs
             raise StoreError(f"{self.path}: {error}.") from None
         except OtherEquations as error:

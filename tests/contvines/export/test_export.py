@@ -9,6 +9,7 @@ import pytest
 from scipy.io import loadmat
 
 from contvines.export import export
+from contvines.store import Store, load
 from tests.contvines import fakes
 
 
@@ -121,3 +122,26 @@ def test_what_cannot_be_written_has_its_sentence(graph, tmp_path):
         export(graph, "csv", tmp_path / "none" / "g.csv")
     with pytest.raises(ValueError, match="cannot be written"):
         export(graph, "json", tmp_path)
+
+
+def test_exports_of_a_file_carry_its_study_and_with_what_it_was_made(tmp_path):
+    study = {
+        "atlas": {"seed": 7},
+        "source": {"command": "atlas", "study": "a.toml", "text": "[atlas]\nseed = 7\n"},
+    }
+    with Store.create(tmp_path / "g.vines", "one", study) as store:
+        store.checkpoint(fakes.pitchfork_graph())
+    graph = load(tmp_path / "g.vines", problems=False)
+    data = json.loads(export(graph, "json", tmp_path / "g.json").read_text())
+    assert data["study"] == study and data["made"]["core"]
+    assert (
+        loadmat(export(graph, "mat", tmp_path / "g.mat"), simplify_cells=True)["study"]["atlas"]["seed"] == 7
+    )
+    assert "\n% seed = 7\n" in export(graph, "latex", tmp_path / "g.tex").read_text()
+    network = networkx.read_graphml(export(graph, "graphml", tmp_path / "g.graphml"), force_multigraph=True)
+    assert json.loads(network.graph["study"]) == study
+
+
+def test_a_file_that_ends_as_its_format_is_called_is_written_again(graph, tmp_path):
+    for _ in range(2):
+        assert export(graph, "latex", tmp_path / "table.latex").exists()
