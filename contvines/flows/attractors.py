@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 SAMPLES = 400  # states of a period that are handed over
 FIRST = 50.0  # time scales of the first transient
+CAUTION = 10.0  # times the tolerance of a simulation
 DOUBLINGS = 12  # of the transient
 
 
@@ -131,7 +132,7 @@ def _free(
     for _ in range(doublings):
         run = _run(field, p, x, 0.0, span, dense=True, rough=True)
         ranges = np.ptp(run.y, axis=1)
-        if (ranges <= s.still * (field.lengths + np.abs(x))).all():
+        if (ranges <= s.still * (field.lengths + np.abs(x))).all() or _rests(field, p, run.y[:, -1]):
             raise AtRest(x)
         # a plane across the motion where it is fastest, in units of its size
         own = ranges / field.lengths
@@ -151,6 +152,17 @@ def _free(
     raise Irregular(
         "the motion has not become periodic; it may be chaotic, or settle slowly: try another x0, other parameters or transient="
     )
+
+
+def _rests(field: Field, p: float, x: np.ndarray) -> bool:
+    """Whether an equilibrium that attracts is as near to a state as the errors of a rough simulation allow."""
+    s, matrix = field.settings, field.jacobian(x[None], p)[0]
+    try:
+        step = np.linalg.solve(matrix, -field(x[None], p)[0])
+    except np.linalg.LinAlgError:
+        return False
+    size = CAUTION * s.rough_relative * (field.lengths + np.abs(x))
+    return bool((np.abs(step) <= size).all() and (np.linalg.eigvals(matrix).real < 0.0).all())
 
 
 def _returned(
