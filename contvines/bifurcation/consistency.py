@@ -60,7 +60,17 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     known = [sum(e.kind in kinds for e in found) for kinds in PASSED_AT]
     known[0] += sum(e.astray for e in found)
     missing = any(abs(change) > number for change, number in zip((plus, minus, pairs), known))
-    return missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)
+    if not (missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)):
+        return False
+    # two that have come past +1 may meet, and be past -1 at the end
+    odd = [change % 2 == number % 2 for change, number in zip((plus, minus), known)]
+    return not (engine.adaptive and all(odd) and _explained(segment, found))
+
+
+def _explained(segment: Segment, found: Sequence[Located]) -> bool:
+    """Whether folds, flips and pairs that are found take as many multipliers across the circle as lie outside at one end and not at the other."""
+    known = bool(found) and all(_others_outside(segment.engine, event) is not None for event in found)
+    return known and not _unseen_between(segment, found)
 
 
 def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:

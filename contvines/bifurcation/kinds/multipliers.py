@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 
 from ...continuation.aims import SORTS, aim_at_multiplier
+from ...continuation.engine import Engine, Solved
 from ...problems.abilities import Adaptive
 from ..kind import Classified, Kind, Test
 from ..located import Located
@@ -32,8 +33,28 @@ def passing(segment: Segment, sort: str) -> list[Test]:
 
 
 def flips(segment: Segment, found: Sequence[Located], kind: str) -> list[Test]:
-    """Multipliers that pass -1, where the problem says that this is what they mean."""
-    return passing(segment, "minus") if segment.engine.problem.flip_kind == kind else []
+    """Multipliers that pass -1, where the problem says that this is what they mean.
+
+    Where a pair of them meets on the real axis, or leaves it, their ranks tell nothing; of cycles on meshes the product of all distances from -1 is continuous
+    there, as none passes through infinity.
+    """
+    engine = segment.engine
+    if engine.problem.flip_kind != kind:
+        return []
+    negative = [
+        int(((spectrum.imag == 0.0) & (spectrum.real < 0.0)).sum())
+        for spectrum in (engine.spectrum(segment.a.row), engine.spectrum(segment.b.row))
+    ]
+    if not engine.adaptive or negative[0] == negative[1]:
+        return passing(segment, "minus")
+    change = segment.counts[1][1] - segment.counts[0][1]
+    return [Test(partial(_from_minus_one, engine), 1, JUMP)] if change % 2 else []
+
+
+def _from_minus_one(engine: Engine, point: Solved) -> float:
+    """The product of (1 + multiplier) / (1 + |multiplier|): its sign is that of det(M + 1)."""
+    spectrum = engine.spectrum(point.row)
+    return float(np.real(np.prod((1.0 + spectrum) / (1.0 + np.abs(spectrum)))))
 
 
 def alone_at_circle(point: Point) -> bool:

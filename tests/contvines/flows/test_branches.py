@@ -154,3 +154,25 @@ def test_cycles_that_turn_over_keep_no_phase_that_does_not_suit_them():
     assert branch.range == (0.0, 2.0 * np.pi)
     assert np.allclose(branch.measure("period"), 2.0 * np.pi, rtol=1e-9)
     assert np.allclose(branch.measure("max x2"), np.abs(np.sin(branch.values)), atol=1e-6)
+
+
+def hodgkin_huxley(x, p):
+    """As printed by Hodgkin and Huxley (1952), depolarised upwards from rest at zero."""
+    v, m, h, n = x
+    opens = (25 - v) / 10 / (np.exp((25 - v) / 10) - 1), (10 - v) / 100 / (np.exp((10 - v) / 10) - 1)
+    currents = 120 * m**3 * h * (v - 115) + 36 * n**4 * (v + 12) + 0.3 * (v - 10.599)
+    return [
+        p.current - currents,
+        opens[0] * (1 - m) - 4 * np.exp(-v / 18) * m,
+        0.07 * np.exp(-v / 20) * (1 - h) - h / (np.exp((30 - v) / 10) + 1),
+        opens[1] * (1 - n) - 0.125 * np.exp(-v / 80) * n,
+    ]
+
+
+def test_doublings_where_a_pair_meets_on_the_axis_in_the_same_step():
+    """Both doublings by multiple shooting with scipy's DOP853."""
+    neuron = cv.FlowProblem(hodgkin_huxley, [4.0, 0.09, 0.45, 0.38], {"current": 9.0})
+    graph = cv.diagram(neuron, over="current", within=(7.0, 11.0), depth=1)
+    doublings = sorted(point.value for point in graph.of_kind("period-doubling"))
+    assert doublings == [pytest.approx(7.849537397847, abs=1e-9), pytest.approx(7.921977675728, abs=1e-9)]
+    assert "unresolved" not in str(graph)

@@ -150,3 +150,17 @@ def test_relaxation_oscillations_in_one_branch():
     assert start.replay() < 1e-4
     large = (3.0 - 2.0 * np.log(2.0)) * 60.0 + 7.0143 * 60.0 ** (-1 / 3)
     assert periods[-1] == pytest.approx(large, rel=5e-3)
+
+
+def test_a_motion_rests_where_only_rounding_of_its_simulation_moves():
+    """Three excitable cells in a ring: at rest x - x^3 / 3 = (x + 0.7) / 0.8."""
+
+    def ring(x, p):
+        v, w = x[::2], x[1::2]
+        pulled = [p.k * (v[j - 1] + v[j - 2] - 2 * v[j]) for j in range(3)]
+        pairs = zip(v, w, pulled, strict=True)
+        return [rate for a, b, c in pairs for rate in (a - a**3 / 3 - b + c, 0.3 * (a + 0.7 - 0.8 * b))]
+
+    rest = min(np.roots([-1 / 3, 0.0, 1.0 - 1.25, -0.875]).tolist(), key=lambda root: abs(root.imag)).real
+    with pytest.raises(ValueError, match=f"comes to rest at .{rest:.6f}"):
+        cv.FlowProblem(ring, [1.0, 0.0] * 3, {"k": 0.1}).attractor()
