@@ -120,8 +120,8 @@ class CoreCycle:
         """
         self.left[:], self.right[:] = left, right
         count, d = speeds.shape
-        maps = np.empty((count, d - 1, d - 1))
-        product = self._across(self.at, place(np.ascontiguousarray(speeds, dtype=float)), place(maps))
+        maps, speeds = np.empty((count, d - 1, d - 1)), np.ascontiguousarray(speeds, dtype=float)
+        product = self._across(self.at, place(speeds), place(maps))
         if product == -1.0:
             raise np.linalg.LinAlgError("the equations of an interval are singular")
         return maps, product

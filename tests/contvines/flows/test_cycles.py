@@ -164,3 +164,16 @@ def test_a_motion_rests_where_only_rounding_of_its_simulation_moves():
     rest = min(np.roots([-1 / 3, 0.0, 1.0 - 1.25, -0.875]).tolist(), key=lambda root: abs(root.imag)).real
     with pytest.raises(ValueError, match=f"comes to rest at .{rest:.6f}"):
         cv.FlowProblem(ring, [1.0, 0.0] * 3, {"k": 0.1}).attractor()
+
+
+def test_multipliers_of_a_flow_that_returns_an_array():
+    """The unit circle attracts with the exponents -2, -0.1 and -0.2, its period is 2 pi."""
+
+    def rates(x, p):
+        growth = p.m - x[0] ** 2 - x[1] ** 2
+        return np.array([growth * x[0] - x[1], x[0] + growth * x[1], -0.1 * x[2], -0.2 * x[3]])
+
+    orbit = cv.FlowProblem(rates, [1.0, 0.1, 0.2, 0.2], {"m": 1.0}).attractor()
+    assert np.sort(orbit.multipliers.real) == pytest.approx(
+        np.exp([-4.0 * np.pi, -0.4 * np.pi, -0.2 * np.pi]), abs=1e-9
+    )
