@@ -7,6 +7,7 @@ converges like the Taylor series at the distance r. Two radii give an estimate o
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
@@ -67,21 +68,27 @@ def along_line(
             *_fitted(samples, ROUGH * radius), float(np.abs(inner - outer).max()) / (ROUGH * radius), 0.0
         )
     best: Line | None = None
+    reach = 0.0
     narrow = _fit(jacobians, u, x, radius)
     for _ in range(14):
         wide, narrow = narrow, _fit(jacobians, u, x, SMALLER * radius)
         if wide is not None and narrow is not None:
             errors = [float(np.abs(a - b).max()) for a, b in zip(wide, narrow)]
             if best is None or errors[1] < best.third_error:
-                best = Line(*wide, *errors)
-            elif errors[1] > 8.0 * best.third_error:
-                break
+                best, reach = Line(*wide, *errors), radius
+            elif errors[1] > 8.0 * best.third_error and best.third_error * reach**2 <= _size(jacobians, u):
+                break  # rounding grows; where the samples reached too far to say anything, a smaller radius may
             if all(
                 error <= NORMAL_FORMS.enough * float(np.abs(part).max()) for error, part in zip(errors, wide)
             ):
                 break
         radius *= SMALLER
     return best
+
+
+def _size(jacobians: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray) -> float:
+    here = jacobians(u[None, :])
+    return math.inf if here is None else float(np.abs(here).max())
 
 
 def _fit(
