@@ -209,14 +209,19 @@ def _zeros(
     places = [_place(problem, point) for point in points]
     at: References | None = None
     rough = {sought.kind: list[float]() for sought in wanted if sought.rough is not None}
+    beside: list[References] = []
     for place in places if rough else ():
         plane.at(place)
         at = References(plane, problem, at)
+        beside.append(at)
         for sought in wanted:
             if sought.rough is not None:
                 rough[sought.kind].append(
                     _value(plane, place, lambda x, rough=sought.rough, at=at: rough(x, at))
                 )
+    for sought in wanted:
+        if sought.rough is not None:
+            _sharpen(rough[sought.kind], sought, plane, places, beside)
     at = None
     for i, ends in enumerate(pairwise(places)):
         if not math.isfinite(plane.at(ends[0])):
@@ -241,6 +246,25 @@ def _zeros(
             point = None if root is None else _point(sought, plane, *root, within)
             if point is not None:
                 yield index, point
+
+
+def _sharpen(
+    values: list[float], sought: Sought, plane: Plane, places: Sequence[Place], beside: Sequence[References]
+) -> None:
+    """Replace rough values by exact ones at both ends of each change of sign, which may then lie between the next two points."""
+    exact: set[int] = set()
+    while (
+        ends := {
+            j for i, (a, b) in enumerate(pairwise(values)) if (a >= 0.0) != (b >= 0.0) for j in (i, i + 1)
+        }
+        - exact
+    ):
+        for j in ends:
+            plane.at(places[j])
+            test = sought.test(beside[j])
+            if test is not None:
+                values[j] = _value(plane, places[j], test)
+        exact |= ends
 
 
 def _value(plane: Plane, place: Place, test: Test) -> float:
