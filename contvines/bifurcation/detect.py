@@ -10,10 +10,9 @@ import numpy as np
 
 from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
-from ..continuation.layout import MARGIN
 from ..problems.abilities import Nearing
 from ..shared.floating_point import EPSILON
-from .consistency import at_one, inexact, leap
+from .consistency import at_one, leap
 from .evidence import SLOPE, evidence, filled, may_be_real, pointed, suspicious
 from .kinks import kinked, nearest
 from .locate import locate
@@ -120,7 +119,11 @@ class Detector(SegmentSearch):
                 return [*events, replace(leaping, position=float(i))]
             if leaping is not None:
                 found = sorted([*found, leaping], key=lambda e: e.position)
-            found = [e for e in found if not (e.astray or self._of_rounding(e))]
+            found = [
+                e
+                for e in found
+                if not (e.astray or (e.role is Role.SPECIAL and not e.name and self._placeless(e)))
+            ]
             found = [replace(e, error=e.rounding) if e.rounding > e.error else e for e in found]
             found = self._within(segment, found)
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
@@ -175,7 +178,6 @@ class Detector(SegmentSearch):
             # what cannot be located is no special point: the segment leads on to another branch
             if not e.astray
             and not self._placeless(e)
-            and not (e.role is Role.SPECIAL and inexact(segment, e))
             and not (
                 e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= max(flat, 10.0 * e.error)
             )
@@ -262,14 +264,6 @@ class Detector(SegmentSearch):
     def _placeless(self, event: Located) -> bool:
         """Whether rounding leaves open where an event is: anywhere in the interval."""
         return bool(event.error > self.engine.upper - self.engine.lower)
-
-    def _of_rounding(self, event: Located) -> bool:
-        """Whether a multiplier passes the circle where a margin is zero but for rounding, and the multipliers are rounding as well, or at no known place."""
-        if event.role is not Role.SPECIAL or event.name:
-            return False
-        return self._placeless(event) or bool(
-            abs(self.engine.smallest_margin(event.point.row)) < -0.1 * MARGIN
-        )
 
     def _apart(self, event: Located, stop: Located) -> bool:
         """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""

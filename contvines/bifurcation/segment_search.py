@@ -90,10 +90,7 @@ class SegmentSearch:
         if middle is None:
             return [*found, *self._own(segment)]
         settings = self.engine.settings
-        plus, minus, pairs = (b - a for a, b in zip(*segment.counts))
-        # where a pair splits on the axis and one of both passes the circle at once, shorter parts tell one from the other
-        shortest = settings.sliver if pairs and (plus or minus) else settings.resolution
-        if depth < self.deepest and segment.length > shortest:
+        if depth < self.deepest and segment.length > settings.resolution:
             if self.parts < settings.parts:
                 # where an event of a virtual orbit grazes the parameter may turn back, but no multiplier is +1
                 turns = any(e.kind == "fold" and at_one(self.engine, e) for e in found)

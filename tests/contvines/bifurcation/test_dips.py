@@ -187,3 +187,15 @@ def test_a_pair_that_passes_the_circle_and_comes_back_before_the_first_point_of_
     off = 0.5 * np.sqrt(1.0 - depth / height)
     assert [event.kind for event in found] == ["neimark-sacker"] * 2
     assert [event.point.p / problem.width for event in found] == pytest.approx([0.5 - off, 0.5 + off])
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("power", [3, 4])
+def test_a_multiplier_that_grows_faster_than_is_extrapolated_is_infinite(power, side):
+    """Like the inverse of the third power of the distance, and at the border itself nothing can be computed."""
+    grown = Line(
+        margin=lambda p: 0.3 - p,
+        multiplier=lambda p: side * (0.3 - p) ** -power if p < 0.3 - 1e-15 else np.nan,
+    )
+    (limit,) = cv.diagram(grown, within=(-1.0, 1.0))["VG1"].multipliers
+    assert abs(limit) >= 1e15 and limit.real * side > 0.0
