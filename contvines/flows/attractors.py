@@ -132,8 +132,10 @@ def _free(
     for _ in range(doublings):
         run = _run(field, p, x, 0.0, span, dense=True, rough=True)
         ranges = np.ptp(run.y, axis=1)
-        if (ranges <= s.still * (field.lengths + np.abs(x))).all() or _rests(field, p, run.y[:, -1]):
-            raise AtRest(x)
+        still = (ranges <= s.still * (field.lengths + np.abs(x))).all()
+        rest = x if still else _rest(field, p, run.y[:, -1])
+        if rest is not None:
+            raise AtRest(rest)
         # a plane across the motion where it is fastest, in units of its size
         own = ranges / field.lengths
         unit = field.lengths * np.maximum(own, s.least * own.max())
@@ -154,15 +156,15 @@ def _free(
     )
 
 
-def _rests(field: Field, p: float, x: np.ndarray) -> bool:
-    """Whether an equilibrium that attracts is as near to a state as the errors of a rough simulation allow."""
+def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
+    """The equilibrium that attracts, if it is as near to a state as the errors of a rough simulation allow."""
     s, matrix = field.settings, field.jacobian(x[None], p)[0]
     try:
         step = np.linalg.solve(matrix, -field(x[None], p)[0])
     except np.linalg.LinAlgError:
-        return False
-    size = CAUTION * s.rough_relative * (field.lengths + np.abs(x))
-    return bool((np.abs(step) <= size).all() and (np.linalg.eigvals(matrix).real < 0.0).all())
+        return None
+    near = (np.abs(step) <= CAUTION * s.rough_relative * (field.lengths + np.abs(x))).all()
+    return x + step if near and (np.linalg.eigvals(matrix).real < 0.0).all() else None
 
 
 def _returned(

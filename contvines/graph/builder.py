@@ -76,8 +76,8 @@ def work(run: Run) -> None:
     with listening():
         try:
             while run.queue:
-                if limit := limit_reached(run):
-                    leave_waiting(run, limit)
+                if limit_reached(run):
+                    leave_waiting(run)
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
@@ -108,9 +108,10 @@ def limit_reached(run: Run) -> str:
     return "max_unknowns" if sum(b.points.size for b in branches) >= run.settings.max_unknowns else ""
 
 
-def leave_waiting(run: Run, limit: str) -> None:
-    """End a graph at a limit: its message counts what waits, and special points name why it is not followed."""
-    most, graph = getattr(run.settings, limit), run.graph
+def leave_waiting(run: Run) -> None:
+    """End a graph at its limit: its message counts what waits, and special points name why it is not followed."""
+    limit, graph = limit_reached(run), run.graph
+    most = getattr(run.settings, limit)
     graph.complete = False
     graph.message = (
         f"stopped at {limit} = {most} with {len(run.queue)} branches waiting: "
