@@ -79,7 +79,7 @@ class FlowSettings:
     same: float = 1e-7
     at_rest: float = 1e-3
     halving: float = 0.2
-    in_phase: float = 0.9
+    in_phase: float = 0.99
     homoclinic: float = 1e-6
     longest: float = 1e3
     touch: float = 1e-4
