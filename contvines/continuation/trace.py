@@ -158,7 +158,7 @@ def _chunks(
 
 
 def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[Solved]:
-    """The last points on a mesh that suits the last one; its phase is kept from now on where it is another one."""
+    """The last points, solved again where the mesh, or the phase that is kept, no longer suits the last one."""
     last, image = history[-1], problem.adapted(history[-1].u)
     if image is None and problem.in_phase(last.u):
         return history

@@ -87,10 +87,10 @@ class March:
             k[0] = self.slope[rows]
             with np.errstate(all="ignore"):
                 for s in range(1, 6):
-                    k[s] = self._rates(x + h[:, None] * _mean(a[s, :s], k[:s]), t + c[s] * h)
-                new = x + h[:, None] * _mean(b, k[:6])
+                    k[s] = self._rates(x + h[:, None] * _weighted(a[s, :s], k[:s]), t + c[s] * h)
+                new = x + h[:, None] * _weighted(b, k[:6])
                 k[6] = self._rates(new, t + h)
-                wrong = h[:, None] * _mean(e, k)
+                wrong = h[:, None] * _weighted(e, k)
                 allowed = absolute * self.size + relative * np.maximum(np.abs(x), np.abs(new))
                 error = np.sqrt(np.mean((wrong / allowed) ** 2, axis=1))
                 factor = np.clip(SAFETY * error**-0.2, SHRINK, GROW)
@@ -109,5 +109,6 @@ class March:
             self.steps += len(rows)
 
 
-def _mean(weights: np.ndarray, k: np.ndarray) -> np.ndarray:
+def _weighted(weights: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """Weighted sum of rates (s, n, d), shape (n, d)."""
     return (weights @ k.reshape(len(k), -1)).reshape(k.shape[1:])

@@ -132,3 +132,10 @@ def test_a_cycle_longer_than_looked_for_is_not_waited_for():
     simulator = on(absorber, params, state)
     assert not attracted(simulator, 0.0, 32, 1e-7, 1).recurrent
     assert simulator.time < 1000.0
+
+
+def test_the_limit_at_which_branches_of_roots_wait_is_said():
+    """The logistic map: zero and 1 - 1/r, of which doublings leave at r = 3 that are not followed."""
+    problem = cv.MapProblem(lambda x, p: [p * x[0] * (1 - x[0])], [0.5], 2.5, parameter="r")
+    graph = cv.atlas(problem, within=(2.4, 3.55), settings={"max_branches": 1})
+    assert "stopped at max_branches = 1" in graph.message and not graph.complete
