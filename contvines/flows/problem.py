@@ -11,7 +11,7 @@ from contvines.shared.floating_point import TINY
 from contvines.shared.near_names import hinting
 
 from ..problems.abilities import Populated, Started
-from ..problems.images import image_map
+from ..problems.images import image_map, refuse_no_mirror
 from ..problems.parameters import ParameterSet
 from ..problems.protocol import Seed
 from ..problems.registry import addresses
@@ -79,7 +79,7 @@ class FlowProblem:
     params : float, or mapping of str to float
         Values of the parameters by name: ``f`` then reads ``p.name``.
     mirror : callable, matrix or permutation, optional
-        x -> R x with f(R x, p) = R f(x, p); of forced flows at the same time or half a period later, which is found out.
+        x -> R x with R R x = x and f(R x, p) = R f(x, p); of forced flows at the same time or half a period later, which is found out.
     period : callable or float, optional
         p -> period of f in t: the flow is forced.
     jacobian : callable, optional
@@ -151,6 +151,8 @@ class FlowProblem:
         self.given_period, self.given_scale = period, scale
         self.values = ParameterSet(params, parameter)
         self.mirror = None if mirror is None else image_map(mirror, len(self.x0))
+        if self.mirror is not None:
+            refuse_no_mirror(self.mirror, len(self.x0))
         self.mirror_shifted = False
         self.origin: tuple[str, str, str] | None = None  # file, name and digest, of a flow that a study names
         self.sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles

@@ -14,7 +14,7 @@ from .conditions import Conditions
 from .dense import DenseWork
 from .derivatives import Differentiated
 from .functions import Operator, Sparse, readonly
-from .images import image_map, images_of, smallest_image
+from .images import image_map, images_of, refuse_no_group, smallest_image
 from .nearness import NEAREST
 from .outputs import Outputs
 from .parameters import ParameterSet
@@ -142,6 +142,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         ]
         if self.mirror is not None:
             self.generators.append(("mirror", self.mirror))
+        refuse_no_group(self.generators, self.node)
         self.images, self.symmetric_for = images_of([f for _, f in self.generators], self.node), set()
         self.conditions = Conditions(list(conditions), self.functions, start) if conditions else None
         self.u0 = start if self.conditions is None else self.conditions.extended(start)

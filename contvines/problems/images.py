@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cmp_to_key
 from typing import TYPE_CHECKING, Any
 
@@ -75,6 +75,55 @@ def image_map(
         f"{name} must be a function of u, a matrix of shape ({n}, {n}) or a permutation of 0 to {n - 1}; "
         f"this one has shape {matrix.shape}"
     )
+
+
+def order_of(image: Image, n: int, most: int) -> int | None:
+    """How many times an image has to be applied before every point is back where it was; None if more than `most` times, or never."""
+    probe = _probe(n)
+    here = image(probe)
+    within = IDENTITY.image * max(1.0, float(np.abs(here).max()))
+    for times in range(1, most + 1):
+        if np.abs(here - probe).max() <= within:
+            return times
+        here = image(here)
+    return None
+
+
+def refuse_no_mirror(image: Image, n: int) -> None:
+    """Refuse a mirror that does not undo itself: of equivalent solutions only two are known as one, and a projection has no inverse.
+
+    Raises
+    ------
+    ValueError
+        A sentence with a state and what the mirror makes of it.
+    """
+    if order_of(image, n, 2) is None:
+        probe = _probe(n)
+        raise ValueError(
+            f"mirror takes u = {_shown(probe)} to {_shown(image(probe))}, and that to {_shown(image(image(probe)))}: applied twice a "
+            f"mirror must lead back to u; leave it out, or give one that does, such as lambda u: -u"
+        )
+
+
+def refuse_no_group(generators: Sequence[tuple[str, Image]], n: int) -> None:
+    """Refuse images of which no power leads back, such as projections: they generate no finite group.
+
+    Raises
+    ------
+    ValueError
+        A sentence with the name, a state, and its image.
+    """
+    for name, image in generators:
+        if order_of(image, n, MOST) is None:
+            probe = _probe(n)
+            raise ValueError(
+                f"{name} takes u = {_shown(probe)} to {_shown(image(probe))}, and does not lead back to u however often it is applied "
+                f"({MOST} times were tried); leave it out, or give one of a finite order, such as a reflection or a permutation"
+            )
+
+
+def _shown(u: np.ndarray) -> str:
+    return np.array2string(u, precision=4, threshold=6)
 
 
 def _probe(n: int) -> np.ndarray:

@@ -13,7 +13,7 @@ from contvines.shared.near_names import hinting
 from .callables import CallableProblem
 from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
-from .images import image_map, in_order
+from .images import image_map, in_order, refuse_no_mirror
 from .outputs import Outputs
 from .parameters import ParameterSet
 from .pieces import Pieces
@@ -50,7 +50,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         (x, p) -> df/dx of shape (d, d), df/dp of shape (d,) (of several parameters a mapping by name). Else the complex
         step, where f allows it, or differences with an error estimate. They are compared with differences of f.
     mirror : callable, matrix or permutation, optional
-        x -> R x with f(R x, p) = R f(x, p). Bifurcations to less symmetric cycles are symmetry breakings, of two mirror
+        x -> R x with R R x = x and f(R x, p) = R f(x, p). Bifurcations to less symmetric cycles are symmetry breakings, of two mirror
         images one is traced.
     name : str
     dimension : int, optional
@@ -124,6 +124,8 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         self.data = self
         self.mirror = None if mirror is None else image_map(mirror, d)
         self.generators = [] if self.mirror is None else [("mirror", self.mirror)]
+        if self.mirror is not None:
+            refuse_no_mirror(self.mirror, d)
         self.symmetric_for = set()
         self._check_start(flat[:d])
         self._find_symmetries()
