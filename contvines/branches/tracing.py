@@ -78,7 +78,7 @@ def trace_half(
         if (
             adaptive is not None
             and chunk.status in UNFINISHED
-            and adaptive.too_coarse(chunk.points[-1], stuck)
+            and adaptive.too_coarse(chunk.points[-1], float(chunk.values[-1]), stuck)
         ):
             spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
             half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))

@@ -48,6 +48,20 @@ class Rule:
         """m."""
         return len(self.points)
 
+    @property
+    def resolved(self) -> float:
+        """Size of z = h lambda from which on R(z) has no zeros and poles, and comes nearer to 1 in size the larger z is.
+
+        Its zeros and poles are smaller than 2 m + 4 / 3: Saff and Varga, in Pade and Rational Approximation (1977), p. 195.
+        """
+        return 2.0 * (self.degree + 2.0 / 3.0)
+
+    def stability(self, z: np.ndarray) -> np.ndarray:
+        """R(z), what collocation makes of x' = lambda x in an interval of length h, for z = h lambda: Pade's approximant of exp(z)."""
+        m = self.degree
+        terms = [factorial(2 * m - k) / (factorial(k) * factorial(m - k)) for k in range(m, -1, -1)]
+        return np.polyval(terms, z) / np.polyval(terms, -z)
+
     def interpolation(self, places: np.ndarray) -> np.ndarray:
         """Matrix from values at the nodes to values at some places in [0, 1], shape (len(places), m + 1)."""
         gaps = np.asarray(places, dtype=float)[:, None] - self.nodes

@@ -55,15 +55,42 @@ class CycleMesh(CycleUnknowns):
         rest = v[self.states : self.states + self.free_period]
         return np.concatenate([moved.reshape(-1), rest, np.zeros_like(new) if direction else new])
 
-    def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool:
+    def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
         """Whether a cycle asks for more intervals: its error is too large, Newton's method fails beside it, as at canards on a coarse mesh,
-        or it becomes one of half the period, which takes a mesh with equal halves to tell."""
+        it becomes one of half the period, which takes a mesh with equal halves to tell, or a decay gets lost."""
         if stuck:
             return self.intervals < ENOUGH * self.copies
         if self.free_period and self.copies % 2 and self._asymmetry(u) < self.flow.settings.halving:
             self.parts_of_refined = 2
             return True
-        return self.intervals < MOST and self.estimated_error(u) > self.flow.error
+        return self.intervals < MOST and (self.estimated_error(u) > self.flow.error or self._lost_decay(u, p))
+
+    def _lost_decay(self, u: np.ndarray, p: float) -> bool:
+        """Whether motions beside the cycle that decay (or grow) by more than a factor e in a period do so by less as collocation has it.
+
+        Along an eigenvector with h lambda = z collocation takes R(z) for exp(z), which tends to 1 in size as z grows: see :meth:`Rule.stability`.
+        That is harmless as long as an interval resolves the decay. Where none does, as on cycles that go round slower and slower, a multiplier
+        that is nearly zero seems to come near to 1, and the equations are singular where nothing bifurcates.
+        """
+        if self.sparse is not None:
+            return False
+        x, period, widths = self.parts(u, p)
+        most, shortest = self.rule.resolved, int(np.argmin(widths))
+        unit = self.node_scale / self.node_scale[:, None]
+        when = None if self.free_period else np.array([period * widths[:shortest].sum()])
+        first = self.field.jacobian(x[shortest, :1], p, when)[0] * unit
+        if not period * widths[shortest] * np.linalg.norm(first) > most:
+            return False
+        work = self.workspace()
+        self.evaluate(u, p, work)
+        jacobian = work.along[2].reshape(self.intervals, self.rule.degree, self.node, self.node)
+        z = np.linalg.eigvals(
+            work.steps[:, None, None] * np.einsum("c,icab->iab", self.rule.weights, jacobian)
+        )
+        own = np.where(np.abs(z) > most, np.abs(np.log(np.abs(self.rule.stability(z)))), np.inf)
+        least = own.argmin(axis=1)[:, None]
+        found, true = (np.take_along_axis(a, least, axis=1).sum() for a in (own, np.abs(z.real)))
+        return bool(found < 1.0 < true)
 
     def _asymmetry(self, u: np.ndarray) -> float:
         """How far a cycle is from itself half a period later, relative to its size: 0 of one that runs twice through a shorter one."""

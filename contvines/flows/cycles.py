@@ -15,6 +15,7 @@ from ..problems.protocol import margin_of
 from . import mesh
 from .cycle_relatives import CycleRelatives
 from .forms import LARGEST, cubic, neimark_sacker, quadratic
+from .infinite_period import infinite_period
 from .kernels import CycleWork, linearise, spectrum
 from .measures import measured
 from .orbit import CycleOrbit
@@ -216,12 +217,11 @@ class CycleProblem(CycleRelatives):
         return [] if k < 0 else self.flow.beyond(self, point, k)
 
     def dead_end(self, point: BorderPoint) -> str:
-        """The equilibrium to which an orbit is homoclinic, and its eigenvalues; or the event that stops the motion."""
+        """What the cycle becomes as its period grows without bound, such as a homoclinic orbit; or the event that stops the motion."""
         k = margin_of(point) - 2 * self.free_period
         if k >= 0:
             return self.flow.dead_end(self, point, k)
-        x, period, _ = self.parts(point.u, point.value)
-        return self.flow.homoclinic_text(x.reshape(-1, self.node), period, point.value, self.values)
+        return str(infinite_period(self, point))
 
     # ------------------------------------------------------------------ what people see of a cycle, and what attracts
     @property

@@ -48,7 +48,7 @@ def settled(problem: Cycles, u: np.ndarray, p: float) -> tuple[Cycles, np.ndarra
         if image is not None:
             found = solved(problem, image(found), p)
             continue
-        if not problem.too_coarse(found):
+        if not problem.too_coarse(found, p):
             break
         finer = problem.halved(found)
         problem = problem.with_unknowns(finer, p, 2 * problem.intervals, problem.copies)

@@ -28,7 +28,7 @@ from .field import Field
 from .names import OF_STATES, checked_names
 from .newton import settled
 from .orbit import CycleOrbit
-from .population import RANK, FlowPopulation, Settled
+from .population import FlowPopulation, Settled
 from .settings import FlowSettings
 
 if TYPE_CHECKING:
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from .flow import Sizes
 
 INTERVALS = 40  # of a cycle from data, to begin with
-FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to its slowest point is the one to which it is homoclinic
 
 
 class FlowOptions(TypedDict, total=False):
@@ -526,30 +525,6 @@ class FlowProblem:
         ahead = "" if when is None else f" at t = {when:.6g} of its period"
         return f"the event {self.events.names[k]} stops the motion: it is zero{ahead}, where {place}"
 
-    # ------------------------------------------------------------------ words
-    def homoclinic_text(self, x: np.ndarray, period: float, p: float, values: ParameterSet) -> str:
-        """A sentence on the equilibrium near which a cycle of a long period stays longest."""
-        values = values.against(values.varying, {values.varying: p})
-        field = self.field.against(values)
-        speed = np.linalg.norm(field(x, p) / np.maximum(np.ptp(x, axis=0), TINY), axis=1)
-        slowest = x[int(np.argmin(speed))]
-        y, size, settled = slowest.copy(), np.ptp(x, axis=0), False
-        for _ in range(20):
-            matrix = field.jacobian(y[None, :], p)[0]
-            step = np.linalg.lstsq(matrix, -field(y[None, :], p)[0], rcond=RANK)[0]
-            y = y + step
-            if not (np.abs(y - slowest) <= FAR * size).all():
-                break
-            settled = bool((np.abs(step) <= self.settings.rounded * size).all())
-        found = np.linalg.eigvals(field.jacobian((y if settled else slowest)[None, :], p)[0])
-        place = ", ".join(f"{v:.6g}" for v in np.where(np.abs(y) > self.settings.rounded * size, y, 0.0))
-        values_there = ", ".join(_shortly(value) for value in np.sort_complex(found))
-        if not settled or (found.real < 0.0).all() or (found.real > 0.0).all():
-            place = ", ".join(f"{v:.6g}" for v in slowest)
-            return f"saddle-node on the cycle: its period, {period:.6g} here, grows where it passes ({place}) without an equilibrium being there yet"
-        word = "saddle-focus" if np.iscomplex(found).any() else "saddle"
-        return f"homoclinic to the {word} at ({place}) with eigenvalues {values_there}; period {period:.6g}"
-
     def described(self) -> dict[str, Any]:
         """What distinguishes the flow from its equations."""
         period, scale = self.given_period, given_scale(self.given_scale, len(self.x0))
@@ -587,10 +562,6 @@ class FlowProblem:
 def extremes(curve: np.ndarray) -> list[float]:
     """Least and largest state along a motion: of two motions that are one they agree to a few digits."""
     return [float(x) for x in (*curve.min(axis=0), *curve.max(axis=0))]
-
-
-def _shortly(value: complex) -> str:
-    return f"{value.real:.4g}" if value.imag == 0.0 else f"{value:.4g}"
 
 
 def _is_number(given: object) -> bool:

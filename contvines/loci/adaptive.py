@@ -108,9 +108,13 @@ class AdaptiveLocus(LocusProblem):
 
         return image
 
-    def too_coarse(self, u: np.ndarray, stuck: bool = False) -> bool:
+    def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
         """Whether more intervals are needed."""
-        return self.mesh.too_coarse(u[: self.size], stuck)
+        inner, value = self.split(u)
+        base = on_mesh(self.at(p))
+        coarse = base.too_coarse(inner, float(value), stuck)
+        self.mesh.parts_of_refined = base.parts_of_refined
+        return coarse
 
     def refined(self) -> AdaptiveLocus:
         """The same locus with twice as many intervals."""

@@ -51,7 +51,7 @@ def of_period(
             u, p = image(found.u), found.p
             again = engine.solve(u, p, border, period)
             found = found if again is None else again
-        if not problem.too_coarse(found.u):
+        if not problem.too_coarse(found.u, found.p):
             return problem, found.u, found.p
         u, p = problem.halved(found.u), found.p
         problem = problem.with_unknowns(u, p, 2 * problem.intervals, problem.copies)

@@ -1,0 +1,222 @@
+"""What a cycle becomes where its period grows without bound.
+
+Let s be the length along the branch and T' = dT/ds. The time t at which the cycle passes the plane across its motion at a point x changes by
+
+    dt/ds - f . (dx/ds) / (f . f),
+
+x and t being those of a node. Between two planes it grows by a share of T'. Beside an equilibrium to which the cycle tends that share is not small
+(of a homoclinic orbit nearly one, of heteroclinic cycles the shares of all equilibria are one together); beside another one that it passes at a
+distance the share tends to zero, as the cycle itself tends to a limit there.
+
+Where all of the cycle comes to rest, as on the circle of equilibria at which a rotating wave turns round, its largest speed falls as 1 / T; else it
+tends to that of the limit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contvines.shared.floating_point import ROUNDED, TINY
+
+
+if TYPE_CHECKING:
+    from ..problems.protocol import BorderPoint
+    from .cycle_mesh import CycleMesh
+
+FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to a point of least speed is the one at which it stays
+SHARE = 0.01  # of the growth of the period: less of it is none
+HALF = (
+    -0.5
+)  # exponent of the period in the largest speed, between -1 of a cycle that comes to rest and 0 of others
+SWEEPS = 20
+
+
+class Limit(StrEnum):
+    """What a cycle of infinite period is."""
+
+    HOMOCLINIC = "homoclinic"
+    HETEROCLINIC = "heteroclinic"
+    SADDLE_NODE = "saddle-node"
+    AT_REST = "at-rest"
+
+
+@dataclass(frozen=True)
+class Saddle:
+    """An equilibrium at which a cycle stays longer and longer.
+
+    Attributes
+    ----------
+    place : ndarray, shape (d,)
+    eigenvalues : ndarray of complex, shape (d,)
+    share : float
+        Of the growth of the period.
+    """
+
+    place: np.ndarray
+    eigenvalues: np.ndarray
+    share: float
+
+    def __str__(self) -> str:
+        word = "saddle-focus" if np.iscomplex(self.eigenvalues).any() else "saddle"
+        values = ", ".join(_shortly(value) for value in np.sort_complex(self.eigenvalues))
+        return f"the {word} at {_place(self.place)} with eigenvalues {values}"
+
+
+@dataclass(frozen=True)
+class InfinitePeriod:
+    """The limit of cycles whose period grows without bound.
+
+    Attributes
+    ----------
+    limit : Limit
+    period : float
+        Of the last cycle.
+    slowest : ndarray, shape (d,)
+        Where that is slowest.
+    saddles : tuple of Saddle
+        One of a homoclinic orbit, in the order in which they are passed of a heteroclinic cycle; else none.
+    parameter, value : str, float
+        Of a cycle that comes to rest: where it does, as 1 / T, continued in a straight line, has it.
+    """
+
+    limit: Limit
+    period: float
+    slowest: np.ndarray
+    saddles: tuple[Saddle, ...]
+    parameter: str
+    value: float
+
+    def __str__(self) -> str:
+        match self.limit:
+            case Limit.HOMOCLINIC:
+                return f"homoclinic to {self.saddles[0]}; period {self.period:.6g}"
+            case Limit.HETEROCLINIC:
+                return (
+                    f"heteroclinic cycle of {' and '.join(map(str, self.saddles))}; period {self.period:.6g}"
+                )
+            case Limit.SADDLE_NODE:
+                return f"saddle-node on the cycle: its period, {self.period:.6g} here, grows where it passes {_place(self.slowest)} without an equilibrium being there yet"
+            case Limit.AT_REST:
+                return (
+                    f"the cycle comes to rest as a whole: its period, {self.period:.6g} here, grows as its speed falls everywhere, to a circle of equilibria at "
+                    f"{self.parameter} = {self.value:.6g}, as of rotating waves whose rotation turns round there; begin beyond it to go on"
+                )
+
+
+def infinite_period(problem: CycleMesh, point: BorderPoint) -> InfinitePeriod:
+    """What the cycles of a branch become whose period grows without bound towards a point."""
+    x, period, widths = problem.parts(point.u, point.value)
+    x, p, field = x.reshape(-1, problem.node), float(point.value), problem.field
+    growth = float(point.tangent[problem.states])
+    rates = field(x, p)
+    sizes = np.maximum(np.ptp(x, axis=0), TINY)
+    speeds = np.linalg.norm(rates / sizes, axis=1)
+    slowest = x[int(np.argmin(speeds))]
+    found = (period, slowest)
+    value = p + period * float(point.tangent[-1]) / growth if growth else p
+    value = value if abs(value) > problem.flow.settings.rounded * abs(p) else 0.0
+    if _exponent(problem, point, x, rates / sizes, int(np.argmax(speeds))) < HALF:
+        return InfinitePeriod(Limit.AT_REST, *found, (), problem.parameter, value)
+    saddles = _saddles(problem, point, x, rates, speeds, widths)
+    sorts = (Limit.SADDLE_NODE, Limit.HOMOCLINIC, Limit.HETEROCLINIC)
+    return InfinitePeriod(sorts[min(len(saddles), 2)], *found, saddles, problem.parameter, value)
+
+
+def _exponent(
+    problem: CycleMesh, point: BorderPoint, x: np.ndarray, rates: np.ndarray, fastest: int
+) -> float:
+    """d log(largest speed) / d log(period) along the branch; zero where the period does not change."""
+    growth, period = float(point.tangent[problem.states]), float(point.u[problem.states])
+    if not growth:
+        return 0.0
+    p, field, k = float(point.value), problem.field, slice(fastest, fastest + 1)
+    sizes = np.maximum(np.ptp(x, axis=0), TINY)
+    moved = point.tangent[: problem.states].reshape(x.shape)[fastest]
+    change = (field.jacobian(x[k], p)[0] @ moved + field.slope(x[k], p)[0] * point.tangent[-1]) / sizes
+    return float(rates[fastest] @ change / (rates[fastest] @ rates[fastest]) * period / growth)
+
+
+def _saddles(
+    problem: CycleMesh,
+    point: BorderPoint,
+    x: np.ndarray,
+    rates: np.ndarray,
+    speeds: np.ndarray,
+    widths: np.ndarray,
+) -> tuple[Saddle, ...]:
+    """The equilibria with stable and unstable directions beside which the cycle stays longer and longer, in order along it."""
+    delays, sizes = _delays(problem, point, x, rates, widths), np.ptp(x, axis=0)
+    least = np.flatnonzero((speeds <= np.roll(speeds, 1)) & (speeds < np.roll(speeds, -1)))
+    slowest = int(np.argmin(speeds))
+    found: list[Saddle] = []
+    for k in sorted({*least.tolist(), slowest}):
+        place = _equilibrium(problem, x[k], float(point.value), sizes)
+        if place is None:
+            continue
+        values = np.linalg.eigvals(problem.field.jacobian(place[None], float(point.value))[0])
+        if (values.real < 0.0).all() or (values.real > 0.0).all():
+            continue
+        near = (np.abs(x - place) <= FAR * sizes).all(axis=1)
+        first, last = _run(near, k)
+        turns = delays[-1] if last < first else 0.0
+        share = float((delays[last] - delays[first] + turns) / delays[-1]) if delays[-1] else np.nan
+        same = [i for i, other in enumerate(found) if (np.abs(other.place - place) <= FAR * sizes).all()]
+        if same:
+            if share > found[same[0]].share:
+                found[same[0]] = Saddle(place, values, share)
+        elif share > SHARE or k == slowest:
+            found.append(Saddle(place, values, share))
+    return tuple(found)
+
+
+def _delays(
+    problem: CycleMesh, point: BorderPoint, x: np.ndarray, rates: np.ndarray, widths: np.ndarray
+) -> np.ndarray:
+    """How the times change along the branch at which the cycle passes the planes across its motion at the nodes, that of one round last."""
+    period, growth = float(point.u[problem.states]), float(point.tangent[problem.states])
+    inside = problem.rule.nodes[:-1]
+
+    def at_nodes(lengths: np.ndarray) -> np.ndarray:
+        begins = np.append(0.0, np.cumsum(lengths)[:-1])
+        return (begins[:, None] + lengths[:, None] * inside).reshape(-1)
+
+    moved = point.tangent[: problem.states].reshape(x.shape) / problem.node_scale
+    f = rates / problem.node_scale
+    changed = at_nodes(growth * widths + period * point.tangent[problem.states + 1 : -1])
+    delays = changed - np.einsum("ij,ij->i", f, moved) / np.maximum(np.einsum("ij,ij->i", f, f), TINY)
+    return np.append(delays, growth)
+
+
+def _run(near: np.ndarray, k: int) -> tuple[int, int]:
+    """First and last node of those round node k, on the closed cycle, that are near an equilibrium; the first before and behind it that are not."""
+    away = np.flatnonzero(~near)
+    if not len(away):
+        return 0, len(near) - 1
+    ahead = away[np.searchsorted(away, k) % len(away)]
+    return int(away[np.searchsorted(away, k) - 1]), int(ahead)
+
+
+def _equilibrium(problem: CycleMesh, start: np.ndarray, p: float, sizes: np.ndarray) -> np.ndarray | None:
+    """The equilibrium near a point of a cycle."""
+    y, field = start.copy(), problem.field
+    for _ in range(SWEEPS):
+        matrix, rates = field.jacobian(y[None], p)[0], field(y[None], p)[0]
+        step = np.linalg.lstsq(matrix, -rates, rcond=ROUNDED)[0]
+        y = y + step
+        if not (np.abs(y - start) <= FAR * sizes).all():
+            return None
+        if (np.abs(step) <= problem.flow.settings.rounded * sizes).all():
+            return np.where(np.abs(y) > problem.flow.settings.rounded * sizes, y, 0.0)
+    return None
+
+
+def _place(x: np.ndarray) -> str:
+    return f"({', '.join(f'{v:.6g}' for v in x)})"
+
+
+def _shortly(value: complex) -> str:
+    return f"{value.real:.4g}" if value.imag == 0.0 else f"{value:.4g}"

@@ -1,0 +1,81 @@
+"""Where the period of cycles grows without bound, in flows whose limits are known in closed form."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.flows.infinite_period import Limit, infinite_period
+
+
+def limit_of(graph):
+    (end,) = graph.of_kind("homoclinic")
+    return end, infinite_period(end.problem, end)
+
+
+def test_a_loop_of_one_saddle_is_homoclinic_and_a_loop_of_two_heteroclinic():
+    """With H = y^2 / 2 + V(x), x' = y, y' = -V'(x) - (H - E + m) y has the cycle H = E - m; E is the height of the saddles."""
+
+    def on(height, potential, force):
+        def rates(x, p):
+            energy = x[1] ** 2 / 2 + potential(x[0])
+            return [x[1], force(x[0]) - (energy - height + p.m) * x[1]]
+
+        flow = cv.FlowProblem(rates, [0.0, 0.0], {"m": 0.3}, settings={"homoclinic": 1e-5})
+        return cv.diagram(flow, over="m", within=(-0.1, 0.35), progress=False)
+
+    one = on(1 / 6, lambda x: x**2 / 2 - x**3 / 3, lambda x: x**2 - x)
+    two = on(1 / 4, lambda x: x**2 / 2 - x**4 / 4, lambda x: x**3 - x)
+    end, limit = limit_of(one)
+    assert end.value == pytest.approx(0.0, abs=1e-8) and limit.limit is Limit.HOMOCLINIC
+    assert "homoclinic to the saddle at (1, 0) with eigenvalues -1, 1;" in end.note
+    end, limit = limit_of(two)
+    assert end.value == pytest.approx(0.0, abs=1e-8) and limit.limit is Limit.HETEROCLINIC
+    places = sorted(saddle.place.tolist() for saddle in limit.saddles)
+    assert np.allclose(places, [[-1.0, 0.0], [1.0, 0.0]], atol=1e-6)
+    assert [saddle.share for saddle in limit.saddles] == pytest.approx([0.5, 0.5], abs=1e-3)
+    assert "heteroclinic cycle of the saddle at" in end.note and "(-1, 0)" in end.note
+
+
+def test_a_heteroclinic_cycle_of_a_predator_and_a_prey_with_an_allee_effect():
+    """Two saddles on the axis of the prey, its threshold and its capacity (van Voorn and others, Math. Biosci. 209 (2007) 451)."""
+
+    def rates(x, p):
+        eaten = x[0] ** 2 / (x[0] ** 2 + 0.25)
+        return [x[0] * (1 - x[0]) * (x[0] - 0.1) - x[1] * eaten, x[1] * (eaten - p.d)]
+
+    prey = 0.5 * np.sqrt(0.45 / 0.55)
+    start = [prey, (1 - prey) * (prey - 0.1) * prey / 0.45]
+    flow = cv.FlowProblem(rates, start, {"d": 0.45})
+    end, limit = limit_of(cv.diagram(flow, over="d", within=(0.2, 0.7), progress=False))
+    assert limit.limit is Limit.HETEROCLINIC
+    places = sorted(saddle.place.tolist() for saddle in limit.saddles)
+    assert np.allclose(places, [[0.1, 0.0], [1.0, 0.0]], atol=1e-6)
+    assert sum(saddle.share for saddle in limit.saddles) == pytest.approx(1.0, abs=1e-3)
+    assert end.note.startswith("heteroclinic cycle of the saddle at (1, 0) with eigenvalues -0.9,")
+
+
+def test_two_coupled_oscillators_whose_common_rotation_stands_still():
+    """z1' = (1 + 0.4 i - |z1|^2) z1 + k (z2 - z1), z2' = (0.5 - 0.5 i - |z2|^2) z2 + k (z1 - z2): the locked rotation is 0.4 |z1|^2 = 0.5 |z2|^2 at rest,
+
+    which with the equations of the amplitudes is 0.8 k^2 = 0.16 + (2 / 3 + 4 / 9 k)^2. Decays are much faster there than the rotation.
+    """
+    at_rest = max(np.roots([0.8 - 16 / 81, -16 / 27, -0.16 - 4 / 9]))
+
+    def rates(x, p):
+        a, b, c, d = x
+        one, two = 1.0 - a * a - b * b, 0.5 - c * c - d * d
+        return [
+            one * a - 0.4 * b + p.k * (c - a),
+            one * b + 0.4 * a + p.k * (d - b),
+            two * c + 0.5 * d + p.k * (a - c),
+            two * d - 0.5 * c + p.k * (b - d),
+        ]
+
+    flow = cv.FlowProblem(rates, [0.9, 0.1, 0.8, 0.3], {"k": 1.2})
+    graph = cv.diagram(flow.attractor(), over="k", within=(1.0, 4.0), progress=False)
+    end, limit = limit_of(graph)
+    assert limit.limit is Limit.AT_REST and limit.value == pytest.approx(at_rest, abs=1e-5)
+    assert abs(end.value - at_rest) < 1.1 * end.location_error
+    assert "comes to rest as a whole" in end.note
+    assert {point.kind for point in graph.special.values()} == {"end", "homoclinic"}
+    assert not graph.unresolved and graph["B1"].stable.all()
