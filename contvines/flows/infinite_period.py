@@ -22,7 +22,6 @@ import numpy as np
 
 from contvines.shared.floating_point import ROUNDED, TINY
 
-
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
     from .cycle_mesh import CycleMesh
