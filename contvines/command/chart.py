@@ -183,7 +183,7 @@ def _diagram(
             f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
             "parameter and within."
         )
-    diagram(file, quiet=True, fresh=fresh)
+    diagram(file, quiet=True, fresh=fresh, look=False)
     made = beside(file, ".vines")
     graph = load_file(made)
     if within is not None:

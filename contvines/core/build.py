@@ -12,6 +12,8 @@ import shlex
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -102,26 +104,31 @@ def build(folder: Path = HERE, command: list[str] | None = None) -> list[Path]:
     command = command or compiler() or zig()
     if command is None:
         raise NotBuilt(f"there is no C++ compiler (CXX, c++, g++, clang++); pip install {ZIG} brings one")
-    mark = f'-DCORE_DIGEST="{digest()}"'
-    made = []
-    for variant in variants():
-        target = path_of(variant, folder)
-        unfinished = target.with_name(f"{target.stem}-{os.getpid()}{SUFFIX}")
-        flags = [*FLAGS, *VARIANTS[variant], *([] if sys.platform == "win32" else ["-fPIC"]), mark]
-        for libraries in (["-nostdlib++", "-lm"], ["-nodefaultlibs", "-lm", "-lc", "-lgcc"], ["-lm"]):
-            # the second for versions of g++ that do not know -nostdlib++
-            done = subprocess.run(
-                [*command, *flags, "-shared", "-o", str(unfinished), str(SOURCES / "core.cpp"), *libraries],
-                capture_output=True,
-                text=True,
-            )
-            if done.returncode == 0:
-                break
-        else:
-            raise NotBuilt(f"{shlex.join(command)} fails on native/core.cpp: {done.stderr.strip()[-2000:]}")
-        os.replace(unfinished, target)
-        made.append(target)
-    return made
+    with ThreadPoolExecutor() as pool:  # each waits for its compiler
+        return list(pool.map(partial(_compiled, command, folder, digest()), variants()))
+
+
+def _compiled(command: list[str], folder: Path, mark: str, variant: str) -> Path:
+    """The library of a variant, compiled into a folder."""
+    target = path_of(variant, folder)
+    unfinished = target.with_name(f"{target.stem}-{os.getpid()}{SUFFIX}")
+    flags = [
+        *FLAGS,
+        *VARIANTS[variant],
+        *([] if sys.platform == "win32" else ["-fPIC"]),
+        f'-DCORE_DIGEST="{mark}"',
+    ]
+    for libraries in (["-nostdlib++", "-lm"], ["-nodefaultlibs", "-lm", "-lc", "-lgcc"], ["-lm"]):
+        # the second for versions of g++ that do not know -nostdlib++
+        done = subprocess.run(
+            [*command, *flags, "-shared", "-o", str(unfinished), str(SOURCES / "core.cpp"), *libraries],
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode == 0:
+            os.replace(unfinished, target)
+            return target
+    raise NotBuilt(f"{shlex.join(command)} fails on native/core.cpp: {done.stderr.strip()[-2000:]}")
 
 
 def main() -> None:

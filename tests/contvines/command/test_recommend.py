@@ -222,7 +222,9 @@ def test_without_a_browser_the_answer_is_set_on_two_sheets(tmp_path):
 @pytest.mark.slow
 def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(run, tmp_path, monkeypatch):
     path = written(tmp_path, MODEL + SURVEY)
-    kept = [tmp_path / f"{k}.rows" for k in range(9)]
+    kept = [
+        tmp_path / f"machine-recommend.json.{k}.unfinished" for k in range(9)
+    ]  # the command's, which goes on from them
 
     def interrupted(text):
         if "round 2" in text:

@@ -282,7 +282,7 @@ def test_a_survey_shows_the_machines_behind_a_point(opened):
 
 
 @pytest.mark.parametrize("opened", EVERY, indirect=True)
-def test_dark_colours_and_print(opened):
+def test_in_the_dark_on_paper_and_on_a_narrow_screen(opened):
     def brightness():
         return opened.evaluate(
             "() => getComputedStyle(document.body).backgroundColor.match(/\\d+/g).slice(0, 3).reduce((a, b) => a + +b, 0)"
@@ -298,11 +298,12 @@ def test_dark_colours_and_print(opened):
     assert brightness() > 700
     assert not opened.locator(".controls").first.is_visible()
     assert len(opened.pdf()) > 10_000
+    opened.evaluate("dispatchEvent(new Event('beforeprint'))")
+    wide = "Math.max(...[...document.querySelectorAll('.js-plotly-plot .main-svg')].map((svg) => svg.getBoundingClientRect().width))"
+    assert opened.evaluate(wide) <= 700  # pixels between the margins of a sheet of A4
+    opened.evaluate("dispatchEvent(new Event('afterprint'))")
     opened.emulate_media(media="screen")
-
-
-@pytest.mark.parametrize("opened", EVERY, indirect=True)
-def test_rows_of_tables_fit_a_narrow_screen(opened):
+    opened.wait_for_function(f"{wide} > 800")
     opened.set_viewport_size({"width": 420, "height": 900})
     opened.wait_for_timeout(300)
     assert opened.evaluate("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
@@ -310,17 +311,6 @@ def test_rows_of_tables_fit_a_narrow_screen(opened):
         """() => Math.max(...[...document.querySelectorAll("table:not(#chosen) td")].map((cell) => cell.getBoundingClientRect().right))"""
     )
     assert right <= 420
-
-
-@pytest.mark.parametrize("opened", EVERY, indirect=True)
-def test_pictures_fit_the_paper(opened):
-    opened.emulate_media(media="print")
-    opened.evaluate("dispatchEvent(new Event('beforeprint'))")
-    wide = "Math.max(...[...document.querySelectorAll('.js-plotly-plot .main-svg')].map((svg) => svg.getBoundingClientRect().width))"
-    assert opened.evaluate(wide) <= 700  # pixels between the margins of a sheet of A4
-    opened.evaluate("dispatchEvent(new Event('afterprint'))")
-    opened.emulate_media(media="screen")
-    opened.wait_for_function(f"{wide} > 800")
 
 
 @pytest.mark.parametrize("name", EVERY)

@@ -9,8 +9,8 @@ pytestmark = pytest.mark.slow
 
 
 def test_the_best_clearance_is_that_of_a_scan():
-    low, high, count = 14.0, 18.0, 7
-    choice = chosen(low, high, 4, depth=0)
+    low, high, count = 14.0, 18.0, 5
+    choice = chosen(low, high, 3, depth=0)
     places, peaks = scanned(low, high, count, depth=0)
     least = int(np.nanargmin(peaks))
     assert abs(choice.values["half_width"] - places[least]) <= places[1] - places[0]

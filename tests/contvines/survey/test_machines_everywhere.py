@@ -7,7 +7,7 @@ from tools.benchmarks.survey import made, on_a_cluster, same
 
 pytestmark = pytest.mark.slow
 
-MACHINES = 4
+MACHINES = 2
 
 
 def test_the_same_file_from_everywhere(tmp_path):
