@@ -132,7 +132,10 @@ class Plane(NamedTuple):
     def fingerprint(self, graph: "Graph") -> str:
         """What tells charts of a diagram apart."""
         values = [(point.label, point.kind, point.value) for point in graph.special.values()]
-        of = "chart", graph.model, graph.parameter, list(graph.within), values
+        model = {
+            name: value for name, value in graph.model.items() if name != "page"
+        }  # wherever its file lies
+        of = "chart", model, graph.parameter, list(graph.within), values
         text = json.dumps([*of, self.over, list(self.within), self.virtual])
         return hashlib.sha256(text.encode()).hexdigest()
 

@@ -181,6 +181,7 @@ class Study:
             own = {"name": self.name, "digest": self.flow.origin[2], "state": self.state, "box": self.box}
             return {**own, **self.parameters}
         own = self.model.settings() if self.sort is Sort.PAGE else {}
+        own.pop("page", None)  # where the machine file lies; its text decides
         if self.sort is Sort.CATALOGUE and self.model.contact_time is not None:
             own = {"contact_time": self.model.contact_time}
         return {**own, "name": self.name, **self.parameters}

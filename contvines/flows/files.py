@@ -88,10 +88,16 @@ def _flow(description: Mapping[str, Any], trust: bool) -> FlowProblem | None:
         return _known[key]
     if about.get("file"):
         file, name, digest = about["file"]
-        known = _loaded.get((file, name))
-        if known is None and not trust:
-            return None
-        flow = known or load_flow(file, name)
+        known = [
+            flow for flow in _loaded.values() if flow.origin is not None and flow.origin[1:] == (name, digest)
+        ]
+        if known or not trust:
+            return known[0] if known else None
+        if not Path(file).is_file():
+            raise OSError(
+                f"{file}: the file of the flow {name!r} is gone; put it back, or beside the result, or make the result anew"
+            )
+        flow = load_flow(file, name)
         if flow is None or flow.origin is None or flow.origin[2] != digest:
             raise ValueError(f"the flow {name!r} of {file} is not the one from which the graph was made")
         return flow

@@ -16,6 +16,7 @@ import numpy as np
 from ..interrupts import HELD
 from ..provenance import provenance
 from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, cut_short, damaged, pending
+from .moved_files import found_again
 from .packing import digest_of, packed, printable, printable_text, split, unpacked
 from .publishing import draft_of, publish
 
@@ -235,8 +236,10 @@ class Store:
         from contvines.graph.well_formed import OtherEquations
 
         entries: dict[str, dict[str, Any]] = {}
+        folders = self._folders()
         for kind, key, content in self._entries("e.kind != 'journal'"):  # as one checkpoint has left them
-            entries.setdefault(printable_text(kind), {})[printable_text(key)] = printable(content)
+            known = found_again(printable(content), folders)
+            entries.setdefault(printable_text(kind), {})[printable_text(key)] = known
         try:
             if "chart" in entries:
                 from contvines.loci.chart import chart_from_entries
@@ -258,6 +261,12 @@ class Store:
                 f"{self.path}: this file does not hold a graph as contvines writes it ({error}); "
                 "move it away and run again."
             ) from None
+
+    def _folders(self) -> list[Path]:
+        """Where files lie that were moved together with this one: beside it, or beside its study, whose place is known from here."""
+        here, source = self.path.resolve().parent, (self.study or {}).get("source")
+        study = source.get("study") if isinstance(source, dict) else None
+        return [here, *([(here / study).resolve().parent] if isinstance(study, str) else [])]
 
     # -- entries -------------------------------------------------------------------------------------------
 

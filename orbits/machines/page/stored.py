@@ -26,7 +26,7 @@ def page_changed(settings: dict[str, Any]) -> str:
     try:
         text = path.read_text(encoding="utf-8")
     except OSError:
-        return f"{path}: the file that declared the machine is gone; put it back (the result keeps its text), or make the result anew"
+        return f"{path}: the file that declared the machine is gone; put it back, or beside the result (which keeps its text), or make the result anew"
     if digest_of(text) != settings["digest"]:
         return (
             f"{path}: the machine file has changed since the result was made; put the text back that was used (the result keeps it), "

@@ -128,6 +128,27 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     assert "does not hold" not in str(done.exception)
 
 
+def test_a_folder_may_be_moved(study, monkeypatch):
+    """The result stays that of its study, and its orbits come from the machine file that was moved with it."""
+    from orbits.machines.page import stored
+
+    here, there = study.parent / "here", study.parent / "there"
+    (here / "files").mkdir(parents=True)
+    (study.parent / "stop.py").rename(here / "files" / "stop.py")
+    (here / "stop.toml").write_text(STUDY.replace("stop.py", "files/stop.py"))
+    monkeypatch.chdir(here)
+    run("diagram", "stop.toml", "-q", "--no-look")
+    before = cv.load("stop.vines", trust=True)["EP1"].orbit
+    here.rename(there)
+    monkeypatch.chdir(there)
+    monkeypatch.setattr(stored, "loaded", lambda settings: None)  # as in another process
+    assert "nothing to compute" in run("diagram", "stop.toml", "--no-look").output
+    after = cv.load("stop.vines", trust=True)["EP1"].orbit
+    assert (after.multipliers == before.multipliers).all() and after.margin == before.margin
+    (there / "files" / "stop.py").unlink()
+    assert "put it back, or beside the result" in run("show", "stop.vines").output
+
+
 @pytest.mark.slow
 def test_an_atlas_and_basins_of_a_page(study):
     study.write_text(study.read_text() + "[atlas]\nvalues = [2.3]\nstarts = 6\nscan = 0\n")
