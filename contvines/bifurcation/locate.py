@@ -119,7 +119,10 @@ def locate_singular(
             score = max(root.error, residual / segment.engine.size(root.point.u))
             if score < ROUNDED:
                 return root
+            worse = any(score > best for best, _ in roots)
             roots.append((score, root))
+            if worse:  # rounding, which a narrower window magnifies
+                break
             rough = root.position
         width *= 0.5
     roots.sort(key=lambda pair: pair[0])

@@ -229,9 +229,10 @@ class SegmentSearch:
                 return float(row @ test.part(point.u[None, :], [point.p])[0])
 
             first, last = along(segment.a), along(segment.b)
-            root = locate_singular(segment, along, first / (first - last)) or locate(segment, along)
-            if root is not None:
+            root = locate_singular(segment, along, first / (first - last))
+            if root is None and (root := locate(segment, along)) is not None:
                 root = locate_singular(segment, along, root.position) or root
+            if root is not None:
                 at = test.symmetry.kind_at
                 kind = test.kind if at is None else at(root.point.u)
                 known = self.engine.many or segment.length <= self.engine.settings.resolution

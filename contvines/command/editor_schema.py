@@ -49,7 +49,7 @@ def study_schema() -> dict[str, Any]:
         its interval) is left to the commands.
     """
     from contvines.command.schema import FlowSections, PageSections, catalogue_model
-    from orbits.machines.catalogue import NAMES
+    from orbits.machines.names import NAMES
 
     kinds = [_titled(inlined(catalogue_model(name)), f"the machine {name}") for name in NAMES]
     kinds += [made for made in map(_physical, NAMES) if made is not None]
@@ -135,7 +135,7 @@ def _physical(name: str) -> dict[str, Any] | None:
 
 def _own(made: dict[str, Any], title: str) -> dict[str, Any]:
     """What a Python file declares, distinguished from the others by the name of its file; its parameters are known when that has run."""
-    from orbits.machines.catalogue import PAGES, STRUCTURE
+    from orbits.machines.names import PAGES, STRUCTURE
 
     about = f'a file beside the study, and the machine or flow in it: "file.py:name"; or one that comes with the package: {", ".join([STRUCTURE, *PAGES])}'
     name = {"type": "string", "pattern": "|".join([r"\.py", STRUCTURE, *PAGES]), "description": about}

@@ -14,11 +14,11 @@ from contvines.command.own_code import own_code
 from contvines.command.schema import FlowSections, PageSections, given, model_section, study_model, text
 from contvines.command.study_data import Sort, Study, wrong_intervals
 from contvines.command.study_errors import StudyError, refuse, validated
-from orbits.machines.catalogue import PAGES, STRUCTURE, page_machine
-from orbits.machines.page.machine import Machine
+from orbits.machines.names import PAGES, STRUCTURE
 
 if TYPE_CHECKING:
     from contvines.flows.problem import FlowProblem
+    from orbits.machines.page.machine import Machine
 
 F = TypeVar("F", PageSections, FlowSections)
 
@@ -37,6 +37,9 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
         machine, plain = _structure(data, path)
         return _page(plain, path, machine)
     if said in PAGES:
+        from orbits.machines.catalogue import page_machine
+        from orbits.machines.page.machine import Machine
+
         machine = page_machine(said)
         assert isinstance(machine, Machine)
         return _page(data, path, machine)

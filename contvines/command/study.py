@@ -15,7 +15,7 @@ from contvines.command.study_errors import StudyError as StudyError
 from contvines.command.toml_text import TomlError, toml_data
 from contvines.file_names import is_database
 from contvines.shared.near_names import did_you_mean
-from orbits.machines.catalogue import PAGES, STRUCTURE
+from orbits.machines.names import PAGES, STRUCTURE
 
 QUANTITY = re.compile(r"\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[a-zA-Z%].*")  # "3.2 kg"
 

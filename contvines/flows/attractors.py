@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
 
 import numpy as np
 
@@ -17,6 +18,40 @@ SAMPLES = 400  # states of a period that are handed over
 FIRST = 50.0  # time scales of the first transient
 CAUTION = 10.0  # times the tolerance of a simulation
 DOUBLINGS = 12  # of the transient
+
+
+class Place(NamedTuple):
+    """Where a motion is at a time, and its rate."""
+
+    t: float
+    x: np.ndarray
+    rate: np.ndarray
+
+
+class Run(Protocol):
+    """A simulated motion: times (n,) and states (d, n) at the ends of steps, and the states at any times."""
+
+    t: np.ndarray
+    y: np.ndarray
+
+    def sol(self, time: np.ndarray | float) -> np.ndarray: ...
+
+
+class Way:
+    """A motion through some places, between them along cubic polynomials."""
+
+    def __init__(self, places: Sequence[Place]) -> None:
+        self.t = np.array([place.t for place in places])
+        self.y, self.rates = (np.column_stack([place[k] for place in places]) for k in (1, 2))
+
+    def sol(self, time: np.ndarray | float) -> np.ndarray:
+        """States at times."""
+        i = np.clip(np.searchsorted(self.t, time) - 1, 0, len(self.t) - 2)
+        h = self.t[i + 1] - self.t[i]
+        s = (time - self.t[i]) / h
+        a, b = self.y[:, i], self.y[:, i + 1]
+        bent = (1.0 - s) * (h * self.rates[:, i] - b + a) - s * (h * self.rates[:, i + 1] - b + a)
+        return (1.0 - s) * a + s * b + s * (1.0 - s) * bent
 
 
 class AtRest(ValueError):
@@ -136,17 +171,12 @@ def _free(
         rest = x if still else _rest(field, p, run.y[:, -1])
         if rest is not None:
             raise AtRest(rest)
-        # a plane across the motion where it is fastest, in units of its size
-        own = ranges / field.lengths
-        unit = field.lengths * np.maximum(own, s.least * own.max())
-        speeds = np.linalg.norm(field(run.y.T, p) / unit, axis=1)
-        place = run.y[:, int(np.argmax(speeds))]
-        normal = rate(0.0, place) / unit**2
-        if _returned(run, normal, place, s.nearly * unit, longest) is not None:
-            exact = _run(field, p, place, 0.0, span, dense=True)
-            found = _returned(exact, normal, place, s.recurs * unit, longest)
+        plane, unit = _fastest(field, p, run)
+        if _returned(run, plane, s.nearly * unit, longest) is not None:
+            exact = _run(field, p, plane.x, 0.0, span, dense=True)
+            found = _returned(exact, plane, s.recurs * unit, longest)
             if found is not None:
-                period, start = found
+                start, period = exact.sol(found[0]), found[1] - found[0]
                 whole = _run(field, p, start, 0.0, period, dense=True)
                 times = np.linspace(0.0, period, SAMPLES + 1)
                 return times, whole.sol(times).T, 1
@@ -154,6 +184,30 @@ def _free(
     raise Irregular(
         "the motion has not become periodic; it may be chaotic, or settle slowly: try another x0, other parameters or transient="
     )
+
+
+def last_round(
+    field: Field, p: float, places: Sequence[Place], longest: int
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Times and states of the last period of a motion through some places; None where it does not recur."""
+    settled = places[len(places) // 2 :]
+    if len(settled) < 2:
+        return None
+    way, (plane, unit) = Way(places), _fastest(field, p, Way(settled))
+    found = _returned(way, plane, field.settings.recurs * unit, longest)
+    if found is None:
+        return None
+    times = np.linspace(*found, SAMPLES + 1)
+    return times, way.sol(times).T
+
+
+def _fastest(field: Field, p: float, run: Run) -> tuple[Place, np.ndarray]:
+    """Where a motion is fastest in units of its size, with its rate there in those of their squares, and these units."""
+    own = np.ptp(run.y, axis=1) / field.lengths
+    unit = field.lengths * np.maximum(own, field.settings.least * own.max())
+    rates = field(run.y.T, p)
+    i = int(np.argmax(np.linalg.norm(rates / unit, axis=1)))
+    return Place(float(run.t[i]), run.y[:, i], rates[i] / unit**2), unit
 
 
 def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
@@ -167,30 +221,27 @@ def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
     return x + step if near and (np.linalg.eigvals(matrix).real < 0.0).all() else None
 
 
-def _returned(
-    run: OdeResult, normal: np.ndarray, place: np.ndarray, close: np.ndarray, longest: int
-) -> tuple[float, np.ndarray] | None:
-    """After what time, and to which state in a plane, a motion comes back at its end; None if it does not."""
-    heights = normal @ (run.y - place[:, None])
+def _returned(run: Run, plane: Place, close: np.ndarray, longest: int) -> tuple[float, float] | None:
+    """The times at which a motion last passes a plane in one and the same state; None if it does not come back to one."""
+    heights = plane.rate @ (run.y - plane.x[:, None])
     passed = np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[-longest - 1 :]
     if len(passed) < 2:
         return None
-    end = _crossing(run, normal, place, int(passed[-1]))
+    end = _crossing(run, plane, int(passed[-1]))
     last = run.sol(end)
     for i in passed[-2::-1]:
-        time = _crossing(run, normal, place, int(i))
-        state = run.sol(time)
-        if (np.abs(state - last) <= close).all():
-            return end - time, state
+        time = _crossing(run, plane, int(i))
+        if (np.abs(run.sol(time) - last) <= close).all():
+            return time, end
     return None
 
 
-def _crossing(run: OdeResult, normal: np.ndarray, place: np.ndarray, i: int) -> float:
+def _crossing(run: Run, plane: Place, i: int) -> float:
     """Time at which a motion passes a plane in a step of the integrator, by bisection."""
     low, high = float(run.t[i]), float(run.t[i + 1])
     for _ in range(60):
         middle = 0.5 * (low + high)
-        if normal @ (run.sol(middle) - place) < 0.0:
+        if plane.rate @ (run.sol(middle) - plane.x) < 0.0:
             low = middle
         else:
             high = middle

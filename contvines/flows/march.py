@@ -1,21 +1,34 @@
-"""Many motions of a flow at once: Dormand and Prince's method of order five, each motion with a step length of its own."""
+"""Many motions of a flow at once: Dormand and Prince's method of order five, each motion with a step length of its own.
+
+Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19, table 2. Importing scipy's takes longer than a diagram of a small flow.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
-from scipy.integrate import RK45
 
 from contvines.shared.floating_point import ROUNDED
 
 from ..problems.functions import NotEvaluable
+from .attractors import Place
 from .field import Field
 from .settings import FlowSettings
 
 FIRST = 0.001  # step at first, in times after which a motion has gone its size
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
-TABLEAU = RK45.A[:, :5], RK45.B, RK45.C, RK45.E
+PLACES = (0.2, 0.3, 0.8, 8 / 9, 1.0)
+STAGES = [
+    np.array([1 / 5]),
+    np.array([3 / 40, 9 / 40]),
+    np.array([44 / 45, -56 / 15, 32 / 9]),
+    np.array([19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729]),
+    np.array([9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]),
+]
+WHOLE = np.array([35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84])
+ERROR = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
 
 
 class Rates(Protocol):
@@ -74,9 +87,18 @@ class March:
         self.stopped[rows[beyond]] = True
         self.x[rows[beyond]] = np.nan
 
-    def go(self, rows: np.ndarray, steps: int, until: float = np.inf, far: float = np.inf) -> None:
-        """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN."""
-        a, b, c, e = TABLEAU
+    def go(
+        self,
+        rows: np.ndarray,
+        steps: int,
+        until: float = np.inf,
+        far: float = np.inf,
+        ways: Mapping[int, list[Place]] | None = None,
+    ) -> None:
+        """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN.
+
+        The places to which steps lead are added to the ways of motions that have one.
+        """
         relative, absolute = self.field.settings.rough_relative, self.field.settings.rough_absolute
         for _ in range(steps):
             rows = rows[np.isfinite(self.x[rows, 0]) & (self.t[rows] < until)]
@@ -86,17 +108,20 @@ class March:
             k = np.empty((7, *x.shape))
             k[0] = self.slope[rows]
             with np.errstate(all="ignore"):
-                for s in range(1, 6):
-                    k[s] = self._rates(x + h[:, None] * _weighted(a[s, :s], k[:s]), t + c[s] * h)
-                new = x + h[:, None] * _weighted(b, k[:6])
+                for s, (place, weights) in enumerate(zip(PLACES, STAGES, strict=True), start=1):
+                    k[s] = self._rates(x + h[:, None] * _weighted(weights, k[:s]), t + place * h)
+                new = x + h[:, None] * _weighted(WHOLE, k[:6])
                 k[6] = self._rates(new, t + h)
-                wrong = h[:, None] * _weighted(e, k)
+                wrong = h[:, None] * _weighted(ERROR, k)
                 allowed = absolute * self.size + relative * np.maximum(np.abs(x), np.abs(new))
                 error = np.sqrt(np.mean((wrong / allowed) ** 2, axis=1))
                 factor = np.clip(SAFETY * error**-0.2, SHRINK, GROW)
             good = error <= 1.0
             took = rows[good]
             self.x[took], self.t[took], self.slope[took] = new[good], (t + h)[good], k[6][good]
+            for i, way in (ways or {}).items():
+                if good[rows == i].any():
+                    way.append(Place(float(self.t[i]), self.x[i].copy(), self.slope[i].copy()))
             self._stop(took)
             whole = h == self.h[rows]
             with np.errstate(all="ignore"):

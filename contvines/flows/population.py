@@ -11,7 +11,7 @@ import numpy as np
 from contvines.shared.floating_point import ROUNDED, TINY
 
 from ..problems.registry import rebuild
-from .attractors import AtRest, Escaped, Irregular, Stopped
+from .attractors import AtRest, Escaped, Irregular, Place, Stopped, last_round
 from .field import Field
 from .flow import Flow
 from .march import March
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 BLOCK, STEPS = (
     200,
-    (3, 9, 27),
+    (2, 10, 27),
 )  # steps of the integration, and how often so many, for those that have settled on nothing before
-BLOCK_PERIODS, PERIODS = 20, (3, 9, 27)  # likewise, periods of a forcing
+BLOCK_PERIODS, PERIODS = 20, (2, 10, 27)  # likewise, periods of a forcing
 MOST_STEPS = 20000  # in so many periods
 PER_PERIOD = 30  # steps that count as a period in the budget of an atlas
 LONGEST = 16  # returns, or periods of the forcing, after which a motion is taken to be irregular
@@ -96,6 +96,7 @@ class PopulatedFlow(Flow, Protocol):
     def attractor(
         self, x0: np.ndarray, *, longest: int = 64, doublings: int = 12, **values: float
     ) -> CycleOrbit: ...
+    def cycle(self, times: np.ndarray, states: np.ndarray, **values: float) -> CycleOrbit: ...
 
 
 class FlowPopulation:
@@ -188,10 +189,11 @@ class FlowPopulation:
         period = float(self.field.length_of_period(p)) if self.field.forced else None
         rounds = 0
         for steps, periods, most in zip(STEPS, PERIODS, TRIED, strict=True):
+            ways: dict[int, list[Place]] = {int(i): [] for i in np.flatnonzero(index < 0)[:most]}
             for _ in range(steps if period is None else periods):
                 left = np.flatnonzero(index < 0)
                 if period is None:
-                    march.go(left, BLOCK, far=self.field.settings.far)
+                    march.go(left, BLOCK, far=self.field.settings.far, ways=ways)
                 else:
                     rounds += BLOCK_PERIODS
                     march.go(left, MOST_STEPS, until=rounds * period, far=self.field.settings.far)
@@ -208,7 +210,7 @@ class FlowPopulation:
                     break
             self.work += march.steps / PER_PERIOD
             march.steps = 0
-            self._recognise(march, index, mirrored, motions, p, most)
+            self._recognise(march, ways, index, mirrored, motions, p, most)
             if (index >= 0).all():
                 return motions, index, mirrored
         left = np.flatnonzero(index < 0)
@@ -258,6 +260,7 @@ class FlowPopulation:
     def _recognise(
         self,
         march: March,
+        ways: Mapping[int, Sequence[Place]],
         index: np.ndarray,
         mirrored: np.ndarray,
         motions: list[Settled],
@@ -271,7 +274,7 @@ class FlowPopulation:
             if not left:
                 return
             i = left[0]
-            motion = self._solved(march.x[i], p)
+            motion = self._solved(march.x[i], ways.get(i, ()), p)
             if motion is None:
                 tried.append(i)
                 continue
@@ -296,8 +299,8 @@ class FlowPopulation:
             and any(bool(self._on(other.curve[:: max(1, len(other.curve) // 8)], c).all()) for c in images)
         )
 
-    def _solved(self, x: np.ndarray, p: float) -> Settled | None:
-        """The equilibrium or cycle on which the motion from a state settles; None where it is neither, or not soon."""
+    def _solved(self, x: np.ndarray, way: Sequence[Place], p: float) -> Settled | None:
+        """The equilibrium or cycle on which the motion from a state settles, which came some way; None where it is neither, or not soon."""
         if not self.field.forced:
             rest = self._rest(x, p)
             if (
@@ -306,11 +309,11 @@ class FlowPopulation:
                 and self._attracts(rest, p)
             ):
                 return self._equilibrium(rest, p)
-        known = {self.parameter: p}
         try:
-            orbit = self.flow.attractor(
-                x, longest=LONGEST, doublings=DOUBLINGS, **({**self.values.values, **known})
-            )
+            orbit = self._recurring(way, p)
+            if orbit is None:
+                values = {**self.values.values, self.parameter: p}
+                orbit = self.flow.attractor(x, longest=LONGEST, doublings=DOUBLINGS, **values)
         except AtRest as still:
             rest = self._rest(still.state, p)
             return None if rest is None or not self._attracts(rest, p) else self._equilibrium(rest, p)
@@ -324,6 +327,17 @@ class FlowPopulation:
             return None
         problem = orbit.problem(self.parameter)
         return self._cycle(problem, orbit, p)
+
+    def _recurring(self, way: Sequence[Place], p: float) -> CycleOrbit | None:
+        """The stable cycle along which a motion has gone round already; None if it has not."""
+        last = last_round(self.field, p, way, LONGEST)
+        if last is None:
+            return None
+        try:
+            orbit = self.flow.cycle(*last, **{**self.values.values, self.parameter: p})
+        except ValueError:
+            return None
+        return orbit if orbit.stable else None
 
     def _cycle(self, problem: CycleMesh, orbit: CycleOrbit, p: float) -> Settled:
         if self.field.forced:

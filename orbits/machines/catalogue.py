@@ -1,4 +1,4 @@
-"""The machines by the names that studies use: a line each."""
+"""The machines by the names that studies use."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
+from orbits.machines.names import NAMES, PAGES, PLACES
 from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.parameters import ParameterError
 from orbits.machines.stepping import Machine
@@ -19,18 +20,6 @@ if TYPE_CHECKING:
 
     from orbits.machines.native_stepper import NativeStepper
     from orbits.machines.reference.machine import Reference
-
-PLACES = {
-    "absorber": ("orbits.machines.absorber", "Absorber"),
-    "cavity": ("orbits.machines.cavity", "Cavity"),
-    "coupled": ("orbits.machines.coupled", "Coupled"),
-}
-"""Module and class of each machine."""
-NAMES = tuple(PLACES)
-STRUCTURE = "structure"
-"""What studies call a machine of matrices (`orbits.machines.structure`)."""
-PAGES = {"coupled_two": "orbits.machines.coupled_two"}
-"""Machines that come with the package, whose flow is integrated; the module holds the machine by its name."""
 
 
 def model_class(name: str) -> type[Model]:

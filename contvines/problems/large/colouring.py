@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.optimize._numdiff import group_columns
 
 from ..functions import Sparse
 
@@ -40,6 +39,8 @@ class Colouring:
 
     def __init__(self, pattern: ArrayLike | Sparse, n: int) -> None:
         matrix = pattern if isinstance(pattern, Sparse) else sp.csc_array(np.asarray(pattern))
+        from scipy.optimize._numdiff import group_columns  # many small flows and maps do without
+
         if matrix.shape != (n, n):
             raise ValueError(f"sparsity has shape {matrix.shape}; ({n}, {n}) is needed")
         matrix = sp.csc_matrix(matrix, copy=True)

@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orbits.machines.catalogue import PAGES, page_machine
+from orbits.machines.catalogue import page_machine
+from orbits.machines.names import PAGES
 from orbits.machines.page.loading import load_page
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.page import digest_of
