@@ -158,29 +158,21 @@ def _chunks(
 
 
 def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[Solved]:
-    """The last points, solved again where the mesh, or the phase that is kept, no longer suits the last one."""
+    """The last points; where the mesh, or the phase that is kept, no longer suits the last one, that one alone, solved again."""
     last, image = history[-1], problem.adapted(history[-1].u)
     if image is None and problem.in_phase(last.u):
         return history
     while True:
-        problem.anchor(last.u if image is None else image(last.u), last.p)
-        # the last one, too: its tangent is that of the phase which was kept before
-        *before, found = [_solved_again(engine, point, image) for point in history]
+        u, direction = last.u, last.tangent[:-1]
+        if image is not None:
+            u, direction = image(u), image(direction, True)
+        problem.anchor(u, last.p)
+        tangent = engine.unit(engine.join(direction, float(last.tangent[-1])))
+        border = engine.weights * tangent
+        found = engine.solve(u, last.p, border, float(border @ engine.join(u, last.p)), tangent)
         if image is None or found is not None:
-            return [*(point for point in before if point is not None), found or last]
+            return [found or last]
         image = None
-
-
-def _solved_again(
-    engine: Engine, point: Solved, image: Callable[..., np.ndarray] | None = None
-) -> Solved | None:
-    """A point, as its image on another mesh reads, solved along its tangent."""
-    u, direction = point.u, point.tangent[:-1]
-    if image is not None:
-        u, direction = image(u), image(direction, True)
-    tangent = engine.unit(engine.join(direction, float(point.tangent[-1])))
-    border = engine.weights * tangent
-    return engine.solve(u, point.p, border, float(border @ engine.join(u, point.p)), tangent)
 
 
 def _march(
