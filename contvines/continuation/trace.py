@@ -22,8 +22,6 @@ from .settings import Settings, hinting
 from .step_rule import BY_ANGLE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ..journal import Journal
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting

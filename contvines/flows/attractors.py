@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
@@ -26,15 +26,6 @@ class Place(NamedTuple):
     t: float
     x: np.ndarray
     rate: np.ndarray
-
-
-class Run(Protocol):
-    """A simulated motion: times (n,) and states (d, n) at the ends of steps, and the states at any times."""
-
-    t: np.ndarray
-    y: np.ndarray
-
-    def sol(self, time: np.ndarray | float) -> np.ndarray: ...
 
 
 class Way:
@@ -201,7 +192,7 @@ def last_round(
     return times, way.sol(times).T
 
 
-def _fastest(field: Field, p: float, run: Run) -> tuple[Place, np.ndarray]:
+def _fastest(field: Field, p: float, run: OdeResult | Way) -> tuple[Place, np.ndarray]:
     """Where a motion is fastest in units of its size, with its rate there in those of their squares, and these units."""
     own = np.ptp(run.y, axis=1) / field.lengths
     unit = field.lengths * np.maximum(own, field.settings.least * own.max())
@@ -221,7 +212,9 @@ def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
     return x + step if near and (np.linalg.eigvals(matrix).real < 0.0).all() else None
 
 
-def _returned(run: Run, plane: Place, close: np.ndarray, longest: int) -> tuple[float, float] | None:
+def _returned(
+    run: OdeResult | Way, plane: Place, close: np.ndarray, longest: int
+) -> tuple[float, float] | None:
     """The times at which a motion last passes a plane in one and the same state; None if it does not come back to one."""
     heights = plane.rate @ (run.y - plane.x[:, None])
     passed = np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[-longest - 1 :]
@@ -236,7 +229,7 @@ def _returned(run: Run, plane: Place, close: np.ndarray, longest: int) -> tuple[
     return None
 
 
-def _crossing(run: Run, plane: Place, i: int) -> float:
+def _crossing(run: OdeResult | Way, plane: Place, i: int) -> float:
     """Time at which a motion passes a plane in a step of the integrator, by bisection."""
     low, high = float(run.t[i]), float(run.t[i + 1])
     for _ in range(60):
