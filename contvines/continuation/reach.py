@@ -2,8 +2,8 @@
 
 Where typical sizes of the unknowns are known (they were given, or are 1) a branch has run away when it is further from its start
 than so many of them. Where points are dear steps may grow with the distance. Sizes that were learned near the start say little of what lies far from it: there a branch has run away
-when its distance doubles within ever smaller changes of the parameter, so small that it would be out of all bounds long before the
-end of the interval. Powers of the parameter double within ever larger ones and are followed.
+when its distance doubles within changes of the parameter that shrink by the same share, as towards a pole in the interval, and are so small that
+it would be out of all bounds long before the end. Powers of the parameter double within ever larger ones and are followed.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ from .settings import SOLUTION
 
 # doublings of the distance, to `SOLUTION.huge`, for which the rest of the interval has to have room, on branches that go on
 DOUBLINGS = 26
-# a doubling that takes so much less than the one before, and so little of the interval, is one of the last
-SHRINKS, SMALL = 0.5, 0.05
+STEADY = 0.05  # relative difference of two shares by which the parameter's change shrinks with a doubling, up to which they are one
 MANY = 600  # short steps in a row that lead nowhere
 OFF = 2.0  # times `escape`, of cycles at one value of the parameter: as of families of a linear oscillator, which have all amplitudes
 GROW = 2.0  # distance, in typical sizes, from which on steps grow with it
@@ -43,6 +42,7 @@ class Reach:
         self.low = self.high = start.p
         # change of the parameter while the distance doubled last: infinite where it turned back, as it stands still at a fold
         self.moved, self.turned = np.inf, False
+        self.share = np.nan  # of that change in the one before
 
     def growth(self, point: Solved) -> float:
         """Factor of the longest step at a point; 1 where points are cheap."""
@@ -77,21 +77,27 @@ class Reach:
                 continue
             moved, ahead = self.high - self.low, chunk.tangents[i, -1] > 0.0
             room = self.engine.upper - value if ahead else value - self.engine.lower
-            last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
             # where the parameter stands still its turns are those of rounding
             stands = (
                 moved <= max(self.engine.settings.rounding, 10.0 * self.engine.noise) * self.engine.scale[-1]
             )
             turned = self.turned and not stands
             comparable = self.moved < np.inf and not turned
+            share = moved / self.moved if comparable and self.moved > 0.0 else np.nan
+            # near the start distances double within less and less however the branch goes on; by the same share towards a pole, here one in the interval
+            pole = abs(share - self.share) <= STEADY * share and moved * share < (1.0 - share) * room
             bound = (
-                not self.bounded and comparable and moved <= self.moved and (last or DOUBLINGS * moved < room)
+                not self.bounded
+                and comparable
+                and moved <= self.moved
+                and DOUBLINGS * moved < room
+                and (pole or stands)
             )
             family = self.bounded and stands and self._one_of_a_family(chunk.rows[i])
             if bound or distances[i] > (OFF if family else SOLUTION.huge) * escape:
                 return i
             self.doubled, self.low, self.high = 2.0 * float(distances[i]), value, value
-            self.moved, self.turned = np.inf if turned else moved, False
+            self.moved, self.turned, self.share = np.inf if turned else moved, False, share
         return None
 
     def _one_of_a_family(self, row: np.ndarray) -> bool:

@@ -36,6 +36,7 @@ SEEDS = {
     101437: "a rounded zero beside terms of the parameter has no size: y = -1e-16 in a row in which the other unknown is multiplied by y",
     434: "a corner that unlike sizes hide: x (2 p + 3 x^2 + 3) = 0 behind unknowns hundreds of times as large",
     101778: "two eigenvalues next to nothing are no exchange: x = 1 / (p^2 (p - 1)), two eigenvalues of 1e-5 on either side of zero",
+    3054: "1 / (x + 1) = p, scales of 0.03 learned on x = 0.38: the distance doubles as towards a pole long before x = 2.62 is met",
     201015: "nor in units of a distant start: x = 5 / p, begun near p = 0.05, where the equations are a million times as large",
 }
 
