@@ -24,6 +24,7 @@ from .handover import Handover
 from .places import scattered, unasked, unknown, unresolved
 from .population import Population, population_of
 from .roots import add_root
+from .settings import ATLAS
 from .windows import CYCLES, Windows, run_apart
 
 STARTS = 256  # at each of the given values where no number is given, in closed form
@@ -67,6 +68,8 @@ def atlas(
     4. past every end of a stable stretch the motion that is lost there is followed to what comes after it, wide stretches first;
     5. narrow windows: unstable cycles, from chaos and from a few starts, are traced, and kept where they lead to a stable one;
     6. steps 4 and 2 for what is new, and values where a kind of motion without a branch begins or ends.
+
+    So near to a homoclinic orbit that only narrow windows fit between, 1e-5 of the interval, what leaves a branch is not followed; special points say so.
 
     When the budget is used up, the piece of work at hand is finished, and the message of the graph says what is left out. A file keeps what was
     computed: the same call with ``journal=contvines.resume("FILE.vines")`` and a larger budget goes on from there.
@@ -135,6 +138,7 @@ def atlas(
             kinds=kinds,
         )
         run.graph.settings |= asked
+        run.narrowest = ATLAS.narrow * (run.graph.within[1] - run.graph.within[0])
         return run.graph, partial(_work, _Looking(run, population, seed, budget), where, starts, scan)
 
     return carried_out(begun, journal, progress, interrupt)

@@ -12,7 +12,8 @@ class AtlasSettings:
     Attributes
     ----------
     narrow : float
-        Stable stretches, windows, and stretches between two changes of what is stable that are narrower are left out.
+        Stable stretches, windows, and stretches between two changes of what is stable that are narrower are left out, and branches that leave
+        another one so near to a homoclinic orbit.
     narrow_chain : float
         Stretches that meet, as those of a cascade, and are narrower together, are not followed past their ends.
     beyond : float

@@ -16,6 +16,8 @@ from .settings import SOLUTION
 
 # doublings of the distance, to `SOLUTION.huge`, for which the rest of the interval has to have room, on branches that go on
 DOUBLINGS = 26
+# a doubling that takes so much less than the one before, and so little of the interval, is one of the last
+SHRINKS, SMALL = 0.5, 0.05
 STEADY = 0.05  # relative difference of two shares by which the parameter's change shrinks with a doubling, up to which they are one
 MANY = 600  # short steps in a row that lead nowhere
 OFF = 2.0  # times `escape`, of cycles at one value of the parameter: as of families of a linear oscillator, which have all amplitudes
@@ -77,6 +79,7 @@ class Reach:
                 continue
             moved, ahead = self.high - self.low, chunk.tangents[i, -1] > 0.0
             room = self.engine.upper - value if ahead else value - self.engine.lower
+            last = moved < SHRINKS * self.moved and moved < SMALL * (self.engine.upper - self.engine.lower)
             # where the parameter stands still its turns are those of rounding
             stands = (
                 moved <= max(self.engine.settings.rounding, 10.0 * self.engine.noise) * self.engine.scale[-1]
@@ -86,13 +89,8 @@ class Reach:
             share = moved / self.moved if comparable and self.moved > 0.0 else np.nan
             # near the start distances double within less and less however the branch goes on; by the same share towards a pole, here one in the interval
             pole = abs(share - self.share) <= STEADY * share and moved * share < (1.0 - share) * room
-            bound = (
-                not self.bounded
-                and comparable
-                and moved <= self.moved
-                and DOUBLINGS * moved < room
-                and (pole or stands)
-            )
+            soon = DOUBLINGS * moved < room and (pole or stands)
+            bound = not self.bounded and comparable and moved <= self.moved and (last or soon)
             family = self.bounded and stands and self._one_of_a_family(chunk.rows[i])
             if bound or distances[i] > (OFF if family else SOLUTION.huge) * escape:
                 return i

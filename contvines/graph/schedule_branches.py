@@ -37,6 +37,7 @@ FAMILY = (
 )
 VERTICAL = "the branch that leaves here stands upright: the parameter does not change along it"
 SWITCHING, CROSSING = "the search for branches that leave here", "the search for solutions beyond the border"
+BESIDE_HOMOCLINIC = "the branch that leaves here is not followed: within {narrowest:.1e} of {orbit}, a homoclinic orbit, an atlas follows none"
 DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 
@@ -165,6 +166,9 @@ def _follow(run: Run, departure: Departure, point: SpecialPoint, branch: Branch,
     """Queue a branch that leaves a special point, as far as the depth allows."""
     if depth + 1 > run.depth:
         return
+    if (orbit := _beside_homoclinic(run, point, branch)) is not None:
+        run.remark(point.label, BESIDE_HOMOCLINIC.format(narrowest=run.narrowest, orbit=orbit))
+        return
     origin = departure.origin
     run.queue.append(
         Pending(
@@ -182,6 +186,17 @@ def _follow(run: Run, departure: Departure, point: SpecialPoint, branch: Branch,
             first_step=min(run.settings.first_step, departure.amplitude),
         )
     )
+
+
+def _beside_homoclinic(run: Run, point: SpecialPoint, branch: Branch) -> str | None:
+    """Label of a homoclinic orbit at the end of a branch, next to which a special point lies; None if there is none.
+
+    Beside the orbit of a saddle-focus folds and period doublings accumulate on the branch, and on each branch that leaves it there, within an
+    interval of the parameter as narrow (P. Glendinning and C. Sparrow, J. Stat. Phys. 35 (1984) 645).
+    """
+    ends = [run.graph.special[label] for _, label in branch.marks]
+    near = [e for e in ends if e.kind == "homoclinic" and abs(e.value - point.value) < run.narrowest]
+    return near[0].label if near else None
 
 
 def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
