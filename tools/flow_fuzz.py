@@ -64,7 +64,9 @@ class Drawn:
             linear = (self.linear + p * self.by_parameter) @ x + p * self.constant
             return linear + self.square @ x @ x - x @ x * (self.damping @ x)
         linear = np.tensordot(self.linear + p * self.by_parameter, x, 1) + p * self.constant[:, None]
-        products = (x[:, None] * x).reshape(len(x) ** 2, -1)  # einsum would take ten times as long as the rest
+        products = (x[:, None] * x).reshape(
+            len(x) ** 2, -1
+        )  # einsum would take ten times as long as the rest
         return linear + self.square.reshape(len(x), -1) @ products - (x * x).sum(axis=0) * (self.damping @ x)
 
     def jacobian(self, x: np.ndarray, p: float) -> np.ndarray:
