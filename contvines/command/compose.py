@@ -56,7 +56,7 @@ def population(study: Study):
     own = study.parameters if study.sort is Sort.FLOW else study.loose
     fixed = {name: value for name, value in own.items() if name != study.parameter}
     if study.sort is Sort.FLOW:
-        return study.flow.population(study.parameter, box=study.box, **fixed)
+        return study.flow.population_at(fixed, study.parameter, study.box)
     from contvines.coexistence.population import population_of
 
     return population_of(study.model, study.parameter, **fixed)
@@ -76,7 +76,7 @@ def first_orbit(study: Study):
     try:
         if study.sort is Sort.FLOW:
             if study.state is not None or study.flow.field.forced:
-                return study.flow.attractor(study.state, **study.parameters)
+                return study.flow.attractor_at(study.parameters, study.state)
             return study.flow.equilibria(study.parameter, study.parameters)
         if study.sort is Sort.PAGE and study.word in (None, "") and not study.guess:
             return _page_start(study)

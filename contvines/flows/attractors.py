@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
+from ..problems.functions import NotEvaluable
 from .simulation import rates
 
 if TYPE_CHECKING:
@@ -82,9 +83,11 @@ def recurrence(
     ValueError
         If the motion escapes, comes to rest, or does not recur.
     """
-    if field.forced:
-        return _forced(field, p, x, transient, longest, doublings)
-    return _free(field, p, x, transient, longest, doublings)
+    settled = _forced if field.forced else _free
+    try:
+        return settled(field, p, x, transient, longest, doublings)
+    except NotEvaluable as error:
+        raise Escaped(f"the motion cannot be simulated: {error}") from error
 
 
 def _run(
@@ -92,7 +95,12 @@ def _run(
 ) -> OdeResult:
     from scipy.integrate import solve_ivp
 
-    s = field.settings
+    s, size = field.settings, field.lengths + np.abs(x)
+
+    def inside(t: float, y: np.ndarray) -> float:
+        return s.endless - float((np.abs(y) / size).max())
+
+    inside.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
     relative, absolute = (s.rough_relative, s.rough_absolute) if rough else (s.relative, s.absolute)
     found = solve_ivp(
         rates(field, p),
@@ -100,18 +108,16 @@ def _run(
         x,
         method="LSODA",
         rtol=relative,
-        atol=cast("float", absolute * (field.lengths + np.abs(x))),
+        atol=cast("float", absolute * size),
         dense_output=dense,
-        events=field.events.crossings(field.values, p) or None,
+        events=[*field.events.crossings(field.values, p), inside],
     )
-    if found.status == 1:
-        name = next(
-            name for name, times in zip(field.events.names, found.t_events, strict=True) if len(times)
-        )
+    if found.status == 1 and not len(found.t_events[-1]):
+        name = next(name for name, times in zip(field.events.names, found.t_events) if len(times))
         raise Stopped(
             f"the event {name} stops the motion at {np.array2string(found.y[:, -1], precision=6)}; begin elsewhere, or with other parameters"
         )
-    if not found.success or not np.isfinite(found.y[:, -1]).all() or np.abs(found.y[:, -1]).max() > s.endless:
+    if found.status != 0 or not np.isfinite(found.y[:, -1]).all():
         raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {found.t[-1]:.6g}")
     return found
 

@@ -265,9 +265,7 @@ class CycleProblem(CycleRelatives):
     ) -> Population:
         """Starts round this cycle, and what they settle on."""
         states = self.u0[: self.states].reshape(-1, self.node)
-        return self.flow.population(
-            over or self.parameter, box=box, around=states, **{**self.parameters, **values}
-        )
+        return self.flow.population_at({**self.parameters, **values}, over or self.parameter, box, states)
 
     def return_map(self, u: np.ndarray, p: float) -> ReturnMap:
         """The map of which a cycle is a fixed point."""

@@ -163,9 +163,7 @@ class Equilibria(AlgebraicProblem):
         self, over: str | None = None, *, box: Sequence[tuple[float, float]] | None = None, **values: float
     ) -> Population:
         """Starts round the flow's start, and what they settle on."""
-        return self.flow.population(
-            over or self.parameter, box=box, around=None, **{**self.values.values, **values}
-        )
+        return self.flow.population_at({**self.values.values, **values}, over or self.parameter, box)
 
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again."""

@@ -76,7 +76,7 @@ class Events:
         for k, (name, function) in enumerate(self.given.items()):
             try:
                 found[:, k] = self._many(function, x, parameters, t)
-            except (ArithmeticError, ValueError, TypeError, IndexError, AttributeError) as error:
+            except Exception as error:  # a user's function may fail in any way
                 raise NotEvaluable(f"the event {name} fails: {error}") from error
         return found * self.signs
 

@@ -52,5 +52,5 @@ class FlowFamily:
             raise ValueError(f"{self.file} has no flow {self.name!r} any more")
         flow.box = self.box
         if self.state is not None or flow.field.forced:
-            return flow.attractor(self.state, **numbers)
+            return flow.attractor_at(numbers, self.state)
         return flow.equilibria(self.parameter, numbers)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from typing import TYPE_CHECKING, NamedTuple, overload
@@ -11,7 +12,8 @@ from scipy.sparse import issparse
 
 from contvines.shared.floating_point import COMPLEX_STEP
 
-from ..problems.derivatives import Differentiated
+from ..problems.derivatives import Differentiated, agreeing
+from ..problems.differences import along
 from ..problems.functions import NotEvaluable
 from ..problems.large.colouring import Colouring
 from ..problems.parameters import ParameterSet
@@ -95,6 +97,7 @@ class Field:
         self.compiled = f if isinstance(f, CompiledRates) else None
         self.many = self.many_jacobian = False
         self.many_slope: dict[str, bool] = {}  # by the name of the parameter
+        self.complex_slopes: dict[str, bool] = {}  # likewise
         self._find_vectorised(start)
         self.sparsity = self._find_sparsity(start) if self.node >= LARGE else None
 
@@ -124,7 +127,7 @@ class Field:
         assert self.period is not None
         try:
             period = self.period(self.values.at(p))
-        except (ArithmeticError, ValueError) as error:
+        except Exception as error:  # a user's function may fail in any way
             raise NotEvaluable(f"period raises {type(error).__name__}: {error}") from error
         if not 0.0 < np.real(period) < np.inf:
             raise NotEvaluable(f"period = {period!r} must be positive and finite")
@@ -137,12 +140,17 @@ class Field:
         Raises
         ------
         NotEvaluable
-            If f fails or does not return d numbers.
+            If f fails or does not return d numbers, real ones of real states.
         """
         at = At(x, self.values.at(p), t)
         if self.compiled is not None:
             return self.compiled.at_points(self.compiled.f, *at, (self.node,))
-        return self._stacked(self.f, at, (self.node,)) if self.many else self._each(self.f, at, (self.node,))
+        found = (self._stacked if self.many else self._each)(self.f, at, (self.node,))
+        if found.dtype.kind == "c" and x.dtype.kind != "c" and not isinstance(p, complex):
+            if found.imag.any():
+                raise NotEvaluable("the right-hand side returns complex numbers")
+            return found.real
+        return found
 
     def _asked(
         self, f: Callable, x: np.ndarray, at: At, t: object, read: Callable[..., np.ndarray]
@@ -150,8 +158,8 @@ class Field:
         """What a function returns for a state, or for many as columns, as an array."""
         try:
             return read(f(x, at.parameters) if self.period is None else f(x, at.parameters, t))
-        except (ArithmeticError, ValueError, TypeError, IndexError, np.linalg.LinAlgError) as error:
-            raise NotEvaluable(f"the right-hand side fails: {error}") from error
+        except Exception as error:  # a user's function may fail in any way
+            raise NotEvaluable(f"the right-hand side raises {type(error).__name__}: {error}") from error
 
     def _each(self, f: Callable, at: At, shape: tuple[int, ...]) -> np.ndarray:
         """Point by point."""
@@ -255,13 +263,19 @@ class Field:
         return result
 
     def along(self, line: Callable[[complex], np.ndarray], p: float) -> np.ndarray:
-        """Derivative of a function of the parameter at p: by the complex step where f allows it, else by differences."""
-        if self.complex_step:
-            try:
-                value = line(complex(p, COMPLEX_STEP))
-                return np.imag(value) / COMPLEX_STEP
-            except TypeError:  # the period may be a function of real numbers alone
-                pass
+        """Derivative of a function of the parameter at p: by the complex step where f and the period allow it, else by differences.
+
+        Whether they do is tried once for each parameter: they may take its magnitude.
+        """
+        name = self.values.varying
+        if self.complex_slopes.get(name, self.complex_step):
+            with contextlib.suppress(NotEvaluable):  # what takes real numbers alone
+                exact = np.imag(line(complex(p, COMPLEX_STEP))) / COMPLEX_STEP
+                if name not in self.complex_slopes:
+                    near = along(lambda t: line(p + t), abs(p) or 1.0)
+                    self.complex_slopes[name] = agreeing(exact, near)
+                if self.complex_slopes[name]:
+                    return exact
         step = STEP * (abs(p) or 1.0)
         return _difference(lambda s: line(p + s * step)) / step
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from contvines.shared.floating_point import ROUNDED, TINY
 
+from ..problems.functions import NotEvaluable
 from ..problems.registry import rebuild
 from .attractors import AtRest, Escaped, Irregular, Place, Stopped, last_round
 from .field import Field
@@ -93,8 +94,8 @@ class PopulatedFlow(Flow, Protocol):
     def values(self) -> ParameterSet: ...
     @property
     def box(self) -> Sequence[tuple[float, float]] | None: ...
-    def attractor(
-        self, x0: np.ndarray, *, longest: int = 64, doublings: int = 12, **values: float
+    def attractor_at(
+        self, values: Mapping[str, float], x0: np.ndarray, *, longest: int = 64, doublings: int = 12
     ) -> CycleOrbit: ...
     def cycle(self, times: np.ndarray, states: np.ndarray, **values: float) -> CycleOrbit: ...
 
@@ -122,7 +123,7 @@ class FlowPopulation:
         self,
         flow: PopulatedFlow,
         parameter: str,
-        values: dict[str, float],
+        values: Mapping[str, float],
         box: Sequence[tuple[float, float]] | None = None,
         around: np.ndarray | None = None,
     ) -> None:
@@ -309,11 +310,11 @@ class FlowPopulation:
                 and self._attracts(rest, p)
             ):
                 return self._equilibrium(rest, p)
+        values = {**self.values.values, self.parameter: p}
         try:
             orbit = self._recurring(way, p)
             if orbit is None:
-                values = {**self.values.values, self.parameter: p}
-                orbit = self.flow.attractor(x, longest=LONGEST, doublings=DOUBLINGS, **values)
+                orbit = self.flow.attractor_at(values, x, longest=LONGEST, doublings=DOUBLINGS)
         except AtRest as still:
             rest = self._rest(still.state, p)
             return None if rest is None or not self._attracts(rest, p) else self._equilibrium(rest, p)
@@ -360,7 +361,7 @@ class FlowPopulation:
             with np.errstate(all="ignore"):
                 try:
                     rate, matrix = self.field(x[None], p)[0], self.field.jacobian(x[None], p)[0]
-                except ValueError:
+                except (ValueError, NotEvaluable):
                     return None
             if not (np.isfinite(rate).all() and np.isfinite(matrix).all()):
                 return None
@@ -397,7 +398,7 @@ class FlowPopulation:
                 logs.append(np.log(sizes) / (march.t - before))
                 march.x[:, d:] /= sizes[:, None]
                 march.slope[:, d:] /= sizes[:, None]
-        except ValueError:
+        except (ValueError, NotEvaluable):
             return Settled("slow", state=x[0])
         found = np.concatenate(logs[1:])  # in the first block vectors turn to where they grow
         mean, error = float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))

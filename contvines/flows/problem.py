@@ -311,8 +311,17 @@ class FlowProblem:
         **values
             Of parameters.
         """
-        parameter = self.values.varying if over is None else over
-        return FlowPopulation(self, parameter, values, box, around)
+        return self.population_at(values, over, box, around)
+
+    def population_at(
+        self,
+        values: Mapping[str, float],
+        over: str | None = None,
+        box: Sequence[tuple[float, float]] | None = None,
+        around: np.ndarray | None = None,
+    ) -> FlowPopulation:
+        """:meth:`population` with values of parameters in a mapping."""
+        return FlowPopulation(self, self.values.varying if over is None else over, values, box, around)
 
     # ------------------------------------------------------------------ cycles
     @hinting
@@ -350,6 +359,18 @@ class FlowProblem:
         ValueError
             If the motion escapes, comes to rest, or does not recur.
         """
+        return self.attractor_at(values, x0, transient=transient, longest=longest, doublings=doublings)
+
+    def attractor_at(
+        self,
+        values: Mapping[str, float],
+        x0: ArrayLike | None = None,
+        *,
+        transient: float | None = None,
+        longest: int = 64,
+        doublings: int = 12,
+    ) -> CycleOrbit:
+        """:meth:`attractor` with values of parameters in a mapping: they may have the names of its arguments."""
         parameters = self.values.against(self.values.varying, values)
         start = self.x0 if x0 is None else flat_start(x0, "x0")
         if len(start) != len(self.x0):
@@ -392,6 +413,12 @@ class FlowProblem:
         ValueError
             If the data are no cycle, or Newton's method does not lead from them to one.
         """
+        return self.cycle_at(values, times, states, rounds)
+
+    def cycle_at(
+        self, values: Mapping[str, float], times: ArrayLike, states: ArrayLike, rounds: int | None = None
+    ) -> CycleOrbit:
+        """:meth:`cycle` with values of parameters in a mapping."""
         t, x = _numbers("times", times), _numbers("states", states)
         if t.ndim != 1 or len(t) < 5 or not (np.diff(t) > 0.0).all():
             raise ValueError("times must be at least five increasing numbers")

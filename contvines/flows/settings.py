@@ -23,7 +23,7 @@ class FlowSettings:
     spread : float
         Simulation: largest ratio of two growths in one simulation of multipliers.
     far, endless : float
-        Simulation: a motion has escaped so many sizes of the box of starts, or where a state is so large.
+        Simulation: a motion has escaped so many sizes of the box of starts away, or so many times where it began and the length over which f bends.
     beside : float
         Starts: distance from an equilibrium, in lengths, at which a motion begins in its place; of copies of a motion, in sizes of the box.
     recurs, nearly : float

@@ -21,9 +21,9 @@ def rates(field: Field, p: float) -> Callable[[float, np.ndarray], np.ndarray]:
 
     def rate(t: float, x: np.ndarray) -> np.ndarray:
         try:
-            value = f(x, parameters, t) if forced else f(x, parameters)
-            return np.asarray(value, dtype=float).reshape(len(x))
-        except (ArithmeticError, ValueError, IndexError, NotEvaluable):
+            value = np.asarray(f(x, parameters, t) if forced else f(x, parameters)).reshape(len(x))
+            return np.where(value.imag == 0.0, value.real, np.nan)
+        except Exception:  # a user's function may fail in any way
             return np.full(len(x), np.nan)
 
     return rate
@@ -54,8 +54,11 @@ def variational(
 
     begin = np.concatenate([x, np.eye(d).reshape(-1)])
     s = field.settings
-    found = solve_ivp(
-        rate, (start, stop), begin, method="DOP853", rtol=s.exact_relative, atol=s.exact_absolute
-    )
+    try:
+        found = solve_ivp(
+            rate, (start, stop), begin, method="DOP853", rtol=s.exact_relative, atol=s.exact_absolute
+        )
+    except NotEvaluable:
+        return np.full(d, np.nan), np.full((d, d), np.nan)
     end = found.y[:, -1] if found.success else np.full(len(begin), np.nan)
     return end[:d], end[d:].reshape(d, d)

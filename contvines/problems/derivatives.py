@@ -106,6 +106,7 @@ class Differentiated:
             self._measure_lengths(u, p, cost, self.grain)
         if (jacobian is None or not self._gives_derivative) and not self.noise.any():
             self.complex_step = self._complex_step_works(u, p)
+        self.complex_parameters = {parameters.varying: self.complex_step}
 
     def _bind(self) -> None:
         given = self.given_derivative
@@ -275,13 +276,20 @@ class Differentiated:
         """df/dp, shape (n,)."""
         if self.given_slope is not None:
             return self.given_slope(u, p)
-        if self.complex_step:
+        if self.complex_in_parameter(u, p):
             return np.imag(self._value(u.astype(complex), complex(p, COMPLEX_STEP))) / COMPLEX_STEP
         line = self.quietly(lambda t: self._value(u, p + t), len(self.noise))
         found = self._evaluable(along(line, self.parameter_length(u, p), self.noise))
         return found.value
 
     # ------------------------------------------------------------------ what f is like
+    def complex_in_parameter(self, u: np.ndarray, p: float) -> bool:
+        """Whether the complex step gives the derivative by the parameter that varies, of which f may take the magnitude; tried once for each parameter."""
+        name = self.parameters.varying
+        if name not in self.complex_parameters:
+            self.complex_parameters[name] = self.complex_step and self._complex_step_works(u, p)
+        return self.complex_parameters[name]
+
     def parameter_length(self, u: np.ndarray, p: float) -> float:
         """Length over which f bends in the parameter that varies; measured once for each parameter."""
         name = self.parameters.varying
@@ -305,10 +313,14 @@ class Differentiated:
 
         def value(t: float) -> np.ndarray:
             try:
-                return line(t)
+                found = line(t)
             except NotEvaluable as error:
                 self.words = str(error)
                 return np.full(n, np.nan)
+            if len(found) == n:
+                return found
+            self.words = f"{self.name} returns {len(found)} numbers there; {n} are needed"
+            return np.full(n, np.nan)
 
         return value
 
@@ -352,7 +364,12 @@ class Differentiated:
                 near = along(lambda t: self._value(u + t * direction, p + t * slope), 0.5, self.noise)
         except NotEvaluable:
             return False
-        if len(exact) != len(u) or not np.isfinite(exact).all():
+        if len(exact) != (self.rows or len(u)) or not np.isfinite(exact).all():
             return False
-        rows = np.abs(near.value) + DERIVATIVES.faint * np.abs(near.value).max(initial=0.0)
-        return bool(np.all(np.abs(exact - near.value) <= DERIVATIVES.agree * rows + 10.0 * near.error))
+        return agreeing(exact, near)
+
+
+def agreeing(exact: np.ndarray, near: Difference) -> bool:
+    """Whether a derivative by the complex step is the one by differences."""
+    rows = np.abs(near.value) + DERIVATIVES.faint * np.abs(near.value).max(initial=0.0)
+    return bool(np.all(np.abs(exact - near.value) <= DERIVATIVES.agree * rows + 10.0 * near.error))

@@ -73,7 +73,8 @@ def _by_multipliers(segment: Segment, folds: list[float], met: list[float]) -> l
         root = locate(segment, test.function, jump=test.jump)
         if root is None or not root.continuous or _near(segment, root.position, folds + met):
             continue
-        if abs(test.function(root.point)) > engine.settings.critical or _complex(segment, root.point):
+        unit = min(1.0, *(float(np.abs(engine.spectrum(end.row)).max()) for end in (segment.a, segment.b)))
+        if abs(test.function(root.point)) > engine.settings.critical * unit or _complex(segment, root.point):
             continue  # two real multipliers met and left the axis; none of them was at the boundary
         if not passes_for_certain(segment, root.position):
             continue

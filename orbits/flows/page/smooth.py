@@ -149,13 +149,12 @@ class WithoutEvents(FlowProblem):
         return "orbits.flows.page.smooth:rebuild"
 
     # ------------------------------------------------------------------ what else there is
-    def population(  # of the machine's own class, with other columns than that of a flow
+    def population_at(  # of the machine's own class, with other columns than that of a flow
         self,
+        values: Mapping[str, float],
         over: str | None = None,
-        *,
         box: Sequence[tuple[float, float]] | None = None,
         around: np.ndarray | None = None,
-        **values: float,
     ) -> Any:
         """Starts of the machine."""
         over = over or self.values.varying
@@ -300,16 +299,14 @@ def cycles_of(orbit: Motion):
     table = sampling.sample(orbit, SAMPLES)
     states = np.column_stack([table[name] for name in machine.states])
     flow = smooth(machine, orbit.word.entries(0), orbit.params, states[0])
-    values: dict[str, Any] = dict(orbit.parameters)
-    return flow.cycle(table["time"], states, **values)
+    return flow.cycle_at(orbit.parameters, table["time"], states)
 
 
 def cycle_near(machine: Machine, word: Word, params: np.ndarray, state: np.ndarray) -> np.ndarray | None:
     """The node of the cycle without events on which a motion settles, shape (n + 1,); None where it does not."""
     try:
         flow = smooth(machine, word.entries(0), params, state)
-        values: dict[str, Any] = dict(zip(machine.parameter_names, map(float, params), strict=True))
-        orbit = flow.attractor(state, **values)
+        orbit = flow.attractor_at(dict(zip(machine.parameter_names, map(float, params), strict=True)), state)
     except ValueError:  # it comes to rest, goes on to an event, or does not recur
         return None
     return extreme_of(machine, word, orbit(np.linspace(0.0, orbit.period, SAMPLES)), orbit.period)
