@@ -19,6 +19,8 @@ SAMPLES = 400  # states of a period that are handed over
 FIRST = 50.0  # time scales of the first transient
 CAUTION = 10.0  # times the tolerance of a simulation
 DOUBLINGS = 12  # of the transient
+BRIEF = 100  # steps of the integrator: a motion that takes no more has hardly gone on; of a stiff flow, whose fastest scale begins the transient
+MOST = 80  # such motions
 
 
 class Place(NamedTuple):
@@ -161,8 +163,11 @@ def _free(
             1.0, len(x) + 1
         )  # upwards: concentrations may be zero there
     x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
-    for _ in range(doublings):
+    brief = 0
+    while doublings > 0 and brief < MOST:
         run = _run(field, p, x, 0.0, span, dense=True, rough=True)
+        doublings -= len(run.t) > BRIEF
+        brief += len(run.t) <= BRIEF
         ranges = np.ptp(run.y, axis=1)
         still = (ranges <= s.still * (field.lengths + np.abs(x))).all()
         rest = x if still else _rest(field, p, run.y[:, -1])

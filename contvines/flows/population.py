@@ -58,6 +58,7 @@ class Settled:
     error: float = float("nan")
     state: np.ndarray | None = field(default=None, repr=False)
     curve: np.ndarray | None = field(default=None, repr=False)  # states on it
+    image: np.ndarray | None = field(default=None, repr=False)  # states on its mirror image
 
 
 @dataclass(frozen=True)
@@ -236,10 +237,9 @@ class FlowPopulation:
         left = np.flatnonzero((index < 0) & np.isfinite(x).all(axis=1))
         near = self._on(x[left], motion.curve)
         index[left[near]] = k
-        mirror = self.flow.mirror
-        if mirror is not None:
+        if motion.image is not None:
             left = left[~near]
-            near = self._on(x[left], np.array([mirror(y) for y in motion.curve]))
+            near = self._on(x[left], motion.image)
             index[left[near]], mirrored[left[near]] = k, True
 
     def _on(self, x: np.ndarray, curve: np.ndarray) -> np.ndarray:
@@ -286,19 +286,18 @@ class FlowPopulation:
             if not known:
                 motions.append(motion)
             k = known[0] if known else len(motions) - 1
-            index[i] = k
+            index[i], mirrored[i] = k, bool(known) and not self._along(motion, motions[k].curve)
             self._assign(march.x, index, mirrored, k, motion)
 
     def _same(self, one: Settled, other: Settled) -> bool:
-        assert one.curve is not None and other.curve is not None
-        images = [one.curve]
-        if self.flow.mirror is not None:
-            images.append(np.array([self.flow.mirror(y) for y in one.curve]))
-        return (
-            one.word == other.word
-            and one.periods == other.periods
-            and any(bool(self._on(other.curve[:: max(1, len(other.curve) // 8)], c).all()) for c in images)
-        )
+        alike = one.word == other.word and one.periods == other.periods
+        return alike and (self._along(other, one.curve) or self._along(other, one.image))
+
+    def _along(self, motion: Settled, curve: np.ndarray | None) -> bool:
+        """Whether a motion lies on a curve."""
+        if curve is None or motion.curve is None:
+            return False
+        return bool(self._on(motion.curve[:: max(1, len(motion.curve) // 8)], curve).all())
 
     def _solved(self, x: np.ndarray, way: Sequence[Place], p: float) -> Settled | None:
         """The equilibrium or cycle on which the motion from a state settles, which came some way; None where it is neither, or not soon."""
@@ -341,15 +340,18 @@ class FlowPopulation:
         return orbit if orbit.stable else None
 
     def _cycle(self, problem: CycleMesh, orbit: CycleOrbit, p: float) -> Settled:
-        if self.field.forced:
-            curve = orbit(np.arange(problem.rounds) * orbit.period / problem.rounds)
-        else:
-            curve = orbit(np.linspace(0.0, orbit.period, 1001)[:-1])
         rounds = problem.rounds if self.field.forced else 0
-        return Settled("periodic", "cycle", rounds, problem, orbit.u.copy(), state=curve[0], curve=curve)
+        curve, image = curves(self.flow, orbit, rounds)
+        return Settled(
+            "periodic", "cycle", rounds, problem, orbit.u.copy(), state=curve[0], curve=curve, image=image
+        )
 
     def _equilibrium(self, x: np.ndarray, p: float) -> Settled:
-        return Settled("periodic", "equilibrium", 0, self._equilibria(p), x, state=x, curve=x[None])
+        mirror, curve = self.flow.mirror, x[None]
+        image = None if mirror is None else mirror(x)[None]
+        return Settled(
+            "periodic", "equilibrium", 0, self._equilibria(p), x, state=x, curve=curve, image=image
+        )
 
     def _equilibria(self, p: float) -> AlgebraicProblem:
         return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p})
@@ -439,3 +441,12 @@ class FlowPopulation:
     def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]:
         """Measures of a motion that is no cycle: none."""
         return {}
+
+
+def curves(flow: Flow, orbit: CycleOrbit, rounds: int) -> tuple[np.ndarray, np.ndarray | None]:
+    """States on a cycle and on its mirror image: all along, or where it repeats after so many periods of a forcing once per period."""
+    times = np.arange(rounds) * orbit.period / rounds if rounds else np.linspace(0.0, orbit.period, 1001)[:-1]
+    if flow.mirror is None:
+        return orbit(times), None
+    later = 0.5 * orbit.period / rounds if flow.mirror_shifted else 0.0
+    return orbit(times), np.array([flow.mirror(x) for x in orbit((times + later) % orbit.period)])

@@ -28,7 +28,7 @@ from .field import Field
 from .names import OF_STATES, checked_names
 from .newton import settled
 from .orbit import CycleOrbit
-from .population import FlowPopulation, Settled
+from .population import FlowPopulation, Settled, curves
 from .settings import FlowSettings
 
 if TYPE_CHECKING:
@@ -517,19 +517,27 @@ class FlowProblem:
         for motion in motions:
             entry = {"word": motion.word or None, "periods": motion.periods, "kind": motion.kind}
             curve = motion.curve if isinstance(motion, Settled) else None
-            found.append(entry if curve is None else {**entry, "u": extremes(curve)})
+            found.append(entry if curve is None else {**entry, "u": self._extremes(curve, motion.image)})
         return sorted(found, key=lambda one: (str(one["word"]), one["kind"], one.get("u", [])))
 
     def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:
         """A stable solution as `simulated_attractors` lists it."""
-        if not isinstance(problem, CycleProblem):
-            word, periods, curve = "equilibrium", 0, np.asarray(u, dtype=float)[None, : len(self.x0)]
-        else:
-            orbit = problem.orbit(u, p)
-            times = np.linspace(0.0, orbit.period, 1001)[:-1]
+        if isinstance(problem, CycleProblem):
             word, periods = "cycle", problem.rounds if self.field.forced else 0
-            curve = orbit(times[:: len(times) // periods] if periods else times)
-        return {"word": word, "periods": periods, "kind": "periodic", "u": extremes(curve)}
+            curve, image = curves(self, problem.orbit(u, p), periods)
+        else:
+            word, periods, curve = "equilibrium", 0, np.asarray(u, dtype=float)[None, : len(self.x0)]
+            image = None if self.mirror is None else self.mirror(curve[0])[None]
+        return {"word": word, "periods": periods, "kind": "periodic", "u": self._extremes(curve, image)}
+
+    def _extremes(self, curve: np.ndarray, image: np.ndarray | None) -> list[float]:
+        """Least and largest state along a motion, of two mirror images those of the one that is larger first: of two motions that are one they agree to a few digits."""
+        own = np.concatenate([curve.min(axis=0), curve.max(axis=0)])
+        if image is not None:
+            other = np.concatenate([image.min(axis=0), image.max(axis=0)])
+            apart = np.flatnonzero(np.abs(own - other) > self.settings.near * np.abs(own).max())
+            own = other if apart.size and other[apart[0]] > own[apart[0]] else own
+        return own.tolist()
 
     def rebuilt_by(self, importable: bool) -> str | None:
         """The factory that builds the flow's problems again; None where its functions cannot be found again."""
@@ -584,11 +592,6 @@ class FlowProblem:
             "flow": self.described(),
             "factory": self.rebuilt_by(importable),
         }
-
-
-def extremes(curve: np.ndarray) -> list[float]:
-    """Least and largest state along a motion: of two motions that are one they agree to a few digits."""
-    return [float(x) for x in (*curve.min(axis=0), *curve.max(axis=0))]
 
 
 def _is_number(given: object) -> bool:

@@ -131,3 +131,42 @@ def test_basins_of_a_forced_flow():
         assert found.states[found.index[i, j]] == pytest.approx(end, abs=1e-4)
     assert str(found).count("cycle through x0 = ") == 2  # both are called so
     assert set(found.index.ravel().tolist()) == {0, 1}
+
+
+def test_mirror_images_of_a_forced_flow_are_one_motion_half_a_period_later():
+    """Two wells: the same starts are shared out alike with and without the symmetry."""
+
+    def wells(mirror):
+        flow = contvines.FlowProblem(
+            lambda x, p, t: [x[1], -0.3 * x[1] + x[0] - x[0] ** 3 + p.g * np.cos(1.2 * t)],
+            [1.0, 0.0], {"g": 0.1}, period=2 * np.pi / 1.2, mirror=mirror,
+        )  # fmt: skip
+        population = flow.population("g", box=[(-2, 2), (-2, 2)])
+        return flow, population.settle(population.starts(32, 0, 0.1), 0.1)
+
+    _, (apart, index, _) = wells(None)
+    flow, (motions, together, mirrored) = wells(lambda x: -x)
+    assert (len(apart), len(motions)) == (2, 1)
+    assert (together == 0).all()
+    assert (mirrored == (index != index[0])).all() or (mirrored == (index == index[0])).all()
+    problem = flow.attractor([1.0, 0.0], g=0.1).problem("g")
+    other = flow.attractor([-1.0, 0.0], g=0.1)
+    listed = [one for one in problem.simulated_attractors(0.1) if one["kind"] == "periodic"]
+    for orbit in (flow.attractor([1.0, 0.0], g=0.1), other):
+        known = orbit.problem("g").attractor(orbit.u, 0.1)
+        assert known["u"] == pytest.approx(listed[0]["u"], rel=1e-4)
+
+
+def test_what_a_stiff_flow_settles_on():
+    """A third state follows the first one of a van der Pol oscillator within a millionth of its time scale."""
+    plain = contvines.FlowProblem(
+        lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.5}
+    )
+    stiff = contvines.FlowProblem(
+        lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1], -1e6 * (x[2] - x[0])],
+        [1.0, 0.0, 0.0],
+        {"a": 0.5},
+    )
+    assert stiff.attractor().period == pytest.approx(plain.attractor().period, rel=1e-6)
+    motions, _, _ = stiff.population().settle(np.array([[1.0, 0.5, 0.0]]), 0.5)
+    assert [one.word for one in motions] == ["cycle"]
