@@ -92,7 +92,17 @@ def _structure(data: dict[str, Any], path: Path) -> tuple["Machine", dict[str, A
 
 
 def _values(base: type[F], known: Mapping[str, float], data: dict[str, Any]) -> tuple[F, dict[str, float]]:
-    """The checked sections, and the values that they give to parameters."""
+    """The checked sections, and the values that they give to parameters.
+
+    Raises
+    ------
+    StudyError
+    """
+    if "name" in known:
+        said = _section(data, "model")["name"]
+        raise StudyError(
+            f"[model] name = {said!r} is the file; its parameter 'name' needs another name, such as 'name_', that a study can give."
+        )
     kinds: dict[str, Any] = {
         name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in known.items()
     }

@@ -406,7 +406,11 @@ class FlowPopulation:
         mean, error = float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
         if not np.isfinite(mean):
             return Settled("slow", state=x[0])
-        kind = "chaotic" if mean > SIGMAS * error else "quasi-periodic" if mean > -SIGMAS * error else "slow"
+        room = (
+            d + self.field.forced >= 3
+        )  # for two frequencies, or chaos: not in the plane (Poincare and Bendixson)
+        zero = abs(mean) <= SIGMAS * error
+        kind = "slow" if not room or mean < -SIGMAS * error else "quasi-periodic" if zero else "chaotic"
         return Settled(kind, exponent=mean, error=error, state=x[0])
 
     # ------------------------------------------------------------------ what does not attract

@@ -170,3 +170,12 @@ def test_what_a_stiff_flow_settles_on():
     assert stiff.attractor().period == pytest.approx(plain.attractor().period, rel=1e-6)
     motions, _, _ = stiff.population().settle(np.array([[1.0, 0.5, 0.0]]), 0.5)
     assert [one.word for one in motions] == ["cycle"]
+
+
+def test_in_the_plane_nothing_is_quasi_periodic():
+    """At a Hopf point motions come to rest like 1 / sqrt(t)."""
+    flow = contvines.FlowProblem(
+        lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.0}
+    )
+    motions, _, _ = flow.population().settle(np.array([[1.0, 0.5]]), 0.0)
+    assert [one.kind for one in motions] == ["slow"]

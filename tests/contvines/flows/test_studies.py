@@ -86,6 +86,13 @@ def test_bad_studies_are_refused(study, change, words):
         read_study(study)
 
 
+def test_a_parameter_that_is_called_name_is_refused(study):
+    (study.parent / "flow.py").write_text(FILE.replace("p.m", "p.name").replace('"m"', '"name"'))
+    study.write_text(STUDY.replace('"m"', '"name"'))
+    with pytest.raises(StudyError, match="'name' needs another name"):
+        read_study(study)
+
+
 def test_commands_for_machines_say_so(study, monkeypatch, capsys):
     assert run(monkeypatch, "sweep", "study.toml")
     assert "needs a machine" in " ".join(capsys.readouterr().err.split())
