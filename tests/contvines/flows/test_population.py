@@ -137,7 +137,7 @@ def test_mirror_images_of_a_forced_flow_are_one_motion_half_a_period_later():
     """Two wells: the same starts are shared out alike with and without the symmetry."""
 
     def wells(mirror):
-        flow = contvines.FlowProblem(
+        flow = cv.FlowProblem(
             lambda x, p, t: [x[1], -0.3 * x[1] + x[0] - x[0] ** 3 + p.g * np.cos(1.2 * t)],
             [1.0, 0.0], {"g": 0.1}, period=2 * np.pi / 1.2, mirror=mirror,
         )  # fmt: skip
@@ -159,10 +159,10 @@ def test_mirror_images_of_a_forced_flow_are_one_motion_half_a_period_later():
 
 def test_what_a_stiff_flow_settles_on():
     """A third state follows the first one of a van der Pol oscillator within a millionth of its time scale."""
-    plain = contvines.FlowProblem(
+    plain = cv.FlowProblem(
         lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.5}
     )
-    stiff = contvines.FlowProblem(
+    stiff = cv.FlowProblem(
         lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1], -1e6 * (x[2] - x[0])],
         [1.0, 0.0, 0.0],
         {"a": 0.5},
@@ -174,7 +174,7 @@ def test_what_a_stiff_flow_settles_on():
 
 def test_in_the_plane_nothing_is_quasi_periodic():
     """At a Hopf point motions come to rest like 1 / sqrt(t)."""
-    flow = contvines.FlowProblem(
+    flow = cv.FlowProblem(
         lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.0}
     )
     motions, _, _ = flow.population().settle(np.array([[1.0, 0.5]]), 0.0)
