@@ -159,9 +159,7 @@ def test_mirror_images_of_a_forced_flow_are_one_motion_half_a_period_later():
 
 def test_what_a_stiff_flow_settles_on():
     """A third state follows the first one of a van der Pol oscillator within a millionth of its time scale."""
-    plain = cv.FlowProblem(
-        lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.5}
-    )
+    plain = cv.FlowProblem(lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.5})
     stiff = cv.FlowProblem(
         lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1], -1e6 * (x[2] - x[0])],
         [1.0, 0.0, 0.0],
@@ -174,8 +172,6 @@ def test_what_a_stiff_flow_settles_on():
 
 def test_in_the_plane_nothing_is_quasi_periodic():
     """At a Hopf point motions come to rest like 1 / sqrt(t)."""
-    flow = cv.FlowProblem(
-        lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.0}
-    )
+    flow = cv.FlowProblem(lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.0})
     motions, _, _ = flow.population().settle(np.array([[1.0, 0.5]]), 0.0)
     assert [one.kind for one in motions] == ["slow"]
