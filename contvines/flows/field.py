@@ -147,9 +147,9 @@ class Field:
             return self.compiled.at_points(self.compiled.f, *at, (self.node,))
         found = (self._stacked if self.many else self._each)(self.f, at, (self.node,))
         if found.dtype.kind == "c" and x.dtype.kind != "c" and not isinstance(p, complex):
-            if found.imag.any():
+            if np.imag(found).any():
                 raise NotEvaluable("the right-hand side returns complex numbers")
-            return found.real
+            return np.real(found)
         return found
 
     def _asked(

@@ -515,9 +515,14 @@ class FlowProblem:
         motions, _, _ = population.settle(population.starts(starts, 7, p), p)
         found = []
         for motion in motions:
-            entry = {"word": motion.word or None, "periods": motion.periods, "kind": motion.kind}
-            curve = motion.curve if isinstance(motion, Settled) else None
-            found.append(entry if curve is None else {**entry, "u": self._extremes(curve, motion.image)})
+            entry: dict[str, Any] = {
+                "word": motion.word or None,
+                "periods": motion.periods,
+                "kind": motion.kind,
+            }
+            if isinstance(motion, Settled) and motion.curve is not None:
+                entry["u"] = self._extremes(motion.curve, motion.image)
+            found.append(entry)
         return sorted(found, key=lambda one: (str(one["word"]), one["kind"], one.get("u", [])))
 
     def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:

@@ -22,7 +22,9 @@ def rates(field: Field, p: float) -> Callable[[float, np.ndarray], np.ndarray]:
     def rate(t: float, x: np.ndarray) -> np.ndarray:
         try:
             value = np.asarray(f(x, parameters, t) if forced else f(x, parameters)).reshape(len(x))
-            return np.where(value.imag == 0.0, value.real, np.nan)
+            if value.dtype.kind == "c":
+                value = np.where(np.imag(value) == 0.0, np.real(value), np.nan)
+            return value.astype(float)
         except Exception:  # a user's function may fail in any way
             return np.full(len(x), np.nan)
 
