@@ -98,7 +98,7 @@ class PopulatedFlow(Flow, Protocol):
     def attractor_at(
         self, values: Mapping[str, float], x0: np.ndarray, *, longest: int = 64, doublings: int = 12
     ) -> CycleOrbit: ...
-    def cycle(self, times: np.ndarray, states: np.ndarray, **values: float) -> CycleOrbit: ...
+    def cycle_at(self, values: Mapping[str, float], times: np.ndarray, states: np.ndarray) -> CycleOrbit: ...
 
 
 class FlowPopulation:
@@ -334,8 +334,8 @@ class FlowPopulation:
         if last is None:
             return None
         try:
-            orbit = self.flow.cycle(*last, **{**self.values.values, self.parameter: p})
-        except ValueError:
+            orbit = self.flow.cycle_at({**self.values.values, self.parameter: p}, *last)
+        except (ValueError, NotEvaluable):
             return None
         return orbit if orbit.stable else None
 
