@@ -11,7 +11,7 @@ import numpy as np
 from ..bifurcation.kind import Kind
 from ..continuation.settings import Settings, hinting
 from ..graph.automatic import new_run
-from ..graph.builder import finish, leave_waiting
+from ..graph.builder import finish, leave_waiting, limit_reached, tell_waiting
 from ..graph.graph import Graph
 from ..graph.run import Left, Run
 from ..interruptible import Asked, OnInterrupt, carried_out
@@ -33,6 +33,7 @@ SOUGHT = 8  # starts at each given value from which cycles are looked for, stabl
 TRACED = "values whose motions are not traced"
 GIVEN, BETWEEN, SCATTERED = "given values", "values between changes", "scattered values"
 ENDS = "ends of stable stretches"
+WAITING = "branches that leave others"
 FOLLOWED = 4  # starts that follow the motion past an end of stability
 LONGEST_SCAN = 2  # times `scan` values at most, where every stretch holds something new
 
@@ -71,7 +72,7 @@ def atlas(
 
     So near to a homoclinic orbit that only narrow windows fit between, 1e-5 of the interval, what leaves a branch is not followed; special points say so.
 
-    When the budget is used up, the piece of work at hand is finished, and the message of the graph says what is left out. A file keeps what was
+    When the budget is used up, the branch or the simulation at hand is finished, and the message of the graph says what is left out. A file keeps what was
     computed: the same call with ``journal=contvines.resume("FILE.vines")`` and a larger budget goes on from there.
 
     Parameters
@@ -236,6 +237,7 @@ class _Looking:
         self.effort = Effort(population, budget, lambda: run.cost + apart.cost)
         self.windows = Windows(run, population, apart, self.effort)
         self.left: dict[str, int] = {}  # pieces of work that the budget did not allow
+        run.over = lambda: self.effort.over
         run.left = lambda: Left(self.effort.share, *self.effort.pieces, self.effort.seconds)
 
     def given(self, values: Sequence[float], starts: int) -> None:
@@ -336,8 +338,11 @@ class _Looking:
     def tell_left(self) -> None:
         """Keep how much work was done, and say what the budget and the choice of values leave out."""
         graph, effort = self.run.graph, self.effort
-        if self.run.queue:  # later roots have left more of them waiting
+        if self.run.queue and limit_reached(self.run):  # later roots have left more of them waiting
             leave_waiting(self.run)
+        elif self.run.queue:
+            self.left[WAITING] = len(self.run.queue)
+            tell_waiting(self.run, f"budget = {effort.budget}")
         graph.settings |= {"work": effort.spent, "unknown": [list(p) for p in unknown(graph, self.asked)]}
         if self.left:
             graph.settings["left"] = dict(self.left)

@@ -16,13 +16,15 @@ if TYPE_CHECKING:
 def add_root(run: Run, problem: Problem, u: np.ndarray, p: float, depth: int = 0) -> None:
     """Trace a solution with all that leaves it; alone where `max_branches` or `max_unknowns`, which limit no roots, is reached.
 
-    Its branch counts as one that `depth` others lie before.
+    Not at all where the budget of an atlas has left branches waiting: these come first when a larger one goes on. Its branch counts as one that `depth` others lie before.
 
     Raises
     ------
     ValueError
         If it is no start; see :func:`contvines.graph.builder.begin`.
     """
+    if run.queue and run.graph.complete:
+        return
     begin(run, problem, u, p, depth)
     if run.graph.complete:
         work(run)

@@ -70,14 +70,16 @@ def adopt(run: Run) -> None:
 
 
 def work(run: Run) -> None:
-    """Work until the queue is empty. The graph is not finished by that: an atlas adds further roots; see `finish`."""
-    graph = run.graph
+    """Work until the queue is empty, or, after one branch, the run is over. The graph is not finished by that: an atlas adds further roots; see `finish`."""
+    graph, before = run.graph, len(run.graph.branches)
     graph.finished = False
     with listening():
         try:
             while run.queue:
                 if limit_reached(run):
                     leave_waiting(run)
+                    break
+                if run.over() and len(graph.branches) > before:
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
@@ -117,9 +119,15 @@ def leave_waiting(run: Run) -> None:
         f"stopped at {limit} = {most} with {len(run.queue)} branches waiting: "
         f"the graph is not complete; raise {limit}, or lower depth"
     )
-    for pending in run.queue if most > 1 else ():  # of a single branch nobody expects others
+    if most > 1:  # of a single branch nobody expects others
+        tell_waiting(run, f"{limit} = {most}")
+
+
+def tell_waiting(run: Run, why: str) -> None:
+    """Let special points say why branches that leave them are left waiting."""
+    for pending in run.queue:
         if pending.point is not None and not pending.reached:
-            run.remark(pending.point, f"a branch that leaves here is not followed: {limit} = {most}")
+            run.remark(pending.point, f"a branch that leaves here is not followed: {why}")
 
 
 def tell_dead_ends(run: Run) -> None:

@@ -150,6 +150,9 @@ class Run:
         self.user_functions = {**(user_functions or {}), **limits.functions}
         self.progress = progress
         self.left: Callable[[], Left] | None = None
+        self.over: Callable[[], bool] = lambda: (
+            False
+        )  # whether no further branch may leave another one, of an atlas
         self.narrowest = 0.0  # so near to a homoclinic orbit nothing that leaves a branch is followed
         self.queue: deque[Pending] = deque()
         self.register = Register()
