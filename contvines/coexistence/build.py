@@ -95,7 +95,7 @@ def atlas(
         comes after them, stretches between two changes.
     budget : int, optional
         Work that the atlas may take, by default 500000, which is some minutes: so many points of branches in closed form (one of many unknowns counts as
-        often as it has 64), or a hundred times as many simulated periods (steps of a map); those of a machine whose flow is integrated count twentyfold. It does not depend on the computer's speed or
+        often as it has 64, a special point of cycles as forty points), or a hundred times as many simulated periods (steps of a map); those of a machine whose flow is integrated count twentyfold. It does not depend on the computer's speed or
         load; ``settings["work"]`` of the graph says how much of it was used, and ``settings["left"]`` what it left out.
     depth, virtual, user_functions, journal, progress, settings, kinds, interrupt
         As for :func:`contvines.diagram`.

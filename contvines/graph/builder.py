@@ -25,7 +25,7 @@ from ..problems.protocol import Problem
 from .identity import parts_further_on
 from .label_special_points import mark, origin_index
 from .match_borders import is_border, same_border, tie_borders
-from .run import LARGE, Origin, Pending, Run
+from .run import LARGE, LOCATED, Origin, Pending, Run
 from .schedule_branches import SWITCHING, leave, tell_dead_end
 
 if TYPE_CHECKING:
@@ -240,7 +240,8 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     for point in new:
         leave(run, point, branch, pending.depth)
     run.points += len(branch)
-    run.cost += max(len(branch), branch.points.size // LARGE)
+    solved = len(branch) + (LOCATED * len(new) if engine.adaptive else 0)
+    run.cost += max(solved, solved * engine.n // LARGE)
     run.checkpoint()
     run.tell(f"{label} finished", float(branch.values[-1]))
 

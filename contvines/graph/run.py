@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from ..journal import Journal
 
 LARGE = 64  # unknowns from which a point takes longer the more it has
+LOCATED = 40  # points that take as long as a special point of cycles on a mesh: located, solved on a finer one, and left
 
 
 class Origin(StrEnum):
@@ -163,7 +164,7 @@ class Run:
         self.compared: dict[tuple[int, int], tuple[Solved, SpecialPoint, bool]] = {}
         self.serial = 0
         self.points = 0
-        self.cost = 0  # points, those of many unknowns as often as they have `LARGE`
+        self.cost = 0  # points, those of many unknowns as often as they have `LARGE`; of cycles special points as well
 
     def tell(self, message: str, value: float) -> None:
         """Report progress."""

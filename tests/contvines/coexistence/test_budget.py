@@ -50,6 +50,17 @@ def test_a_budget_is_kept_and_what_it_leaves_out_is_said():
     assert motions(least) <= motions(part) <= motions(whole)
 
 
+def test_what_leaves_a_motion_waits_when_the_budget_is_used_up():
+    """Of the logistic map: the fixed point 1 - 1 / r doubles at r = 3, and its 2-cycle is left."""
+    least = made(1)
+    assert (
+        least.settings["left"]["branches that leave others"] == 1
+        and "branches that leave others (1)" in least.message
+    )
+    (doubling,) = least.of_kind("period-doubling")
+    assert doubling.value == pytest.approx(3.0) and "budget = 1" in " ".join(doubling.remarks)
+
+
 def test_a_larger_budget_goes_on_from_what_was_computed(tmp_path):
     """A file keeps all pieces of work until nothing is left out; the result is that of one run with the larger budget."""
     whole, path = made(10**9), tmp_path / "a.vines"
