@@ -17,6 +17,7 @@ from .evidence import SLOPE, evidence, filled, may_be_real, pointed, suspicious
 from .kinks import kinked, nearest
 from .locate import locate
 from .located import NOWHERE, Located, Role
+from .location_error import rounding_of_parameter
 from .multiplier_counts import counts
 from .scan import Scan, reached, scanner
 from .segment import Segment
@@ -172,15 +173,19 @@ class Detector(SegmentSearch):
         leaping = leaping if leaping is not None and leaping.role is Role.LEAP else None
         # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
         flat = settings.rounding * max(self.engine.parameter_unit(origin.p), abs(origin.p))
+
+        def told(event: Located) -> bool:
+            """Whether the parameter at an event is another one than at the branch point, as far as both are known."""
+            rounded = rounding_of_parameter(self.engine, event.point) if self.engine.adaptive else 0.0
+            return abs(event.point.p - origin.p) > max(flat, rounded, 10.0 * event.error)
+
         found = [
             e
             for e in found
             # what cannot be located is no special point: the segment leads on to another branch
             if not e.astray
             and not self._placeless(e)
-            and not (
-                e.kind in ("fold", "branch-point") and abs(e.point.p - origin.p) <= max(flat, 10.0 * e.error)
-            )
+            and not (e.kind in ("fold", "branch-point") and not told(e))
         ]
         bracket = (origin.p, first.p)
         found = [_placed(e, share + (1.0 - share) * e.position, bracket) for e in found]

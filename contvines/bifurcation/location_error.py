@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from ..problems.abilities import Blurred, Doubtful
+from ..problems.abilities import Adaptive, Blurred, Doubtful
 from ..problems.interpreted import Linearised
 from ..problems.protocol import array_of
 from ..shared.floating_point import EPSILON
@@ -50,7 +50,8 @@ def rounding_of_parameter(engine: Engine, point: Solved) -> float:
     """
     border = engine.weights * point.tangent
     engine.residual(point.u, point.p)
-    sizes = ENTRY * engine.row_sizes
+    problem = engine.problem
+    sizes = ENTRY * (problem.terms(point.u) if isinstance(problem, Adaptive) else engine.row_sizes)
     signs = np.sign(np.random.default_rng(5).standard_normal((SAMPLES, engine.n)))
     moved = [float(engine.apply_inverse(border, engine.join(sizes * row, 0.0))[-1]) for row in signs]
     found = 3.0 * math.sqrt(sum(size * size for size in moved) / SAMPLES)

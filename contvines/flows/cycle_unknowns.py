@@ -90,6 +90,15 @@ class CycleUnknowns(Parametrised, ProblemDefaults, ABC):
         self.scales = Scales(self.column_scale, self.parameter_scale, self.row_scale)
         self.symmetries = tuple(self._symmetries())
 
+    def terms(self, u: np.ndarray) -> np.ndarray:
+        """Sizes of the terms of the equations: states far from the origin cancel in their slopes, and in the phase, and round as they do."""
+        states = u[: self.states].reshape(-1, self.node)
+        sizes = np.maximum(self.node_scale, np.abs(states).max(axis=0))
+        found = self.row_scale.copy()
+        found[: self.states] = np.tile(sizes, len(states))
+        found[self.states : self.states + self.free_period] *= (sizes / self.node_scale).max()
+        return found
+
     @abstractmethod
     def _symmetries(self) -> list[Symmetry]: ...
 

@@ -29,6 +29,7 @@ from .graph import Graph
 from .run import Origin, Pending, Run
 
 DERIVATIVES = 50  # unknowns up to which coefficients come from derivatives of the equations, not from the branch that leaves
+WHOLE = 1.0  # amplitude, in units of the scales, of cycles as large as these
 SLANTED = 0.1  # change of the parameter, in its unit and per amplitude, of a branch that goes through a point without turning there
 
 FAMILY = (
@@ -119,7 +120,7 @@ def _switch(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         )
         found = search(run.settings.amplitude)
         if name == "minus":
-            found = _told_apart(target, point, run.settings.amplitude, found, search)
+            found = _told_apart(target, point, run.settings.amplitude, found, search, run.settings.max_step)
         if not found:
             run.remark(point.label, "no branch that leaves here was found")
         for departure in found:
@@ -207,7 +208,18 @@ def _cycles(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
         target, _ = run.engine(child.problem)
         direction = target.unit(np.asarray(child.tangent, dtype=float))
         start, nothing = np.asarray(child.u, dtype=float), np.zeros(target.n + 1)
-        found = departures(target, start, point.value, nothing, run.settings.amplitude, True, [direction])
+
+        def search(
+            amplitude: float,
+            target: Engine = target,
+            start: np.ndarray = start,
+            nothing: np.ndarray = nothing,
+            direction: np.ndarray = direction,
+        ) -> list[Departure]:
+            return departures(target, start, point.value, nothing, amplitude, True, [direction])
+
+        amplitude = run.settings.amplitude
+        found = _told_apart(target, point, amplitude, search(amplitude), search, WHOLE)
         if not found:
             run.remark(point.label, "no cycle that leaves here was found")
         for departure in found:
@@ -249,13 +261,14 @@ def _told_apart(
     amplitude: float,
     found: list[Departure],
     search: Callable[[float], list[Departure]],
+    most: float,
 ) -> list[Departure]:
-    """The branches that leave, from first points so far away that their parameter tells on which side of the special point they are.
+    """The branches that leave, from first points so far away, up to `most`, that their parameter tells on which side of the special point they are.
 
     Nearer ones neither tell whether the branch turns nor whether it is stable. Those found first where none does, as of upright branches.
     """
     further, way = found, amplitude
-    while further and way < target.settings.max_step:
+    while further and way < most:
         if all(_apart(target, at, departure.ahead) for departure in further):
             return further
         way *= 2.0

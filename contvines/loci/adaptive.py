@@ -108,6 +108,12 @@ class AdaptiveLocus(LocusProblem):
 
         return image
 
+    def terms(self, u: np.ndarray) -> np.ndarray:
+        """Sizes of the terms of the equations of the motion, and of the locus."""
+        own = np.ones(self.dimension) if self.scales is None else self.scales.rows.copy()
+        own[: self.size] = self.mesh.terms(u[: self.size])
+        return own
+
     def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
         """Whether more intervals are needed."""
         inner, value = self.split(u)
