@@ -112,7 +112,7 @@ def _study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str, An
             f"{file}: this file keeps no study to run again: it was saved from Python, or by a version that kept none; "
             f"contvines diagram STUDY.toml -o {file.stem}-again.vines computes the study anew."
         )
-    data, place = toml_data(source["text"]), file.absolute().parent / str(source["study"])
+    data, place = toml_data(source["text"]), (file.absolute().parent / str(source["study"])).resolve()
     named = [str(data.get(part, {}).get(key, "")) for part, key in (("model", "name"), ("continue", "kinds"))]
     if not trust and any(".py" in name for name in named):
         code = next(name for name in named if ".py" in name)
