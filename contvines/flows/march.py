@@ -51,31 +51,16 @@ class March:
     x : ndarray, shape (n, d)
     size : ndarray, shape (d,)
         What counts as large in each coordinate.
-    t : ndarray, shape (n,), optional
-        When they are there; 0 if left out.
-    exact : bool
-        With the tolerances of checks, and through events.
     """
 
-    def __init__(
-        self,
-        field: Field | Rates,
-        p: float,
-        x: np.ndarray,
-        size: np.ndarray,
-        t: np.ndarray | None = None,
-        exact: bool = False,
-    ) -> None:
-        self.field, self.p, self.size, s = field, p, size, field.settings
-        self.tolerances = (
-            (s.exact_relative, s.exact_absolute) if exact else (s.rough_relative, s.rough_absolute)
-        )
-        self.x, self.t = np.array(x, dtype=float), np.zeros(len(x)) if t is None else np.array(t, dtype=float)
+    def __init__(self, field: Field | Rates, p: float, x: np.ndarray, size: np.ndarray) -> None:
+        self.field, self.p, self.size = field, p, size
+        self.x, self.t = np.array(x, dtype=float), np.zeros(len(x))
         with np.errstate(all="ignore"):
             self.slope = self._rates(self.x, self.t)
         speed = np.abs(self.slope / size).max(axis=1)
         self.h = FIRST / np.where(np.isfinite(speed) & (speed > 0.0), speed, 1.0)
-        self.steps, self.exact = 0, exact
+        self.steps = 0
         self.stopped = np.zeros(len(x), dtype=bool)  # by an event of the flow
         self._stop(np.arange(len(x)))
 
@@ -95,7 +80,7 @@ class March:
     def _stop(self, rows: np.ndarray) -> None:
         """Those that are beyond an event become NaN."""
         field = self.field
-        if self.exact or not isinstance(field, Field) or not len(field.events) or not rows.size:
+        if not isinstance(field, Field) or not len(field.events) or not rows.size:
             return
         with np.errstate(all="ignore"):
             beyond = (field.events(self.x[rows], field.values.at(self.p), self.t[rows]) < 0.0).any(axis=1)
@@ -106,22 +91,20 @@ class March:
         self,
         rows: np.ndarray,
         steps: int,
-        until: np.ndarray | float = np.inf,
+        until: float = np.inf,
         far: float = np.inf,
         ways: Mapping[int, list[Place]] | None = None,
     ) -> None:
-        """Go on with these motions for so many steps, or until a time, or each until its own; what leaves `far` sizes, or fails, becomes NaN.
+        """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN.
 
         The places to which steps lead are added to the ways of motions that have one.
         """
-        relative, absolute = self.tolerances
-        ends = np.broadcast_to(np.asarray(until, dtype=float), len(self.x))
+        relative, absolute = self.field.settings.rough_relative, self.field.settings.rough_absolute
         for _ in range(steps):
-            rows = rows[np.isfinite(self.x[rows, 0]) & (self.t[rows] < ends[rows])]
+            rows = rows[np.isfinite(self.x[rows, 0]) & (self.t[rows] < until)]
             if not rows.size:
                 return
-            x, t = self.x[rows], self.t[rows]
-            h = np.minimum(self.h[rows], ends[rows] - t)
+            x, t, h = self.x[rows], self.t[rows], np.minimum(self.h[rows], until - self.t[rows])
             k = np.empty((7, *x.shape))
             k[0] = self.slope[rows]
             with np.errstate(all="ignore"):
