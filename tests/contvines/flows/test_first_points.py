@@ -1,4 +1,4 @@
-"""First points of a branch of doubled cycles: so far from the doubling that their parameter tells on which side of it they are."""
+"""First points of branches of cycles: so far from where they are born that their parameter tells on which side of it they are."""
 
 from dataclasses import replace
 
@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.flows.cycles import CycleProblem
 from tools.flow_demos.listed import DEMOS
 
 pytestmark = pytest.mark.slow
@@ -49,3 +50,39 @@ def test_cycles_beside_a_strong_saddle_begin_where_rounding_tells_their_paramete
     first = (change > 1e-9) & (change < 1e-7)
     sizes = np.ptp(cycles.points[first][:, : cycles.problem.states : 4], axis=1)
     assert first.sum() > 5 and np.ptp(change[first] / sizes**2) < 0.02 * (change[first] / sizes**2).max()
+
+
+def unrounded(row, nodes, origin):
+    return row @ nodes - row @ origin
+
+
+def backwards(row, nodes, origin):
+    return (row * (nodes - origin))[::-1].cumsum()[-1]
+
+
+@pytest.mark.parametrize("formula", [unrounded, backwards])
+def test_no_fold_beside_a_hopf_point_by_the_rounding_of_the_phase(formula, monkeypatch):
+    """FitzHugh and Nagumo's nerve beside its generalized Hopf point (I = 17/24, e = 15/16): cycles have one fold, whatever rounding does to the phase.
+
+    The condition of the phase is written in another way that is as exact.
+    """
+    evaluate = CycleProblem.evaluate
+
+    def rounded_otherwise(self, u, p, work):
+        evaluate(self, u, p, work)
+        if self.reference is not None:
+            row, origin = self.reference
+            nodes = self.parts(u, p)[0] / self.node_scale
+            work.residual[self.states] = formula(row.reshape(-1), nodes.reshape(-1), origin.reshape(-1))
+
+    monkeypatch.setattr(CycleProblem, "evaluate", rounded_otherwise)
+    flow = cv.FlowProblem(
+        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.e * (x[0] + 0.7 - 0.8 * x[1])],
+        [-1.2, -0.6],
+        {"I": 0.70, "e": 0.9374},
+    )
+    graph = cv.diagram(flow, over="I", within=(0.70, 0.712), depth=1, settings={"max_branches": 2})
+    ((hopf,), (fold,)) = graph.of_kind("hopf"), graph.of_kind("fold")
+    # the one that is left is far beyond what is known of both
+    assert hopf.value - fold.value > 100.0 * (hopf.location_error + fold.location_error)
+    assert not graph.unresolved
