@@ -61,10 +61,10 @@ class CycleProblem(CycleRelatives):
         points = self._at_gauss_points(r.values, x) if core is None else core.at_gauss_points(x)
         places = mesh.places(widths, r.points) if self.field.forced else None
         times = None if places is None else period * places
-        f = np.ascontiguousarray(self.field(points, p, times), dtype=float)
+        f, slope = self.field.with_slope(points, p) if times is None else (self.field(points, p, times), None)
+        f = np.ascontiguousarray(f, dtype=float)
         derivative = self.field.jacobian if work.sparse is None else self.field.jacobian_entries
         jacobian = np.ascontiguousarray(derivative(points, p, times), dtype=float)
-        slope = self.field.slope(points, p) if places is None else None
         if core is not None:
             size = core.assemble(widths, period, f, jacobian, slope)
         else:

@@ -279,6 +279,16 @@ class Field:
         step = STEP * (abs(p) or 1.0)
         return _difference(lambda s: line(p + s * step)) / step
 
+    def with_slope(self, x: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """f and df/dp at the points of an autonomous flow, shape (n, d) each."""
+        given = self.given_derivative
+        if isinstance(given, Mapping):
+            given = given.get(self.values.varying)
+        if given is not None or not self.complex_step:
+            return self(x, p), self.slope(x, p)
+        value = self(x, complex(p, COMPLEX_STEP))
+        return np.real(value), np.imag(value) / COMPLEX_STEP
+
     def slope(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """df/dp at fixed points and times, shape (n, d)."""
         given = self.given_derivative
