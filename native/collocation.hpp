@@ -77,6 +77,23 @@ inline double assemble(const Cycle& y, const double* widths, double period, cons
     return isfinite(given) ? length : NAN;
 }
 
+// A right-hand side in compiled code, f, df/dx and df/dp of an autonomous flow, with its parameters and room for what they give at the Gauss points.
+struct Rates {
+    using Function = void (*)(whole n, const double* x, const double* t, const double* p, double* out);
+    Function f, by_state, by_parameters;
+    whole parameters, varying;                               // q, and which of them varies
+    double *p, *values, *jacobian, *slopes, *slope;  // (q), (N m, d), (N m, d, d), (N m, d, q), (N m, d)
+};
+inline double evaluate(const Cycle& y, const Rates& rates, const double* x, const double* widths, double period) {
+    const whole n = y.count * y.degree, size = n * y.node;
+    at_gauss_points(y, x);
+    rates.f(n, y.points, nullptr, rates.p, rates.values);
+    rates.by_state(n, y.points, nullptr, rates.p, rates.jacobian);
+    rates.by_parameters(n, y.points, nullptr, rates.p, rates.slopes);
+    for (whole i = 0; i < size; i++) rates.slope[i] = rates.slopes[i * rates.parameters + rates.varying];
+    return assemble(y, widths, period, rates.values, rates.jacobian, rates.slope);
+}
+
 using Four [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 inline whole padded(whole width) { return (width + 3) & ~whole(3); }  // rows of panels are multiples of four numbers
 inline void add(double* __restrict to, double by, const double* __restrict from, whole first, whole width) {

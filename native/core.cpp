@@ -87,6 +87,9 @@ EXPORT void core_cycle_points(const collocation::Cycle* cycle, const double* x) 
 EXPORT double core_cycle_assemble(const collocation::Cycle* cycle, const double* widths, double period, const double* f, const double* jacobian, const double* slope) {
     return collocation::assemble(*cycle, widths, period, f, jacobian, slope);
 }
+EXPORT double core_cycle_evaluate(const collocation::Cycle* cycle, const collocation::Rates* rates, const double* x, const double* widths, double period) {
+    return collocation::evaluate(*cycle, *rates, x, widths, period);
+}
 EXPORT double core_cycle_bordered(const collocation::Cycle* cycle, double closure, double corner, const double* border, double n, double* step, double* tangent) {
     return collocation::bordered(*cycle, closure, corner, border, n, step, tangent);
 }

@@ -55,6 +55,12 @@ class CompiledRates:
         if calls[0] is None:
             raise ValueError(f"the first pointer of {table!r} is null: f is missing")
         self.f, self.dfdx, self.dfdp = calls
+        self.addresses = tuple(at or 0 for at in addresses)
+
+    @property
+    def complete(self) -> bool:
+        """Whether all derivatives are there."""
+        return all(self.addresses)
 
     def at_points(
         self,

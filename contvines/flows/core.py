@@ -10,7 +10,9 @@ from ..core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 
 if TYPE_CHECKING:
+    from ..problems.parameters import ParameterSet
     from .collocation import Rule
+    from .compiled import CompiledRates
 
 
 class Discretised(Protocol):
@@ -33,6 +35,33 @@ class Filled(Protocol):
     blocks: np.ndarray
     by_period: np.ndarray
     phase: np.ndarray
+
+
+class CoreRates:
+    """A compiled right-hand side of an autonomous flow at the Gauss points of one workspace.
+
+    Parameters
+    ----------
+    compiled : CompiledRates
+        With all its derivatives.
+    values : ParameterSet
+    n, d : int
+        Gauss points, states.
+    """
+
+    def __init__(self, compiled: CompiledRates, values: ParameterSet, n: int, d: int) -> None:
+        self.kept, self.values, q = compiled, values, len(values.values)
+        self.varying = list(values.values).index(values.varying)
+        self.parameters, self.f, self.jacobian = np.empty(q), np.empty((n, d)), np.empty((n, d, d))
+        self.slopes, self.slope = np.empty((n, d, q)), np.empty((n, d))
+        arrays = self.parameters, self.f, self.jacobian, self.slopes, self.slope
+        self.record = pack(*compiled.addresses, q, self.varying, *arrays)
+        self.at = address(self.record)
+
+    def assign(self, p: float) -> None:
+        """Give the parameters their values."""
+        self.parameters[:] = [*self.values.values.values()]
+        self.parameters[self.varying] = p
 
 
 class CoreCycle:
@@ -70,6 +99,7 @@ class CoreCycle:
         self.at = address(self.record)
         self._points = function("core_cycle_points", NOTHING, POINTER, POINTER)
         self._assemble = function("core_cycle_assemble", NUMBER, POINTER, POINTER, NUMBER, *[POINTER] * 3)
+        self._evaluate = function("core_cycle_evaluate", NUMBER, POINTER, POINTER, POINTER, POINTER, NUMBER)
         self._bordered = function(
             "core_cycle_bordered", NUMBER, POINTER, NUMBER, NUMBER, POINTER, NUMBER, *[POINTER] * 2
         )
@@ -90,6 +120,12 @@ class CoreCycle:
         return self._assemble(
             self.at, place(widths), period, place(f), place(jacobian), None if by is None else address(by)
         )
+
+    def evaluate(self, rates: CoreRates, x: np.ndarray, widths: np.ndarray, period: float, p: float) -> float:
+        """`assemble` with what a compiled right-hand side gives at the Gauss points."""
+        rates.assign(p)
+        x = np.ascontiguousarray(x, dtype=float)
+        return self._evaluate(self.at, rates.at, address(x), place(widths), period)
 
     def bordered(
         self,

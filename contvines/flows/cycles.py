@@ -53,28 +53,18 @@ class CycleProblem(CycleRelatives):
         NotEvaluable
             If the right-hand side fails, or the period is not positive.
         """
-        r = self.rule
         x, period, widths = self.parts(u, p)
         if not period > 0.0:
             raise NotEvaluable(f"the period would be {period:.3g}")
-        core = work.core
-        points = self._at_gauss_points(r.values, x) if core is None else core.at_gauss_points(x)
-        places = mesh.places(widths, r.points) if self.field.forced else None
-        times = None if places is None else period * places
-        f, slope = self.field.with_slope(points, p) if times is None else (self.field(points, p, times), None)
-        f = np.ascontiguousarray(f, dtype=float)
-        derivative = self.field.jacobian if work.sparse is None else self.field.jacobian_entries
-        jacobian = np.ascontiguousarray(derivative(points, p, times), dtype=float)
-        if core is not None:
-            size = core.assemble(widths, period, f, jacobian, slope)
+        if work.core is not None and work.rates is not None:
+            f, jacobian = work.rates.f, work.rates.jacobian
+            size = work.core.evaluate(work.rates, x, widths, period, p)
         else:
-            size = self._assemble(work, x, widths, period, f, jacobian, slope)
+            size, f, jacobian = self._evaluated(x, widths, period, p, work)
         if math.isnan(size):
             raise NotEvaluable("the right-hand side or its derivative is not finite along the cycle")
         work.along, work.steps = (np.array(x[:, 0]), p, jacobian, f), period * widths
-        if places is not None:
-            by = self.field.along(lambda q: self._moved(points, q, places, widths), p)
-            work.derivative[: self.states] = -by.reshape(-1)
+        if self.field.forced:
             return
         if not size > 0.0:  # an equilibrium, which moves in no direction
             work.phase[0, 0] = 1.0
@@ -83,6 +73,27 @@ class CycleProblem(CycleRelatives):
             work.residual[self.states] = (
                 work.phase * (x / self.node_scale - origin).reshape(work.phase.shape)
             ).sum()
+
+    def _evaluated(
+        self, x: np.ndarray, widths: np.ndarray, period: float, p: float, work: CycleWork
+    ) -> tuple[float, np.ndarray, np.ndarray]:
+        """Residual and derivatives by functions in Python: the length of the row of the phase condition, f and df/dx at the Gauss points."""
+        r, core, field = self.rule, work.core, self.field
+        points = self._at_gauss_points(r.values, x) if core is None else core.at_gauss_points(x)
+        places = mesh.places(widths, r.points) if field.forced else None
+        times = None if places is None else period * places
+        f, slope = field.with_slope(points, p) if times is None else (field(points, p, times), None)
+        f = np.ascontiguousarray(f, dtype=float)
+        derivative = field.jacobian if work.sparse is None else field.jacobian_entries
+        jacobian = np.ascontiguousarray(derivative(points, p, times), dtype=float)
+        if core is not None:
+            size = core.assemble(widths, period, f, jacobian, slope)
+        else:
+            size = self._assemble(work, x, widths, period, f, jacobian, slope)
+        if places is not None:
+            by = field.along(lambda q: self._moved(points, q, places, widths), p)
+            work.derivative[: self.states] = -by.reshape(-1)
+        return size, f, jacobian
 
     def _at_gauss_points(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
         return np.einsum("cj,ijk->ick", matrix, mesh.closed(x)).reshape(-1, self.node)

@@ -11,7 +11,7 @@ from ..core.library import native
 from ..problems.functions import NotEvaluable
 from ..problems.interpreted import assign
 from ..problems.protocol import Kernels
-from .core import CoreCycle
+from .core import CoreCycle, CoreRates
 from .elimination import condense, multipliers_of, solve_collocation
 from .sparse import SparseEquations, leading_multipliers, solve_bordered
 
@@ -72,6 +72,10 @@ class CycleWork:
         self.blocks = np.zeros((count, inner, inner + d)) if self.sparse is None else np.zeros(0)
         self.by_period, self.phase = np.zeros((2, count, inner)) if free else np.zeros((2, 0))
         self.core = CoreCycle(data, self) if native() and self.sparse is None else None
+        compiled = data.field.compiled
+        self.rates: CoreRates | None = None  # of a right-hand side that the core calls by itself
+        if self.core is not None and compiled is not None and compiled.complete and free:
+            self.rates = CoreRates(compiled, data.field.values, count * data.rule.degree, d)
         self.steps: np.ndarray = np.zeros(0)  # lengths of the intervals in time
         self.along: tuple[np.ndarray, float, np.ndarray, np.ndarray] = (
             NOWHERE  # mesh points, parameter, Jacobians and rates at the Gauss points
