@@ -54,3 +54,22 @@ def test_a_compiled_right_hand_side_gives_what_python_gives(tmp_path):
         difference = (field(x + step, 20.0) - field(x - step, 20.0)) / 2e-5
         assert np.allclose(field.jacobian(x, 20.0)[:, :, j], difference, atol=1e-9)
     assert np.allclose(field.slope(x, 20.0), np.column_stack([0 * x[:, 0], x[:, 0], 0 * x[:, 0]]))
+
+
+@needed
+def test_problems_over_several_parameters_share_a_workspace(tmp_path):
+    """As along loci: x' = s (y - x) alone has s, y' alone has r; residuals are linear in both."""
+    path = ROOT / "examples" / "compiled" / "lorenz.py"
+    spec = importlib.util.spec_from_file_location("lorenz", path)
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    orbit = example.flow(example.compiled(tmp_path)).attractor([1.0, 1.0, 1.0], r=160.0)
+    work = orbit.problem("r").workspace()
+    for name, value, row in (("r", 160.0, 1), ("s", 10.0, 0)):
+        problem, ends = orbit.problem(name), []
+        for p in (value - 0.5, value + 0.5, value):
+            problem.evaluate(orbit.u, p, work)
+            ends.append(work.residual.copy())
+        assert np.allclose(work.derivative, ends[1] - ends[0], rtol=0.0, atol=1e-10)
+        by_state = np.abs(work.derivative[: problem.states]).reshape(-1, 3).max(axis=0)
+        assert (by_state > 0.1).tolist() == [row == 0, row == 1, False]

@@ -37,6 +37,9 @@ class Filled(Protocol):
     phase: np.ndarray
 
 
+VARYING = 4  # place of the parameter that varies in the struct `Rates`
+
+
 class CoreRates:
     """A compiled right-hand side of an autonomous flow at the Gauss points of one workspace.
 
@@ -44,24 +47,26 @@ class CoreRates:
     ----------
     compiled : CompiledRates
         With all its derivatives.
-    values : ParameterSet
+    q : int
+        Parameters.
     n, d : int
         Gauss points, states.
     """
 
-    def __init__(self, compiled: CompiledRates, values: ParameterSet, n: int, d: int) -> None:
-        self.kept, self.values, q = compiled, values, len(values.values)
-        self.varying = list(values.values).index(values.varying)
+    def __init__(self, compiled: CompiledRates, q: int, n: int, d: int) -> None:
+        self.kept = compiled
         self.parameters, self.f, self.jacobian = np.empty(q), np.empty((n, d)), np.empty((n, d, d))
         self.slopes, self.slope = np.empty((n, d, q)), np.empty((n, d))
         arrays = self.parameters, self.f, self.jacobian, self.slopes, self.slope
-        self.record = pack(*compiled.addresses, q, self.varying, *arrays)
+        self.record = pack(*compiled.addresses, q, 0, *arrays)
         self.at = address(self.record)
 
-    def assign(self, p: float) -> None:
-        """Give the parameters their values."""
-        self.parameters[:] = [*self.values.values.values()]
-        self.parameters[self.varying] = p
+    def assign(self, values: ParameterSet, p: float) -> None:
+        """Say which parameter varies, and give all of them their values: problems over several parameters share a workspace (loci)."""
+        varying = list(values.values).index(values.varying)
+        self.parameters[:] = [*values.values.values()]
+        self.parameters[varying] = p
+        self.record[VARYING] = varying
 
 
 class CoreCycle:
@@ -121,9 +126,17 @@ class CoreCycle:
             self.at, place(widths), period, place(f), place(jacobian), None if by is None else address(by)
         )
 
-    def evaluate(self, rates: CoreRates, x: np.ndarray, widths: np.ndarray, period: float, p: float) -> float:
+    def evaluate(
+        self,
+        rates: CoreRates,
+        values: ParameterSet,
+        x: np.ndarray,
+        widths: np.ndarray,
+        period: float,
+        p: float,
+    ) -> float:
         """`assemble` with what a compiled right-hand side gives at the Gauss points."""
-        rates.assign(p)
+        rates.assign(values, p)
         x = np.ascontiguousarray(x, dtype=float)
         return self._evaluate(self.at, rates.at, address(x), place(widths), period)
 

@@ -58,7 +58,7 @@ class CycleProblem(CycleRelatives):
             raise NotEvaluable(f"the period would be {period:.3g}")
         if work.core is not None and work.rates is not None:
             f, jacobian = work.rates.f, work.rates.jacobian
-            size = work.core.evaluate(work.rates, x, widths, period, p)
+            size = work.core.evaluate(work.rates, self.field.values, x, widths, period, p)
         else:
             size, f, jacobian = self._evaluated(x, widths, period, p, work)
         if math.isnan(size):

@@ -75,7 +75,7 @@ class CycleWork:
         compiled = data.field.compiled
         self.rates: CoreRates | None = None  # of a right-hand side that the core calls by itself
         if self.core is not None and compiled is not None and compiled.complete and free:
-            self.rates = CoreRates(compiled, data.field.values, count * data.rule.degree, d)
+            self.rates = CoreRates(compiled, len(data.field.values.values), count * data.rule.degree, d)
         self.steps: np.ndarray = np.zeros(0)  # lengths of the intervals in time
         self.along: tuple[np.ndarray, float, np.ndarray, np.ndarray] = (
             NOWHERE  # mesh points, parameter, Jacobians and rates at the Gauss points
