@@ -188,7 +188,10 @@ class FlowPopulation:
         n = len(march.x)
         index, mirrored = np.full(n, -1), np.zeros(n, dtype=bool)
         motions: list[Settled] = []
-        period = float(self.field.length_of_period(p)) if self.field.forced else None
+        try:
+            period = float(self.field.length_of_period(p)) if self.field.forced else None
+        except NotEvaluable:  # there is no forcing with such parameters
+            return [Settled("escaped")], np.zeros(n, dtype=int), mirrored
         rounds = 0
         for steps, periods, most in zip(STEPS, PERIODS, TRIED, strict=True):
             ways: dict[int, list[Place]] = {int(i): [] for i in np.flatnonzero(index < 0)[:most]}

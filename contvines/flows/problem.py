@@ -11,6 +11,7 @@ from contvines.shared.floating_point import TINY
 from contvines.shared.near_names import hinting
 
 from ..problems.abilities import Populated, Started
+from ..problems.functions import NotEvaluable
 from ..problems.images import image_map, refuse_no_mirror
 from ..problems.parameters import ParameterSet
 from ..problems.protocol import Seed
@@ -163,7 +164,7 @@ class FlowProblem:
         )
         self.events = self.field.events = Events(events, self.field.forced, self.x0, self.values)
         if self.field.forced:
-            self.field.length_of_period(self.values.start)
+            self._check_period()
             self._find_mirror()
             self._equilibria = None
         else:
@@ -219,6 +220,29 @@ class FlowProblem:
             )
         f, jacobian = compiled_expressions(expressions, states, list(params), time)
         return cls(f, x0, params, jacobian=jacobian, states=[name_of(state) for state in states], **options)
+
+    def _check_period(self) -> None:
+        """Whether the right-hand side repeats after its period, tried at states beside the start.
+
+        Raises
+        ------
+        ValueError
+            If it does not.
+        """
+        rng, p = np.random.default_rng(6), self.values.start
+        period = self.field.length_of_period(p)
+        x = self.x0 + self.field.lengths * rng.uniform(-0.1, 0.1, (6, len(self.x0)))
+        t = rng.uniform(0.0, period, 6)
+        try:
+            with np.errstate(all="ignore"):
+                one, later = self.field(x, p, t), self.field(x, p, t + period)
+        except NotEvaluable:
+            return  # states beside the start may be outside of where f is defined
+        size = TINY + np.nanmax(np.abs(one), initial=0.0)
+        if np.nanmax(np.abs(one - later), initial=0.0) > self.settings.recurs * size:
+            raise ValueError(
+                f"period = {period:.10g} at the start is no period of f(x, p, t) in t: f differs there after that time; mend period= or f"
+            )
 
     def _find_mirror(self) -> None:
         """Whether the mirror image of a forced motion is one at the same time, or half a period later.

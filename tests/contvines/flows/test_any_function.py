@@ -107,3 +107,21 @@ def test_a_hopf_point_of_a_stiff_flow(mu):
         (point.kind, round(point.value, 9)) for point in graph.special.values() if point.kind != "end"
     ] == [("hopf", 1.0)]
     assert graph["HB1"].frequency == pytest.approx(1.0)
+
+
+def forced(period):
+    return contvines.FlowProblem(lambda x, p, t: [-x[0] + np.cos(p.w * t)], [0.0], {"w": 0.5}, period=period)
+
+
+def test_what_is_no_period_of_the_forcing_is_refused():
+    with pytest.raises(ValueError, match=r"period = 6 at the start is no period of f\(x, p, t\) in t"):
+        forced(lambda p: 3.0 / p.w)
+    for rounds in (1, 2):
+        assert forced(lambda p, rounds=rounds: rounds * 2.0 * np.pi / p.w).field.forced
+
+
+def test_starts_where_there_is_no_period():
+    population = forced(lambda p: 2.0 * np.pi / p.w).population("w")
+    motions, index, _ = population.settle(np.zeros((3, 1)), -0.5)
+    assert [one.kind for one in motions] == ["escaped"]
+    assert index.tolist() == [0, 0, 0]
