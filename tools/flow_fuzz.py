@@ -81,8 +81,8 @@ class Drawn:
             lambda t, y: self.rates(y, p), (0.0, span), x, method="DOP853", rtol=1e-9, atol=1e-10, **options
         )
 
-    def monodromy(self, x: np.ndarray, p: float, period: float) -> tuple[np.ndarray, np.ndarray]:
-        """State and its derivative after a period."""
+    def monodromy(self, x: np.ndarray, p: float, period: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """State and its derivative after a period, and the largest entry of the derivative until then."""
         d = len(x)
 
         def rate(t: float, y: np.ndarray) -> np.ndarray:
@@ -90,8 +90,8 @@ class Drawn:
             return np.concatenate([self.rates(y[:d], p), matrix.reshape(-1)])
 
         start = np.concatenate([x, np.eye(d).reshape(-1)])
-        end = solve_ivp(rate, (0.0, period), start, method="DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
-        return end[:d], end[d:].reshape(d, d)
+        run = solve_ivp(rate, (0.0, period), start, method="DOP853", rtol=1e-11, atol=1e-12).y
+        return run[:d, -1], run[d:, -1].reshape(d, d), float(np.abs(run[d:]).max())
 
 
 def drawn(salt: int, seed: int) -> Drawn:
@@ -190,12 +190,12 @@ def _stability(flow: Drawn, branch: Any, i: int, place: float, done: Judged) -> 
     pieces = list(pairwise(times))[::-1]
     while pieces:
         begin, end = pieces.pop()
-        state, matrix = flow.monodromy(orbit(begin), p, end - begin)
-        if not np.abs(matrix).max() < GROWTH:
+        state, matrix, growth = flow.monodromy(orbit(begin), p, end - begin)
+        if not growth < GROWTH:
             middle = 0.5 * (begin + end)
             pieces += [(middle, end), (begin, middle)]
             continue
-        away = max(away, float(np.abs(state - orbit(end)).max()) / (size * (1.0 + np.abs(matrix).max())))
+        away = max(away, float(np.abs(state - orbit(end)).max()) / (size * (1.0 + growth)))
         maps.append(matrix)
     largest = _largest_multiplier(maps)
     if away > CLOSED * (1.0 + orbit.period):
