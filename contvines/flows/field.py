@@ -284,7 +284,8 @@ class Field:
         given = self.given_derivative
         if isinstance(given, Mapping):
             given = given.get(self.values.varying)
-        if given is not None or not self.complex_step:
+        tried = self.complex_slopes.get(self.values.varying, False)
+        if given is not None or not tried:
             return self(x, p), self.slope(x, p)
         value = self(x, complex(p, COMPLEX_STEP))
         return np.real(value), np.imag(value) / COMPLEX_STEP

@@ -19,6 +19,19 @@ def test_a_second_parameter_of_which_the_magnitude_counts(size):
     assert slope == pytest.approx(np.ones((3, 1)))
 
 
+def test_cycles_along_a_parameter_of_which_the_magnitude_counts():
+    """The circle of radius sqrt(|b| - 1/2), passed in 2 pi."""
+
+    def rates(x, p):
+        grows = abs(p.b) - 0.5 - x[0] ** 2 - x[1] ** 2
+        return [p.a * (grows * x[0] - x[1]), p.a * (x[0] + grows * x[1])]
+
+    flow = contvines.FlowProblem(rates, [0.1, 0.0], {"a": 1.0, "b": 1.0})
+    branch = contvines.diagram(flow.attractor([0.5, 0.0]), over="b", within=(0.6, 2.0)).branches["B1"]
+    assert sorted(branch.range) == [0.6, 2.0]
+    assert branch.measure("max x0") == pytest.approx(np.sqrt(branch.values - 0.5), rel=1e-5)
+
+
 def test_a_period_that_takes_the_magnitude_of_the_frequency():
     """x' = -x + cos(w t): amplitude 1 / sqrt(1 + w^2)."""
     flow = contvines.FlowProblem(
