@@ -98,23 +98,25 @@ def _run(
     from scipy.integrate import solve_ivp
 
     s, size = field.settings, field.lengths + np.abs(x)
+    rate, largest = rates(field, p), s.endless * size
 
-    def inside(t: float, y: np.ndarray) -> float:
-        return s.endless - float((np.abs(y) / size).max())
+    def bounded(t: float, y: np.ndarray) -> np.ndarray:
+        if not (np.abs(y) < largest).all():
+            raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {t:.6g}")
+        return rate(t, y)
 
-    inside.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
     relative, absolute = (s.rough_relative, s.rough_absolute) if rough else (s.relative, s.absolute)
     found = solve_ivp(
-        rates(field, p),
+        bounded,
         (start, stop),
         x,
         method="LSODA",
         rtol=relative,
         atol=cast("float", absolute * size),
         dense_output=dense,
-        events=[*field.events.crossings(field.values, p), inside],
+        events=field.events.crossings(field.values, p) or None,
     )
-    if found.status == 1 and not len(found.t_events[-1]):
+    if found.status == 1:
         name = next(name for name, times in zip(field.events.names, found.t_events) if len(times))
         raise Stopped(
             f"the event {name} stops the motion at {np.array2string(found.y[:, -1], precision=6)}; begin elsewhere, or with other parameters"
