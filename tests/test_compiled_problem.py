@@ -19,13 +19,18 @@ needed = pytest.mark.skipif(
 )
 
 
+def example_of(name):
+    """The module of an example."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "examples" / "compiled" / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 @needed
 def test_a_table_of_c_functions_is_followed(tmp_path):
     """Against the solves in thirty digits of the same equations (folds with a singular Jacobian, Hopf with zero trace)."""
-    path = ROOT / "examples" / "compiled" / "reaction.py"
-    spec = importlib.util.spec_from_file_location("reaction", path)
-    example = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(example)
+    example = example_of("reaction")
     graph = cv.diagram(example.Reaction(example.compiled(tmp_path)), within=(0.0, 0.15))
     table = ROOT / "tools" / "demos" / "table.json"
     expected = sorted((row["kind"], row["value"]) for row in json.loads(table.read_text())["ab"])
@@ -36,10 +41,7 @@ def test_a_table_of_c_functions_is_followed(tmp_path):
 
 @needed
 def test_a_compiled_right_hand_side_gives_what_python_gives(tmp_path):
-    path = ROOT / "examples" / "compiled" / "lorenz.py"
-    spec = importlib.util.spec_from_file_location("lorenz", path)
-    example = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(example)
+    example = example_of("lorenz")
     flow = example.flow(example.compiled(tmp_path))
     graph = cv.diagram(flow, over="r", within=(13.0, 26.0), settings={"max_branches": 2})
     assert graph.of_kind("hopf")[0].value == pytest.approx(470 / 19, abs=1e-11)
@@ -59,10 +61,7 @@ def test_a_compiled_right_hand_side_gives_what_python_gives(tmp_path):
 @needed
 def test_problems_over_several_parameters_share_a_workspace(tmp_path):
     """As along loci: x' = s (y - x) alone has s, y' alone has r; residuals are linear in both."""
-    path = ROOT / "examples" / "compiled" / "lorenz.py"
-    spec = importlib.util.spec_from_file_location("lorenz", path)
-    example = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(example)
+    example = example_of("lorenz")
     orbit = example.flow(example.compiled(tmp_path)).attractor([1.0, 1.0, 1.0], r=160.0)
     work = orbit.problem("r").workspace()
     for name, value, row in (("r", 160.0, 1), ("s", 10.0, 0)):
