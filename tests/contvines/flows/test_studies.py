@@ -113,6 +113,27 @@ def test_a_chart_of_a_section(study, monkeypatch, capsys):
     assert locus.values[:, 0] == pytest.approx(locus.values[:, 1], abs=1e-10)
 
 
+def test_a_folder_may_be_moved(study, monkeypatch, capsys):
+    """Its results find the file of the flow that was moved with them; Hopf point at m = 0, eigenvalues +-i."""
+    here, there = study.parent / "here", study.parent / "there"
+    here.mkdir()
+    for name in ("flow.py", "study.toml"):
+        (study.parent / name).rename(here / name)
+    monkeypatch.chdir(here)
+    assert not run(monkeypatch, "diagram", "study.toml", "-q", "--no-look")
+    here.rename(there)
+    monkeypatch.chdir(there)
+    monkeypatch.setattr("contvines.flows.files._loaded", {})  # as in another process
+    orbit = contvines.load("study.vines", trust=True)["HB1"].orbit
+    assert orbit.value == pytest.approx(0.0, abs=1e-9) and abs(orbit.eigenvalues.imag) == pytest.approx(
+        [1.0, 1.0]
+    )
+    (there / "flow.py").unlink()
+    monkeypatch.setattr("contvines.flows.files._loaded", {})
+    with pytest.raises(ValueError, match="put it back, or beside the result"):
+        contvines.load("study.vines", trust=True)
+
+
 def test_simulations_of_a_survey_begin_in_the_box_of_the_study(study):
     study.write_text(STUDY + "[start]\nbox = [[-1.0, 1.0], [0.0, 2.0]]\n")
     read = read_study(study)
