@@ -16,6 +16,8 @@ A fold has p = p0 + a s^2 with s the amplitude along q; its coefficient is a.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...continuation.aims import aim_at_multiplier
@@ -23,21 +25,44 @@ from ...continuation.engine import Engine, Solved
 from ...continuation.layout import solved_points
 from ..settings import NORMAL_FORMS
 
-STEP = NORMAL_FORMS.step
-LENGTH = (
-    16.0 * STEP
-)  # of the chord on which points beside a special point are placed: they may lie far off it, and are none of its ends
-PLACES = np.array([STEP, -STEP, 0.5 * STEP, -0.5 * STEP]) / LENGTH
+WIDE = 16.0  # times a step: the chord on which points beside a special point are placed; they may lie far off it, and are none of its ends
+PLACES = np.array([1.0, -1.0, 0.5, -0.5]) / WIDE
+NEARER = 0.25  # times a step: the next one, where a number has not converged
 
 
-def _beside(engine: Engine, point: Solved) -> list[Solved] | None:
+def _beside(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
     """Points of the branch ahead and back, at a step and at half of that; None if one of them is not found."""
-    z, along = engine.join(point.u, point.p), LENGTH * point.tangent
+    length = WIDE * step
+    z, along = engine.join(point.u, point.p), length * point.tangent
     border = engine.weights * point.tangent
     chord = np.array([z, along, z + along, along])
-    found = engine.on_chord(chord, PLACES, float(border @ z), LENGTH, border, point.tangent)
+    found = engine.on_chord(chord, PLACES, float(border @ z), length, border, point.tangent)
     points = [near for near in solved_points(found) if near is not None]
     return points if len(points) == len(PLACES) else None
+
+
+def _converged(
+    engine: Engine, point: Solved, estimate: Callable[[Solved, Solved, float], float]
+) -> float | None:
+    """A number from a point of the branch ahead and one back, both at a step, continued to no step at all; None if it is not available.
+
+    The step is made shorter until half of it says the same: another special point, of which the number knows nothing, may be as near as that.
+    Where none does, the number is that of the step at which both differ least.
+    """
+    best, least, step = None, np.inf, NORMAL_FORMS.step
+    while step > engine.settings.resolution:
+        ends = _beside(engine, point, step)
+        if ends is not None:
+            far, near = estimate(ends[0], ends[1], step), estimate(ends[2], ends[3], 0.5 * step)
+            value = (4.0 * near - far) / 3.0
+            with np.errstate(all="ignore"):
+                apart = float(np.abs(np.float64(near - far) / value))
+            if best is None or apart < least:
+                best, least = value, apart
+            if apart <= NORMAL_FORMS.digits:
+                break
+        step *= NEARER
+    return best
 
 
 def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | None:
@@ -55,14 +80,13 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     if kind == "none" or abs(point.tangent[-1]) < engine.settings.upright:
         return None
     aim = aim_at_multiplier(engine.m, kind, name, k)
-    ends = _beside(engine, point)
-    if ends is None:
-        return None
-    slopes = [
-        (aim(ahead) - aim(back)) / (ahead.p - back.p)
-        for ahead, back in zip(ends[::2], ends[1::2], strict=True)
-    ]
-    return float((4.0 * slopes[1] - slopes[0]) / 3.0) * engine.rate
+
+    def slope(ahead: Solved, back: Solved, _: float) -> float:
+        with np.errstate(all="ignore"):
+            return float(np.float64(aim(ahead) - aim(back)) / (ahead.p - back.p))
+
+    found = _converged(engine, point, slope)
+    return None if found is None else found * engine.rate
 
 
 def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str | None, float | None]:
@@ -85,9 +109,9 @@ def criticality(curvature: float, speed: float | None, flip: bool) -> tuple[str 
 
 def fold_coefficient(engine: Engine, point: Solved) -> float | None:
     """a in p = p0 + a s^2 along the branch through a fold, s the amplitude along the critical vector."""
-    ends = _beside(engine, point)
-    if ends is None:
-        return None
-    far, near = (ahead.p + back.p - 2.0 * point.p for ahead, back in zip(ends[::2], ends[1::2], strict=True))
-    # a of each, (ahead + back - 2 p) / (2 step^2), continued to no step at all
-    return float((16.0 * near - far) / (6.0 * STEP**2)) / engine.amplitude(point.tangent) ** 2
+
+    def bend(ahead: Solved, back: Solved, step: float) -> float:
+        return (ahead.p + back.p - 2.0 * point.p) / (2.0 * step**2)
+
+    found = _converged(engine, point, bend)
+    return None if found is None else found / engine.amplitude(point.tangent) ** 2

@@ -1,5 +1,6 @@
 """Null vectors, departures and normal forms against hand calculations."""
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -28,6 +29,29 @@ def test_fold_coefficient(a):
     problem = cv.AlgebraicProblem(lambda u, p: p - a * u**2, [abs(a) ** -0.5], np.sign(a))
     fold = cv.diagram(problem, within=(-1.0, 1.0))["LP1"]
     assert (fold.value, fold.coefficient) == pytest.approx((0.0, a), rel=1e-6, abs=1e-12)
+
+
+def test_flip_coefficient_beside_other_doublings():
+    """The third doubling of x -> x + K (q - x^2), 1e-9 of q from the second: g^2/4 + h/6 of the fourth iterate with derivatives -1, g, h."""
+    K = 1e4
+    problem = cv.MapProblem(lambda x, p: [x[0] + K * (p.q - x[0] ** 2)], [0.3], {"q": 0.09})
+    point = cv.diagram(problem, over="q", within=(-1.0, 0.1), depth=2)["PD3"]
+
+    def fourth(x, q):
+        for _ in range(4):
+            x = x + K * (q - x**2)
+        return x
+
+    with mpmath.workdps(60):
+
+        def doubling(x, q):
+            return fourth(x, q) - x, mpmath.diff(lambda x: fourth(x, q), x) + 1
+
+        x, q = mpmath.findroot(doubling, (float(point.u[0]), point.value))
+        second, third = (float(mpmath.diff(lambda x: fourth(x, q), x, n)) for n in (2, 3))
+    assert point.value == pytest.approx(float(q), abs=1e-17)
+    assert point.coefficient == pytest.approx(second**2 / 4 + third / 6, rel=1e-3)
+    assert point.criticality == "supercritical"
 
 
 def test_symmetry_class_of_a_branch_point():
