@@ -11,6 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from contvines.shared.near_names import hinting
+from contvines.shared.stability import attracts, onto_circle
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import deviation
 from orbits.flows.protocol import Equations
@@ -92,6 +93,10 @@ class Orbit(Cycle):
         vars(found)["_examined"] = (residual, limits_of(multipliers), margins)
         return found
 
+    def critical(self, near: float) -> Self:
+        """The same orbit as that of a special point, where a multiplier is on the unit circle by definition: the nearest, if it is so near."""
+        return self.with_multipliers(onto_circle(self.multipliers, near))
+
     @property
     def margins(self) -> list[Margin]:
         """Margins of admissibility, none negative for a real orbit; in the units of the nodes."""
@@ -120,9 +125,9 @@ class Orbit(Cycle):
         return self.margin >= 0.0
 
     @property
-    def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-        return bool(np.all(np.abs(self.multipliers) < 1.0))
+    def stable(self) -> bool | None:
+        """Whether all multipliers lie inside the unit circle; None where one is on it and none outside, as at a fold."""
+        return attracts(np.abs(self.multipliers), 1.0)
 
     def measures(self, *wanted: str) -> dict[str, float]:
         """Measures by name, all of them if none is named; names: `problem().measure_names`.
@@ -272,6 +277,7 @@ class Orbit(Cycle):
             **self.model.described(self.params),
             **self.flow.described(self),
             "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
+            "stable": self.stable,
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],
             "real": self.real,
             "residual": self.residual,

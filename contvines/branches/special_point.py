@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..bifurcation.critical import critical
 from ..bifurcation.kinds import BORDERS
 from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable, Resolved
@@ -179,11 +180,14 @@ class SpecialPoint:
 
     @property
     def orbit(self) -> Any:
-        """The solution as the object that its problem hands to users; at a border with the multipliers' one-sided limits."""
+        """The solution as the object that its problem hands to users.
+
+        At a border with the multipliers' one-sided limits; at a bifurcation its stability is undecided, unless multipliers are outside the circle.
+        """
         found = self.attached.orbit(self.u, self.value)
         if self.kind in BORDERS and isinstance(found, Limited):
             return found.with_multipliers(self.multipliers)
-        return found
+        return critical(found, self.kind)
 
     def plot(self, **options: Any) -> Figure:
         """The solution at the point as a picture; see :func:`contvines.plots.portrait.plot_portrait`."""

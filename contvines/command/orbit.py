@@ -133,6 +133,15 @@ EVENTS = {
 }
 
 
+def _stability(about: dict[str, Any]) -> str:
+    """Whether a motion is stable, or why that is undecided."""
+    from contvines.shared.stability import marginal_text
+
+    if about["stable"] is None:
+        return marginal_text(complex(re, im) for re, im in about["multipliers"])
+    return "stable" if about["stable"] else "unstable"
+
+
 def _describe(found: object) -> str:
     """An orbit as a readable text, from the same object that --json prints."""
     from contvines.graph.shortening import short_word
@@ -148,9 +157,7 @@ def _describe(found: object) -> str:
         word = short_word(about["word"]) or about.get("rest", "stuck")
         lines.append(f"{word}  k = {about['periods']}  ({nature})")
     if "states" in about:  # a cycle of a flow
-        lines.append(
-            f"cycle of period {figures(about['period'])}  ({'stable' if about['stable'] else 'unstable'})"
-        )
+        lines.append(f"cycle of period {figures(about['period'])}  ({_stability(about)})")
     parameters = about.get("parameters", {})
     if parameters:
         units = about.get("units", {})
@@ -170,6 +177,8 @@ def _describe(found: object) -> str:
         text = complex_figures(complex(re, im) for re, im in pairs)
         if any(math.isnan(part) for pair in pairs for part in pair):
             text = "not defined at a graze"
+        elif text and "word" in about:
+            text = f"{text}  ({_stability(about)})"
         lines.append(f"  multipliers: {text or 'none'}")
     if about.get("margins"):
         smallest = min(about["margins"], key=lambda m: m["value"])

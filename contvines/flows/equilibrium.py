@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from contvines.shared.number_text import complex_figures, figures
 
 from ..problems.protocol import Solution
+from ..shared.stability import attracts, marginal_text, onto_axis
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,12 @@ class Equilibrium(Solution):
 
     @property
     def stable(self) -> bool | None:
-        """Whether all eigenvalues have negative real parts; None where they are not known."""
-        return bool((np.real(self.eigenvalues) < 0.0).all()) if self.eigenvalues.size else None
+        """Whether all eigenvalues have negative real parts; None where they are not known, or one is on the axis and none beyond, as at a fold."""
+        return attracts(np.real(self.eigenvalues), 0.0) if self.eigenvalues.size else None
+
+    def critical(self, near: float = 0.0) -> Equilibrium:
+        """The same equilibrium as that of a special point, where an eigenvalue is on the imaginary axis by definition: the nearest."""
+        return replace(self, eigenvalues=onto_axis(self.eigenvalues))
 
     def to_dict(self) -> dict[str, Any]:
         """The equilibrium as JSON-able dict."""
@@ -51,7 +56,8 @@ class Equilibrium(Solution):
         }
 
     def __str__(self) -> str:
-        nature = {True: "  (stable)", False: "  (unstable)", None: ""}[self.stable]
+        marginal = f"  ({marginal_text(self.eigenvalues, flow=True)})" if self.eigenvalues.size else ""
+        nature = {True: "  (stable)", False: "  (unstable)", None: marginal}[self.stable]
         lines = [
             f"equilibrium{nature}",
             "  " + "  ".join(f"{name} = {figures(x)}" for name, x in self.states.items()),

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 
+from ..shared.stability import attracts, onto_circle
 from . import mesh
 from .elimination import multipliers_of
 from .kernels import growth_of_volume, linearise, spectrum
@@ -60,7 +62,7 @@ class CycleOrbit:
     parameters : dict of float
     multipliers : ndarray of complex
         Of autonomous flows without the trivial one.
-    stable : bool
+    stable : bool or None
     """
 
     def __init__(self, problem: CycleMesh, u: np.ndarray, p: float) -> None:
@@ -75,7 +77,7 @@ class CycleOrbit:
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.10g}" for name, value in self.parameters.items())
-        stable = "stable" if self.stable else "unstable"
+        stable = {True: "stable", False: "unstable", None: "marginal"}[self.stable]
         return (
             f"CycleOrbit({values}: {stable}, period {self.period:.10g}, {self._problem.intervals} intervals)"
         )
@@ -153,9 +155,15 @@ class CycleOrbit:
         return abs(found - growth_of_volume(self._problem, work))
 
     @property
-    def stable(self) -> bool:
-        """Whether all multipliers are inside the unit circle."""
-        return bool((np.abs(self.multipliers) < 1.0).all())
+    def stable(self) -> bool | None:
+        """Whether all multipliers are inside the unit circle; None where one is on it and none outside, as at a fold."""
+        return attracts(np.abs(self.multipliers), 1.0)
+
+    def critical(self, near: float) -> CycleOrbit:
+        """The same cycle as that of a special point, where a multiplier is on the unit circle by definition: the nearest, if it is so near."""
+        found = copy(self)
+        vars(found)["_spectrum"] = (onto_circle(self.multipliers, near), self.trivial_error)
+        return found
 
     @property
     def estimated_error(self) -> float:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..bifurcation.critical import critical
+
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
 
@@ -68,8 +70,8 @@ class PlanePoint:
 
     @property
     def orbit(self) -> object:
-        """The motion as the object that its problem hands to users."""
-        return self.attached.orbit(self.u, self.value[0])
+        """The motion as the object that its problem hands to users; see :attr:`contvines.SpecialPoint.orbit`."""
+        return critical(self.attached.orbit(self.u, self.value[0]), self.kind)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this point in the JSON of a chart."""

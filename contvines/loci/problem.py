@@ -9,6 +9,7 @@ import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
+from ..bifurcation.critical import critical
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
@@ -292,7 +293,7 @@ class LocusProblem(ProblemDefaults):
     def orbit(self, u: np.ndarray, p: float) -> object:
         """The special solution as the object that the problem hands to users."""
         inner, value = self.split(u)
-        return self.at(p).orbit(inner, float(value))
+        return critical(self.at(p).orbit(inner, float(value)), self.kind)
 
     @property
     def notation(self) -> dict[str, str]:

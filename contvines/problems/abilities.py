@@ -123,6 +123,15 @@ class Limited(Protocol):
 
 
 @runtime_checkable
+class Critical(Protocol):
+    """Of what ``orbit`` returned: at a special point its nearest multipliers are on the unit circle (eigenvalues on the axis) by definition."""
+
+    def critical(self, near: float) -> object:
+        """The same solution with the multipliers there that are so near to the circle; of an equilibrium one always is."""
+        ...
+
+
+@runtime_checkable
 class Drawable(Protocol):
     """Of what ``orbit`` returned: draws itself."""
 

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..bifurcation.kinds import CRITICAL
 from ..continuation.settings import Settings
 from ..graph.measures import default_measure
 from ..graph.proving import mark, proof_text
 from ..graph.shortening import motion_name, short_word
 from ..plots.style import axis_label, mark_of
 from ..problems.abilities import Animated
+from ..shared.stability import attracts, onto_axis, onto_circle
 from .numbers import plain_label, readable_model, rounded, shortened
 
 if TYPE_CHECKING:
@@ -23,8 +25,6 @@ if TYPE_CHECKING:
 NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
 SAMPLES = (48, 160)  # points of an orbit's curves, fewest and most
 MEASURES = 14  # at most, to choose the axes from
-#: where multipliers are on the boundary of stability
-CRITICAL = ("fold", "symmetry-breaking", "period-doubling", "neimark-sacker", "hopf", "branch-point")
 
 
 def contents(graph: Graph, source: str) -> dict[str, Any]:
@@ -112,7 +112,10 @@ def _marginal(point: SpecialPoint) -> bool:
     if point.kind not in CRITICAL or not len(sizes) or not np.isfinite(sizes).all():
         return False
     flow = point.problem is not None and point.problem.spectrum == "flow"
-    return float(np.max(np.real(sizes) if flow else np.abs(sizes) - 1.0)) <= Settings.stationary
+    if flow:
+        return attracts(np.real(onto_axis(sizes)), 0.0) is None
+    moduli = np.abs(onto_circle(sizes, Settings.critical))
+    return attracts(moduli, 1.0) is None
 
 
 def _attractor(about: Attractor) -> dict[str, Any]:

@@ -27,6 +27,7 @@ KINDS: tuple[Kind, ...] = (
 )
 """The built-in kinds along a branch, in the order in which they are asked."""
 
+MULTIPLIERS = (fold.KIND, *multipliers.KINDS, branch_point.KIND)
 # points of codimension two, found along a locus
 _ROWS = (
     ("cusp", "CP", "cusp"),
@@ -65,6 +66,11 @@ _ALONG_BORDERS = (
 CODIMENSION_TWO: dict[str, Kind] = {
     name: Kind(name, label, text=text, marker="o", filled=False, border=name in _ALONG_BORDERS)
     for name, label, text in _ROWS
+}
+#: kinds at which a multiplier is on the unit circle (an eigenvalue on the imaginary axis)
+CRITICAL: frozenset[str] = frozenset(kind.name for kind in (*MULTIPLIERS, *CODIMENSION_TWO.values())) - {
+    "double-border",
+    "degenerate-border",
 }
 BY_NAME: dict[str, Kind] = {kind.name: kind for kind in KINDS}
 LABELS: dict[str, str] = {kind.name: kind.label for kind in KINDS}
