@@ -32,7 +32,7 @@ from .kinds import PREFIXES, condition
 from .known_motions import KnownMotions, together
 from .layout import BRANCH, FOLD, MARGIN, PERIOD
 from .locus import Locus
-from .long_period import lengthened
+from .long_period import lengthened, with_suited_period
 from .on_mesh import on_mesh
 from .plane_point import PlanePoint
 from .problem import LocusProblem
@@ -158,7 +158,7 @@ class Charting:
         if not self.queue and not self.chart.loci:
             checked_ends(point.problem, self.over, self.within)
         try:
-            point = regular_side(point)
+            point = with_suited_period(regular_side(point))
         except (MemoryError, OSError):
             raise
         except Exception as error:

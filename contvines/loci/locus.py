@@ -55,6 +55,8 @@ class Locus:
     beyond : int
         Of a border: on which side of it, looking along the points with q to the right and p upwards, the motion cannot be: 1
         left, -1 right, 0 not known.
+    limit : {"", "homoclinic", "heteroclinic", "saddle-node", "at-rest"}
+        Of cycles of a long period: what they become, where the locus begins, as the period grows without bound.
     """
 
     label: str
@@ -68,6 +70,7 @@ class Locus:
     beyond: int = 0
     marked: tuple[tuple[int, PlanePoint], ...] | None = field(default=None, repr=False)
     kinds: tuple[Kind, ...] = field(default=(), repr=False)
+    limit: str = ""
 
     def __len__(self) -> int:
         return len(self.branch)
@@ -75,7 +78,12 @@ class Locus:
     def __repr__(self) -> str:
         p, q = self.parameters
         lo, hi = self.branch.range
-        return f"Locus({self.label}: {self.kind}, {len(self)} points, {q} in [{lo:.6g}, {hi:.6g}])"
+        return f"Locus({self.label}: {self.sort}, {len(self)} points, {q} in [{lo:.6g}, {hi:.6g}])"
+
+    @property
+    def sort(self) -> str:
+        """What people are told that it is: its kind, or what its cycles of a long period become."""
+        return self.limit or self.kind
 
     @property
     def problem(self) -> LocusProblem | None:
@@ -171,6 +179,7 @@ class Locus:
         return {
             "label": self.label,
             "kind": self.kind,
+            **({"limit": self.limit} if self.limit else {}),
             "word": about.get("word"),
             "periods": about.get("periods"),
             "seed": self.seed,

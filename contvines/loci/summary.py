@@ -34,7 +34,7 @@ def chart_summary(chart: Chart, width: int | None = None) -> str:
     def spread(values: list[float], text: Callable[[float], str]) -> str:
         return "..".join(dict.fromkeys((text(min(values)), text(max(values)))))
 
-    loci = [(locus.kind, locus.values) for locus in chart.loci.values()]
+    loci = [(locus.sort, locus.values) for locus in chart.loci.values()]
     points = [(point.kind, np.array([point.value])) for point in chart.points.values()]
     rows = []
     for each in (loci, points):

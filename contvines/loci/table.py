@@ -78,7 +78,7 @@ def _tables(chart: Chart) -> list[Table]:
     loci = [
         (
             locus.label,
-            locus.kind + _realness(locus),
+            locus.sort + _realness(locus),
             _word(locus),
             across(locus, 1),
             across(locus, 0),

@@ -32,7 +32,7 @@ from .codimension_two import becomes, beginning, vanishing
 from .homoclinic import homoclinic_of
 from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
-from .long_period import lengthened
+from .long_period import lengthened, limit_of, with_suited_period
 from .on_mesh import on_mesh
 from .own_test import of_own_kind, with_condition
 from .plane_point import PlanePoint
@@ -88,7 +88,7 @@ def locus(
         Called with (label, number of points, value of the second parameter).
     period : float, optional
         Of a homoclinic end: the period of the cycles that stand for the homoclinic orbits along the locus; the one at the end of
-        the branch if it is left out, at a Bogdanov-Takens point one that suits the first orbit.
+        the branch if it is left out, of a heteroclinic cycle a shorter one, at a Bogdanov-Takens point one that suits the first orbit.
     kinds : iterable of Kind, optional
         As in :func:`contvines.diagram`: zeros of the tests of kinds of your own along the locus are among its points, too.
 
@@ -107,6 +107,7 @@ def locus(
         raise ValueError(without_problem(point.label))
     within = check_interval(within)
     own_kinds = tuple(kind for kind in checked(kinds) if BY_NAME.get(kind.name) is not kind)
+    beside = isinstance(point, PlanePoint)
     if isinstance(point, PlanePoint):
         point = _beside(point, over, within, (-np.inf, np.inf) if bounds is None else check_interval(bounds))
     if period is not None:
@@ -119,6 +120,8 @@ def locus(
         except ValueError as error:
             raise ValueError(f"{point.label}: {error}") from error
         point = replace(point, problem=longer, u=u, value=p)
+    elif not beside:
+        point = with_suited_period(point)
     if not of_own_kind(point):
         point = regular_side(point)
     motion = point.attached
@@ -272,7 +275,16 @@ def trace_locus(
         if e.kind == "fold"
     )
     side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
-    return Locus(label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side)
+    limit = _limit(problem, start) if problem.condition == PERIOD else ""
+    about = label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side
+    return Locus(*about, limit=limit)
+
+
+def _limit(problem: LocusProblem, start: Solved) -> str:
+    """What the cycles of a long period stand for where their locus begins."""
+    u, p = problem.split(start.u)
+    found = limit_of(on_mesh(problem.at(start.p)), u, float(p))
+    return "" if found is None else found.limit
 
 
 def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoint) -> None:

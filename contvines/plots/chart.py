@@ -13,7 +13,7 @@ from ..shared.modulation import MODULATIONS
 from .figures import Size, Style, freeze, is_low, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, dense, grouped, place_labels, touching
 from .legends import hold_legend, place_legend
-from .style import HATCHES, MARKS, PLAIN, axis_label
+from .style import HATCHES, axis_label, mark_of_locus
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -125,7 +125,7 @@ def _draw(axes: Axes, locus: Locus, handles: dict[str, Artist]) -> None:
     both = real[:-1] & real[1:]
     solid[~(np.append(both, False) | np.append(False, both))] = np.nan
     dotted[np.append(both, True) & np.append(True, both)] = np.nan
-    look, mark = _look(locus), MARKS.get(locus.kind, PLAIN)
+    look, mark = _look(locus), mark_of_locus(locus)
     marked: dict[str, Any] = {"marker": mark.marker, "markersize": 4.0, "markeredgewidth": 0.8}
     marked["markerfacecolor"] = look["color"] if mark.filled else "white"
     marked["markevery"] = (

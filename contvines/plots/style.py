@@ -2,13 +2,14 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..bifurcation.kinds import BY_NAME
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
+    from ..loci.locus import Locus
 
 # line styles of the states of an orbit; what nobody has asked for is drawn solid, and named
 LINES: dict[str, Any] = {"stable": "-", "unknown": "-", "unstable": (0, (5, 2.2)), "virtual": (0, (1, 1.8))}
@@ -48,7 +49,18 @@ class Mark:
 
 MARKS = {kind.name: Mark(kind.text, kind.marker, kind.filled) for kind in BY_NAME.values()}
 PLAIN = Mark("special point", "o")
+LIMITS = {  # of cycles of a long period
+    "heteroclinic": "heteroclinic cycle",
+    "saddle-node": "saddle-node on the cycle",
+    "at-rest": "cycle that comes to rest",
+}
 UNRESOLVED = Mark("unresolved", "s")
+
+
+def mark_of_locus(locus: "Locus") -> Mark:
+    """That of its special points, called after what they are."""
+    mark = MARKS.get(locus.kind, PLAIN)
+    return replace(mark, name=LIMITS.get(locus.limit, mark.name))
 
 
 def line_of(state: str, color: str) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..graph.shortening import short_word
 from ..plots.chart import COLORS
-from ..plots.style import MARKS, PLAIN, axis_label
+from ..plots.style import axis_label, mark_of_locus
 from ..problems.abilities import Animated
 from .numbers import plain_label, readable_model, rounded, shortened
 
@@ -66,8 +66,8 @@ def _locus(locus: Locus) -> dict[str, Any]:
     word = locus.branch.description.get("word")
     return {
         "label": locus.label,
-        "name": MARKS.get(locus.kind, PLAIN).name,
-        "marker": MARKS.get(locus.kind, PLAIN).marker,
+        "name": mark_of_locus(locus).name,
+        "marker": mark_of_locus(locus).marker,
         "border": locus.kind not in COLORS,
         "word": None if word is None else short_word(str(word)),
         "p": shortened(locus.values[:, 0], 12),
