@@ -78,7 +78,7 @@ def with_suited_period(point: SpecialPoint) -> SpecialPoint:
     limit = infinite_period(problem, point)
     if len(limit.saddles) < 2:
         return point
-    rates = [float(np.abs(saddle.eigenvalues.real).min()) for saddle in limit.saddles]
+    rates = [float(np.abs(np.real(saddle.eigenvalues)).min()) for saddle in limit.saddles]
     period = -math.log(problem.flow.settings.error) * sum(1.0 / rate for rate in rates)
     try:
         problem, u, p = lengthened(problem, u, p, min(period, limit.period))
