@@ -164,7 +164,9 @@ class Detector(SegmentSearch):
             return []
         segment = Segment(self.engine, start, first)
         apart = reached(self.engine, np.array([start.row, first.row]), np.ones(1))[0]
-        split = self.halved(segment, real) if apart else None if real else self.passed(segment)
+        split = self.halved(segment, real) if apart else None
+        if split is None:
+            split = self.alone(segment, real)
         if share < beyond:
             split = (beyond - share) / (1.0 - share), seen
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)

@@ -306,6 +306,25 @@ class SegmentSearch:
             new |= seen.distances[:, ends.first_margin - 1] > self.engine.settings.shown
         return found, seen, new
 
+    def alone(self, segment: Segment, real: bool) -> tuple[float, Solved] | None:
+        """A point inside a segment without neighbours that tells what neither end tells, with its place, or None.
+
+        Its middle is the third point of the parabolas that say whether to look further.
+        """
+        ends = self.evidence_of([segment.a, segment.b])
+        found, seen, new = self._at(segment, np.array([0.5]), ends, real)
+        if new.any():
+            return found[0]
+        columns: list[int] = []
+        if found:
+            (first, last), middle = ends.distances, seen.distances[0]
+            side = np.sign(middle)
+            dips = parabola_dips(side * first, side * middle, side * last, 0.5, 0.5)
+            columns = np.flatnonzero(dips[: len(dips) - (not real)]).tolist()
+        if columns:
+            return self.inside(segment, real, columns)
+        return None if real else self.passed(segment)
+
     def halved(
         self, segment: Segment, real: bool, neighbours: Sequence[tuple[float, np.ndarray]] = ()
     ) -> tuple[float, Solved] | None:

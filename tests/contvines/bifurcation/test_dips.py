@@ -199,3 +199,19 @@ def test_a_multiplier_that_grows_faster_than_is_extrapolated_is_infinite(power, 
     )
     (limit,) = cv.diagram(grown, within=(-1.0, 1.0))["VG1"].multipliers
     assert abs(limit) >= 1e15 and limit.real * side > 0.0
+
+
+def test_a_multiplier_beyond_one_before_the_first_point_of_a_branch():
+    """x -> -(1 + q) x + x^3 doubles at q = 0 to x^2 = q, where y -> exp(g(x^2)) y - y^3 has g > 0 for q between A^2/4 and 3 A^2/4."""
+    A = 0.0028
+
+    def right(x, p):
+        t = x[0] ** 2 / A**2
+        return [-(1.0 + p.q) * x[0] + x[0] ** 3, x[1] * np.exp(-0.3 + 1.6 * t * (1.0 - t)) - x[1] ** 3]
+
+    problem = cv.MapProblem(right, [0.0, 0.0], {"q": -0.2}, scale=1.0)
+    graph = cv.diagram(problem, over="q", within=(-0.3, 1e-5), depth=1)
+    points = [point for point in graph.of_kind("branch-point") if point.branch == "B2"]
+    assert len(points) == 2
+    for point, value in zip(points, (A**2 / 4, 3 * A**2 / 4)):
+        assert point.value == pytest.approx(value, abs=min(point.location_error, 1e-2 * A**2))
