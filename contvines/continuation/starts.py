@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol, TypeGuard, runtime_checkable
 import numpy as np
 
 from ..problems.abilities import Named, Rough, Started
+from ..problems.functions import NotEvaluable, difference_text
 from ..problems.protocol import MEMBERS, Problem
 from .engine import Engine, Solved
 from .settings import SOLUTION
@@ -120,6 +121,8 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
         raise ValueError(f"the start must be {engine.n} finite numbers, not {u}")
     found = engine.start(u, p)
     if found is None:
+        if different := unlike_twice(engine, u, p):
+            raise ValueError(f"the start at {name} = {p:.10g}: {different}")
         residual = engine.residual(u, p)
         why = f"does not converge (its residual is {residual:.3g})"
         if residual < SOLUTION.solved:
@@ -131,6 +134,18 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
             f"the start at {name} = {p:.10g} {why}; give a better guess or another parameter value"
         )
     return found
+
+
+def unlike_twice(engine: Engine, u: np.ndarray, p: float) -> str:
+    """A sentence on equations that differ when they are asked twice at one place; empty if they do not, or cannot be asked."""
+    problem = engine.problem
+    if engine.compiled or not isinstance(problem, Rough):
+        return ""
+    try:
+        one, other = problem.residuals(u, p), problem.residuals(u, p)
+    except NotEvaluable:
+        return ""
+    return difference_text(one, other)
 
 
 def start_remark(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:

@@ -11,14 +11,14 @@ from contvines.shared.floating_point import TINY
 from contvines.shared.near_names import hinting
 
 from ..problems.abilities import Populated, Started
-from ..problems.functions import NotEvaluable
+from ..problems.functions import NotEvaluable, difference_text
 from ..problems.images import image_map, refuse_no_mirror
 from ..problems.parameters import ParameterSet
 from ..problems.protocol import Seed
 from ..problems.registry import addresses
 from ..problems.scales import flat_start, given_scale
 from . import mesh
-from .attractors import Stopped, recurrence
+from .attractors import Escaped, Irregular, Stopped, recurrence
 from .collocation import rule
 from .compiled import CompiledRates
 from .cycles import CycleProblem
@@ -31,6 +31,7 @@ from .newton import settled
 from .orbit import CycleOrbit
 from .population import FlowPopulation, Settled, curves
 from .settings import FlowSettings
+from .simulation import rates
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -236,12 +237,14 @@ class FlowProblem:
         try:
             with np.errstate(all="ignore"):
                 one, later = self.field(x, p, t), self.field(x, p, t + period)
+                again = self.field(x, p, t)
         except NotEvaluable:
             return  # states beside the start may be outside of where f is defined
         size = TINY + np.nanmax(np.abs(one), initial=0.0)
         if np.nanmax(np.abs(one - later), initial=0.0) > self.settings.recurs * size:
             raise ValueError(
-                f"period = {period:.10g} at the start is no period of f(x, p, t) in t: f differs there after that time; mend period= or f"
+                difference_text(one[0], again[0])
+                or f"period = {period:.10g} at the start is no period of f(x, p, t) in t: f differs there after that time; mend period= or f"
             )
 
     def _find_mirror(self) -> None:
@@ -414,7 +417,15 @@ class FlowProblem:
                 raise Stopped(
                     f"x0 = {start.tolist()} lies beyond the event {name}, which stops motions; begin on the other side"
                 )
-        times, states, rounds = recurrence(field, parameters.start, start, transient, longest, doublings)
+        try:
+            times, states, rounds = recurrence(field, parameters.start, start, transient, longest, doublings)
+        except (Escaped, Irregular) as error:
+            with np.errstate(all="ignore"):
+                rate = rates(field, parameters.start)
+                different = difference_text(rate(0.0, start), rate(0.0, start))
+            if different:
+                raise type(error)(different) from error
+            raise
         return self._cycle(times, states, parameters, rounds)
 
     @hinting

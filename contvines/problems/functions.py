@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 import numpy as np
 
 from .parameters import ParameterSet
+from .settings import DERIVATIVES
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -126,6 +127,19 @@ class UserFunction:
         except (TypeError, ValueError) as error:
             raise NotEvaluable(f"{self.name} returns no array of numbers: {error}") from error
         return result.reshape(-1)
+
+
+def difference_text(one: np.ndarray, other: np.ndarray) -> str:
+    """A sentence on values that differ, by more than small noise, though a function was asked for the same; empty if they do not."""
+    one, other = one.reshape(-1), other.reshape(-1)
+    apart = np.abs(one - other)
+    if not (apart > DERIVATIVES.felt * np.abs(one)).any():
+        return ""
+    i = int(np.nanargmax(apart))
+    return (
+        f"asked twice for the same arguments the equations have different values ({one[i]:.6g} and {other[i]:.6g} in row {i}); "
+        "what is random, or remembers earlier calls, has no branches"
+    )
 
 
 def as_matrix(given: object, n: int) -> np.ndarray | csc_array | Operator:
