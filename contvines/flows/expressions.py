@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
@@ -44,7 +44,30 @@ ALLOWED = re.compile(r"^[\w\s.+\-*/(),]*$")
 DECLARED = re.compile(
     r"(par\w*|p|number|num|init|i)\s+(?=[a-z_]\w*\s*=)"
 )  # words before name=value, no names themselves
-PASSED = re.compile(r"(aux|set|only)\s|[@\"]")
+PASSED = re.compile(r"(aux|set|only|export|options)\s+[^\s=]|[@\"]")
+RANDOM = "what is random has no branches"
+MEMORY = "what depends on the past is no ordinary differential equation"
+JUMPS = "motions that jump are no smooth flow; orbits.Machine takes them"
+ARRAYS = "arrays are not read; write a line for each state"
+PIECES = "conditions and comparisons are not read; heav(x), sign(x), abs(x), max(x,y), min(x,y) are, and a sigmoid is smooth"
+#: what XPP has beside ordinary differential equations -> why it is refused
+REFUSED = {
+    r"wiener\s+[^\s=]": RANDOM,
+    r"markov\s+[^\s=]": RANDOM,
+    r"(.*\W)?(ran|normal|poisson)\(": RANDOM,
+    r"volterra\s+[^\s=]": MEMORY,
+    r"(.*\W)?(delay|del_shft|int)[({\[]": MEMORY,
+    r"global\s+[^\s=]": JUMPS,
+    r"table\s+[^\s=]": "tables are not read; write the function as a formula, or make the flow in Python (cv.FlowProblem)",
+    r"special\s+[^\s=]": "sums over networks are not read; make the flow in Python (cv.FlowProblem)",
+    r"(.*\W)?(sum|shift)\(": "sums over indices are not read; write them out",
+    r"solv\s+[^\s=]|0\s*=": "equations that hold at all times are not read; solve them for their unknown by hand, or inside a function in Python",
+    r"(bdry|b)\s+[^\s=]": "conditions at boundaries are not read: cycles and equilibria have none",
+    r"\w+\(t\+1\)\s*=": "this is a map; cv.MapProblem takes it",
+    r"#include\b": "other files are not included; copy their lines",
+    r"%|.*\[": ARRAYS,
+    r"(.*\W)?if\s*\(|.*([<>&|]|==|!=)": PIECES,
+}
 PARAMETER = re.compile(r"([A-Za-z_]\w*)\s*=\s*([^,\s]+)")
 
 
@@ -151,7 +174,8 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
     """f, the names of the states, their starts and the parameters from an .ode file, and the line that depends on time, or nothing.
 
     Read are ``x'=...`` and ``dx/dt=...``, ``par``, ``number``, ``init`` and ``x(0)=``, functions ``f(x,y)=...`` and fixed quantities
-    ``name=...``; lines that begin with ``aux``, ``@``, ``#`` or ``done`` are passed over.
+    ``name=...`` or ``!name=...``; a line that ends with ``\\`` goes on in the next one. Lines that begin with ``aux``, ``set``, ``only``, ``export``,
+    ``options``, ``@``, ``"`` or ``#`` are passed over, and all after ``done``.
 
     Raises
     ------
@@ -174,16 +198,17 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
             raise ValueError(f"{where}: the name {name!r} is there twice; choose another one")
         return name
 
-    for number, raw in enumerate(
-        Path(path).read_text(encoding="utf-8", errors="replace").splitlines(), start=1
-    ):
-        line = raw.split("#")[0].strip()
-        low = line.lower()
-        if not line or PASSED.match(low):
+    for number, raw in _whole_lines(Path(path).read_text(encoding="utf-8", errors="replace")):
+        include = raw.lower().startswith("#include")
+        low = (raw if include else raw.split("#")[0]).strip().lower()
+        if not low or PASSED.match(low):
             continue
         if low == "done":
             break
         where = f"{path}, line {number}: {raw.strip()!r}"
+        refused = next((why for words, why in REFUSED.items() if re.match(words, low)), "")
+        if refused:
+            raise ValueError(f"{where}: {refused}")
         if declared := DECLARED.match(low):
             for name, value in PARAMETER.findall(low[declared.end() :]):
                 if declared[1].startswith("i"):
@@ -201,7 +226,7 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
         elif found := re.match(r"([a-z_]\w*)\(([^)]*)\)\s*=(.*)$", low):
             names = [part.strip() for part in found[2].split(",") if part.strip()]
             functions[new(found[1], where)] = Function(names, _formula(found[3], where))
-        elif found := re.match(r"([a-z_]\w*)\s*=(.*)$", low):
+        elif found := re.match(r"!?([a-z_]\w*)\s*=(.*)$", low):
             fixed[new(found[1], where)] = _formula(found[2], where)
         else:
             raise ValueError(
@@ -220,6 +245,21 @@ def read_text(path: str | Path) -> tuple[Callable, list[str], list[float], dict[
     states = list(rates)
     f = _evaluator(rates, fixed, functions, list(parameters))
     return f, states, [starts.get(s, 0.0) for s in states], parameters, timed
+
+
+def _whole_lines(text: str) -> Iterator[tuple[int, str]]:
+    """Lines with the number of the first one of each, those joined that go on."""
+    begun, number = "", 1
+    for i, line in enumerate(text.splitlines(), start=1):
+        number = number if begun else i
+        begun += line.rstrip()
+        if begun.endswith("\\"):
+            begun = begun[:-1]
+            continue
+        yield number, begun
+        begun = ""
+    if begun:
+        yield number, begun
 
 
 def _refuse_unknown(

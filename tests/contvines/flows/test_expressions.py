@@ -87,6 +87,39 @@ def test_names_that_begin_like_words_of_xpp(tmp_path):
     ]  # 2 x 1.5 - (0.5 + 0.5), 4 x 1.5 - 3 x 0.5
 
 
+def test_a_file_of_xpp_with_lines_that_go_on_and_derived_parameters(tmp_path):
+    """The model of Morris and Lecar (Rinzel and Ermentrout 1998); its Hopf points are those of docs/demos.md, solved in thirty digits."""
+    (tmp_path / "ml.ode").write_text(
+        """# Morris and Lecar
+p Iapp=50, gCa=4.4
+param gK=8 C=20
+!ratio=1/C
+options ml.opt
+V(0)=-60
+w(0)=.01
+minf(V)=.5*(1+tanh((V+1.2)/18))
+winf(V)=.5*(1+tanh((V-2)/30))
+dV/dt=(Iapp-2*(V+60)-gCa*minf(V)*(V-120) \\
+   -gK*w*(V+84))*ratio
+dw/dt=.04*cosh((V-2)/60)*(winf(V)-w)
+aux Ica=gCa*minf(V)*(V-120)
+export {v} {w}
+@ xp=V,yp=w
+done
+"""
+    )
+    flow = read_ode(tmp_path / "ml.ode")
+    assert list(flow.values.values) == ["iapp", "gca", "gk", "c"]
+    found = cv.diagram(flow, over="iapp", within=(0, 300), depth=0).of_kind("hopf")
+    assert [point.value for point in found] == pytest.approx([93.857618374, 212.0188161], abs=1e-7)
+
+
+def test_numbers_of_lines_count_those_that_go_on(tmp_path):
+    (tmp_path / "bad.ode").write_text("par a=1\nx'=-a*x \\\n  +1\ny'=b\ndone\n")
+    with pytest.raises(ValueError, match="line 4.*'b' is no state"):
+        read_ode(tmp_path / "bad.ode")
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
@@ -94,7 +127,16 @@ def test_names_that_begin_like_words_of_xpp(tmp_path):
         ("x'=__import__('os')", "can be read"),
         ("x'=x.real", "can be read"),
         ("par a", "name=value"),
-        ("table f % 10", "can be read"),
+        ("table f % 10", "line 1.*tables are not read"),
+        ("par a=1\nx'=-a*x+w\nwiener w", "line 3.*random"),
+        ("par a=1\nx'=-a*x+normal(0,1)", "line 2.*random"),
+        ("par a=1\nx'=-a*x\nglobal 1 x-2 {x=0}", "line 3.*motions that jump"),
+        ("par a=1\nx'=-a*delay(x,2)", "line 2.*past"),
+        ("par a=1\nx'=-a*x*(x>1)", "line 2.*comparisons"),
+        ("par a=1\nx(t+1)=a*x", "line 2.*cv.MapProblem"),
+        ("par a=1\nx[1..3]'=-a*x[j]", "line 2.*arrays"),
+        ("par a=1\n0=z-x\nsolv z=0\nx'=z-a*x", "line 2.*solve them"),
+        ("par a=1\n#include b.ode\nx'=-a*x", "line 2.*not included"),
         ("par a=one\nx'=a*x", "no number"),
         ("par a=1", "no equation"),
         ("x'=-x", "no parameter"),
