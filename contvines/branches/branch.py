@@ -10,6 +10,7 @@ import numpy as np
 
 from ..bifurcation.kinds import BORDERS
 from ..continuation.settings import hinted
+from ..flows.without_rates import MeasuresWithoutRates, measures_without_rates
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
 from .ending import Ending
@@ -131,8 +132,10 @@ class Branch:
 
     @property
     def measure_names(self) -> tuple[str, ...]:
-        """Names that `measure` knows beside the parameter's own; without a problem only ``norm``."""
-        names = ("norm",) if self.problem is None else self.problem.measure_names
+        """Names that `measure` knows beside the parameter's own; without a problem ``norm``, and of flows what needs no right-hand side."""
+        bare = self._bare
+        names = ("norm",) if bare is None else bare.names
+        names = names if self.problem is None else self.problem.measure_names
         return tuple(str(name) for name in names if name != self.parameter)
 
     def measure(self, name: str) -> np.ndarray:
@@ -156,8 +159,25 @@ class Branch:
         if name == self.parameter:
             return np.asarray(p, dtype=float)
         if self.problem is None:
+            bare = self._bare
+            if bare is not None and name in bare.names:
+                return bare(name, u)
             return _bare_measure(self.label, name, u)
         return self.problem.measures((name,), u, p)[name]
+
+    @property
+    def default_measure(self) -> str:
+        """What is shown of it unless something else is asked for; nothing where that is not known."""
+        if self.problem is not None:
+            return self.problem.default_measure
+        return "" if self._bare is None else f"max {self._bare.states[0]}"
+
+    @property
+    def _bare(self) -> MeasuresWithoutRates | None:
+        """What is measured of a flow that was loaded without its problem."""
+        if self.problem is not None:
+            return None
+        return measures_without_rates(self.description, self.points.shape[1])
 
     @property
     def attached(self) -> Problem:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from contvines.command.frame import beside, say_state
+from contvines.command.frame import beside, say, say_state
 from contvines.command.options import FileArgument, TrustOption, option
 
 
@@ -76,3 +76,7 @@ def export(
         return
     say_state(graph, file, measures)
     typer.echo(str(write(graph, to.value, target)))
+    if to is Format.auto and any(
+        branch.problem is None and "cycle" in branch.description for branch in graph.branches.values()
+    ):
+        say(f"the file of solutions has no cycles: {file} names Python code, which --trust would run")

@@ -197,7 +197,7 @@ def say_state(graph: "Graph | Chart", file: Path, problems: bool = True) -> None
     from contvines.problems.registry import without_problem
 
     for branch in graph.branches.values() if problems and isinstance(graph, Graph) else ():
-        if branch.problem is None and branch.description.get("factory"):
+        if branch.problem is None and branch.description.get("factory") and not branch.default_measure:
             typer.echo(f"contvines: {without_problem(branch.label, branch.description)}.", err=True)
             break
     if not graph.finished:

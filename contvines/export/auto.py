@@ -143,6 +143,8 @@ def _solutions(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
     for label, number in labels.items():
         point = graph.special[label]
         branch = graph.branches[point.branch]
+        if point.problem is None and "cycle" in branch.description:
+            continue  # its states at AUTO's places are not known
         index = next((k for k, mark in branch.marks if mark == label), 0)
         named = _parameter_places(branch)
         values = [0.0] * max(named.values())

@@ -19,25 +19,36 @@ FINER = 4  # places between two nodes at which the largest value is looked for
 def measured(problem: CycleMesh, names: Sequence[str], u: np.ndarray, p: float) -> list[float]:
     """Measures of one cycle, in the order of their names."""
     x, period, widths = problem.parts(u, p)
-    ends, r = mesh.closed(x), problem.rule
-    points = np.einsum("cj,ijk->ick", r.values, ends)
-    share = widths[:, None] * r.weights
+    ends = mesh.closed(x)
     result = []
     for name in names:
         if name in problem.flow.own_measures:
             result.append(problem.flow.measure_own(name, problem, u, p))
             continue
         word, j = problem.flow.of_states.get(name, (name, 0))
-        if word == "norm":
-            result.append(float(np.sqrt((share * (points**2).sum(axis=2)).sum())))
-        elif word == "period":
-            result.append(float(period))
-        elif word == "mean":
-            result.append(float((share * points[:, :, j]).sum()))
-        else:
-            sign = 1.0 if word == "max" else -1.0
-            result.append(sign * _largest(r, sign * ends[:, :, j]))
+        result.append(float(period) if word == "period" else of_mesh(problem.rule, ends, widths, word, j))
     return result
+
+
+def of_mesh(rule: Rule, ends: np.ndarray, widths: np.ndarray, word: str, j: int) -> float:
+    """The norm of a cycle, or the largest ("max"), smallest ("min") or mean value of its coordinate j.
+
+    Parameters
+    ----------
+    rule : Rule
+    ends : ndarray, shape (N, m + 1, d)
+        Values at the nodes of the intervals, with both ends.
+    widths : ndarray, shape (N,)
+    word : {"norm", "max", "min", "mean"}
+    j : int
+    """
+    if word in ("norm", "mean"):
+        points, share = np.einsum("cj,ijk->ick", rule.values, ends), widths[:, None] * rule.weights
+        if word == "mean":
+            return float((share * points[:, :, j]).sum())
+        return float(np.sqrt((share * (points**2).sum(axis=2)).sum()))
+    sign = 1.0 if word == "max" else -1.0
+    return sign * _largest(rule, sign * ends[:, :, j])
 
 
 def _largest(rule: Rule, ends: np.ndarray) -> float:

@@ -20,9 +20,10 @@ def default_measure(graph: Graph) -> str:
     Motions without impacts have no velocity B there; where none of the graph has, the largest |w| is shown.
     """
     for branch in graph.branches.values():
-        if branch.problem is None:
+        wanted = branch.default_measure
+        if branch.problem is None and not wanted:
             continue
-        names, wanted = list(branch.problem.measure_names), branch.problem.default_measure
+        names = list(branch.measure_names if branch.problem is None else branch.problem.measure_names)
         if not names:
             continue
         others = [n for n in names if n not in ("norm", graph.parameter)]

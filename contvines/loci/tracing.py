@@ -27,6 +27,7 @@ from ..journal import NullJournal
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
+from ..shared.number_text import number_text
 from .adaptive import AdaptiveLocus
 from .codimension_two import becomes, beginning, vanishing
 from .homoclinic import homoclinic_of
@@ -330,10 +331,7 @@ def _becoming(
         what = "a shorter one, run twice" if met.kind == "period-doubling" else "symmetric"
         end = beginning(problem, points[-1], within)
     p, q, digits = (float(p), q, 7) if end is None else (*end.value, 10)
-    return (
-        f"the motion becomes {what}, at {problem.inner} = {p:.{digits}g}, {problem.over} = {q:.{digits}g}",
-        end,
-    )
+    return f"the motion becomes {what}, at {_place(problem, half, p, q, digits)}", end
 
 
 def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
@@ -342,18 +340,26 @@ def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
     if half.events and half.events[-1][1].role is Role.MEETING:
         met, at = half.events[-1][1], half.events[-1][1].point
         what = "an equilibrium" if met.kind == "hopf" else "a cycle of half the period"
-        return f"the cycle becomes {what}, at {problem.inner} = {problem.split(at.u)[1]:.10g}, {problem.over} = {at.p:.10g}"
+        return f"the cycle becomes {what}, at {_place(problem, half, float(problem.split(at.u)[1]), at.p)}"
     if border is None:
         return half.status.sentence(problem.over, half.end)
-    kind, p, q = problem.margin_kind(border.index), problem.split(border.point.u)[1], border.point.p
+    kind, p, q = problem.margin_kind(border.index), float(problem.split(border.point.u)[1]), border.point.p
     if problem.condition == PERIOD and kind == "homoclinic":
         return (
-            f"a period of {problem.reference:.6g} is too short at {problem.inner} = {p:.6g}, {problem.over} = {q:.6g}: "
+            f"a period of {problem.reference:.6g} is too short at {_place(problem, half, p, q, 6)}: "
             "the cycle comes no nearer to an equilibrium than 3 % of its size; give a longer period="
         )
-    place = f"{problem.inner} = {p:.10g}, {problem.over} = {q:.10g}"
+    place = _place(problem, half, p, q)
     if kind == "end":
         return f"reaches the end of the interval of {problem.inner}, {place}"
     if kind == "resonance":
         return f"the pair of multipliers becomes real at {place}"
     return f"reaches a border ({kind}) at {place}"
+
+
+def _place(problem: LocusProblem, half: HalfBranch, p: float, q: float, digits: int = 10) -> str:
+    """Both parameters; what is rounding beside their largest values along the locus is 0."""
+    points = [half.at(i) for i in range(len(half))]
+    largest = np.abs([(float(problem.split(u)[1]), value) for u, value, *_ in points]).max(axis=0)
+    at = [number_text(value, digits, unit) for value, unit in zip((p, q), largest, strict=True)]
+    return f"{problem.inner} = {at[0]}, {problem.over} = {at[1]}"

@@ -1,0 +1,54 @@
+"""What is measured of flows that were loaded without their functions: x = sqrt(mu) (cos t, sin t), which needs no function."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    flow = cv.FlowProblem(
+        lambda x, p: [
+            p.mu * x[0] - x[1] - x[0] * (x[0] ** 2 + x[1] ** 2),
+            x[0] + p.mu * x[1] - x[1] * (x[0] ** 2 + x[1] ** 2),
+        ],
+        [0.0, 0.0],
+        {"mu": -0.5},
+        states=("x", "y"),
+    )
+    path = tmp_path_factory.mktemp("flow") / "normal.vines"
+    cv.diagram(flow, over="mu", within=(-1, 1)).save(path)
+    return path
+
+
+def test_measures_of_a_loaded_cycle(place):
+    graph = cv.load(place)
+    cycle, rest = graph.branches["B2"], graph.branches["B1"]
+    assert cycle.problem is None
+    radius = np.sqrt(cycle.values)
+    assert cycle.measure("max x") == pytest.approx(radius, abs=1e-6)
+    assert cycle.measure("min y") == pytest.approx(-radius, abs=1e-6)
+    assert cycle.measure("mean x") == pytest.approx(0.0, abs=1e-6)
+    assert cycle.measure("norm") == pytest.approx(radius, abs=1e-6)
+    assert cycle.measure("period") == pytest.approx(2 * np.pi, abs=1e-6)
+    for name in ("x", "max y", "u1", "norm"):
+        assert rest.measure(name) == pytest.approx(0.0, abs=1e-12)
+    with pytest.raises(KeyError, match="loaded without its problem"):
+        cycle.measure("x")
+
+
+def test_a_loaded_graph_is_drawn_as_the_whole_one(place):
+    axes = cv.load(place).plot().axes[0]
+    assert axes.get_ylabel() == "max x"
+    assert max(
+        np.nanmax(line.get_ydata()) for line in axes.lines if len(line.get_ydata()) > 9
+    ) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_files_of_auto_have_no_cycle_whose_flow_is_not_there(place):
+    """A cycle is no equilibrium of as many states as its mesh has unknowns."""
+    cv.load(place).export(place.with_suffix(".auto"))
+    lines = place.with_name("s.normal").read_text().splitlines()
+    heads = [line.split() for line in lines if len(line.split()) == 16 and "E" not in line]
+    assert heads and {int(head[7]) for head in heads} == {3}  # two states and the time
