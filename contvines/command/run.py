@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..graph.graph import Graph
+    from ..store import Store
     from .study_data import Study
 
 SIMULATED = "#2f6f3e"
@@ -235,14 +236,20 @@ def graph_of(
         with Store.attach(target, fingerprint, study.kept(command, target)) as store:
             with working(note, quiet) as progress:
                 graph = run(study, seed, journal=store, progress=progress, **alone)
+            say(f"kept in {target}", quiet)
+            if look:
+                graph = _look(study, store)
             store.tidy()
-        say(f"kept in {target}", quiet)
-    elif graph.looked or not look:
+    elif not look or graph.looked:
         say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
-    return _look(study, target) if look and not graph.looked else graph
+    else:
+        with Store.open(target, write=True) as store:
+            graph = _look(study, store)
+            store.tidy()
+    return graph
 
 
-def _look(study: "Study", target: Path) -> "Graph":
+def _look(study: "Study", store: "Store") -> "Graph":
     """A few simulated starts after a diagram; what they reach beside it is kept in the file.
 
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
@@ -250,20 +257,17 @@ def _look(study: "Study", target: Path) -> "Graph":
     from contvines.coexistence.missing import look
     from contvines.command.compose import population
     from contvines.graph.graph import Graph
-    from contvines.store import Store
 
-    with Store.open(target, write=True) as store:
-        graph = store.graph()
-        assert isinstance(graph, Graph)
-        with interruptible(
-            f"the diagram is kept in {target}; the same command looks again for what it does not have"
-        ):
-            try:
-                look(graph, population(study))
-            except ValueError as error:  # no start lies between the walls: the diagram is whole all the same
-                say(f"what else may settle was not simulated: {error}", quiet=False)
-        store.checkpoint(graph)
-        store.tidy()
+    graph = store.graph()
+    assert isinstance(graph, Graph)
+    with interruptible(
+        f"the diagram is kept in {store.path}; the same command looks again for what it does not have"
+    ):
+        try:
+            look(graph, population(study))
+        except ValueError as error:  # no start lies between the walls: the diagram is whole all the same
+            say(f"what else may settle was not simulated: {error}", quiet=False)
+    store.checkpoint(graph)
     return graph
 
 
