@@ -17,6 +17,12 @@ settings.register_profile("repeatable", settings.get_profile("patient"), derando
 settings.register_profile("search", settings.get_profile("patient"), derandomize=False)
 settings.load_profile("repeatable")
 
+
+def pytest_collection_modifyitems(items):
+    """Long tests begin first: one that begins last leaves all cores but its own without work."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
 if not up_to_date():
     with suppress(NotBuilt):  # the reference core computes then
         build()

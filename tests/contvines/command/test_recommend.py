@@ -220,6 +220,7 @@ def test_without_a_browser_the_answer_is_set_on_two_sheets(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(run, tmp_path, monkeypatch):
     path = written(tmp_path, MODEL + SURVEY)
     kept = [
@@ -246,7 +247,7 @@ def test_the_choice_is_that_of_brute_force_and_interrupted_work_goes_on(run, tmp
     assert simulated == pytest.approx(by, rel=0.01)
     model = read_study(path).model
     for place in (p for p in found.places if p.samples == 1):
-        grid = np.linspace(7.8, 8.2, 81)
+        grid = np.linspace(7.8, 8.2, 41)
         rows = sweep(model.with_(half_width=place.value), "frequency", grid)
         met = max(row.measures["max_abs_q1"] for row in rows)
         assert met <= 1.01 * place.worst or math.isnan(place.worst)

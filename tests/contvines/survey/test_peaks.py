@@ -127,6 +127,7 @@ def test_the_largest_chaotic_response_lies_between_two_values_that_are_as_large(
     assert made["peak"][0] == pytest.approx(largest, rel=0.005)
 
 
+@pytest.mark.long
 def test_a_large_chaotic_motion_beside_a_stable_one_is_followed_to_where_it_is_largest():
     """Two absorbers: a slow sweep downwards from 8.01 Hz meets it, and keeps it for 2000 periods; starts at these frequencies lead to the small
     motion that coexists. Further down it is a transient."""
