@@ -55,9 +55,8 @@ def _converged(
         if ends is not None:
             far, near = estimate(ends[0], ends[1], step), estimate(ends[2], ends[3], 0.5 * step)
             value = (4.0 * near - far) / 3.0
-            with np.errstate(all="ignore"):
-                apart = float(np.abs(np.float64(near - far) / value))
-            if best is None or apart < least:
+            apart = abs((near - far) / value) if value else np.inf
+            if np.isfinite(value) and (best is None or apart < least):
                 best, least = value, apart
             if apart <= NORMAL_FORMS.digits:
                 break
