@@ -93,7 +93,7 @@ class NormalForms:
     Attributes
     ----------
     step : float
-        Distance (in the metric) of points beside a special point, from which derivatives along the branch are taken.
+        Distance (in the metric) of points beside a special point, from which derivatives along the branch are taken; the longest that is tried.
     enough : float
         Relative difference of derivatives from two radii that asks for no other.
     narrowest : float
@@ -103,7 +103,7 @@ class NormalForms:
     unsure : float
         A coefficient whose error exceeds this part of it, or of its natural size, is not known.
     digits : float
-        The same of the coefficients at points of codimension two, from samples.
+        The same of the coefficients at points of codimension two, from samples, and of derivatives along the branch from a step and half of it.
     resonant : float
         Angle between a pair and a strong resonance at which the coefficient no longer decides.
     """
