@@ -63,7 +63,9 @@ class MapPopulation:
         else:
             self._box = np.array(box, dtype=float).reshape(-1, 2)
             if self._box.shape != (problem.node, 2) or not np.all(self._box[:, 0] < self._box[:, 1]):
-                raise ValueError(f"box = {box!r}: give {problem.node} pairs (low, high), one per state")
+                raise ValueError(
+                    f"box = {box!r}: give {problem.node} pairs (low, high) with low < high, one per state"
+                )
         self.size = float(np.ptp(self._box, axis=1).max())
         self.work = 0.0
         """Steps of single points so far, those that solve for cycles included."""

@@ -152,7 +152,9 @@ class FlowPopulation:
             if self._box.shape != (self.node, 2) or not (
                 np.isfinite(self._box).all() and (self._box[:, 0] < self._box[:, 1]).all()
             ):
-                raise ValueError(f"box = {box!r}: give {self.node} pairs (low, high), one per state")
+                raise ValueError(
+                    f"box = {box!r}: give {self.node} pairs (low, high) with low < high, one per state"
+                )
         self.size = np.ptp(self._box, axis=1)
 
     @property

@@ -275,6 +275,11 @@ class FlowProblem:
         )
 
     # ------------------------------------------------------------------ as a seed
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name."""
+        return dict(self.values.values)
+
     def problem(self, parameter: str | None = None) -> Equilibria | CycleMesh:
         """The equilibria as a continuation problem; of a forced flow the cycle on which its start settles.
 

@@ -90,6 +90,12 @@ class UserFunction:
                 hint = f" ({self.name} must not change its argument; let it work on u.copy())"
             elif isinstance(error, TypeError) and "positional argument" in str(error):
                 hint = f" (it is called with {self.called})"
+            elif self.parameters.named and (
+                isinstance(error, TypeError) or getattr(error, "name", None) in self.parameters.values
+            ):
+                hint = (
+                    f" (it is called with {self.called}; parameters have names: p.{self.parameters.varying})"
+                )
             raise NotEvaluable(f"{self.name} raises {type(error).__name__}: {error}{hint}") from error
 
     def __call__(self, u: np.ndarray, p: complex) -> np.ndarray:

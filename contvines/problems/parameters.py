@@ -24,7 +24,8 @@ class Parameters:
         self.__dict__.update(values)
 
     def __getattr__(self, name: str) -> NoReturn:
-        raise AttributeError(f"there is no parameter {name!r}; the problem has {', '.join(self)}")
+        hint = did_you_mean(name, self)
+        raise AttributeError(f"there is no parameter {name!r}{hint}; the problem has {', '.join(self)}")
 
     def __getitem__(self, name: str) -> complex:
         if not isinstance(name, str):

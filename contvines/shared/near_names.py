@@ -9,8 +9,10 @@ from typing import Any, ParamSpec, TypeVar
 
 
 def did_you_mean(given: object, known: Iterable[str]) -> str:
-    """ " (did you mean ...?)" where one of the known names is close, else empty."""
-    close = difflib.get_close_matches(str(given)[:60], [str(name) for name in known], n=1, cutoff=0.6)
+    """ " (did you mean ...?)" where one of the known names is close, or the same but for capitals, else empty."""
+    asked, names = str(given)[:60], [str(name) for name in known]
+    close = [name for name in names if name.lower() == asked.lower()]
+    close = close or difflib.get_close_matches(asked, names, n=1, cutoff=0.6)
     return f" (did you mean {close[0]!r}?)" if close else ""
 
 
