@@ -59,8 +59,11 @@ def animated(
     seconds, rate : float, int
         How long it takes, and pictures a second; see `pictures`.
     """
+    from matplotlib import rc_context
+
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
+        figure.set_layout_engine(None)  # all has its place: with an engine every picture is drawn once more
 
     def draw(frame: int) -> list[Artist]:
         move(frame)
