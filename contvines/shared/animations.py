@@ -62,18 +62,19 @@ def animated(
     from matplotlib import rc_context
 
     figure.draw_without_rendering()
-    with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
-        figure.set_layout_engine(None)  # all has its place: with an engine every picture is drawn once more
 
     def draw(frame: int) -> list[Artist]:
         move(frame)
         return []
 
-    made = _animation_class()(
-        figure, draw, frames=pictures(seconds, rate), interval=1000.0 / rate, blit=False
-    )
-    if path is not None:
-        save_animation(made, path, rate)
+    # all has its place: with a layout engine every picture is drawn once more
+    with rc_context({"figure.constrained_layout.use": False, "figure.autolayout": False}):
+        figure.set_layout_engine(None)
+        made = _animation_class()(
+            figure, draw, frames=pictures(seconds, rate), interval=1000.0 / rate, blit=False
+        )
+        if path is not None:
+            save_animation(made, path, rate)
     return made
 
 
