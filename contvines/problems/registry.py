@@ -193,7 +193,12 @@ def without_problem(label: str, description: Mapping[str, Any] | None = None) ->
         named = bool(description and description.get("factory") and factory(description["factory"]))
     except UnknownFactory as error:
         return f"{label} has no problem attached: {error}"
-    if description is None or named:
+    if description is None:
+        return (
+            f"{label} has no problem attached: make the problem and call graph.attach(problem), or load the file with trust=True (--trust) "
+            "if you trust its maker; functions that cannot be imported by a name (lambdas, those of a script) are not loaded even so"
+        )
+    if named:
         return (
             f"{label} has no problem attached: a function of your own is not imported because a file names it; make the "
             "problem and call graph.attach(problem), or load the file with trust=True (--trust) if you trust its maker"
