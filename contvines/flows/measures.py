@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from . import mesh
+from .collocation import rule as rule_of
 
 if TYPE_CHECKING:
     from .collocation import Rule
@@ -51,12 +53,17 @@ def of_mesh(rule: Rule, ends: np.ndarray, widths: np.ndarray, word: str, j: int)
     return sign * _largest(rule, sign * ends[:, :, j])
 
 
+@cache
+def _between(degree: int) -> np.ndarray:
+    """Matrix from values at the nodes to values at many places in an interval."""
+    return rule_of(degree).interpolation(np.linspace(0.0, 1.0, FINER * degree + 1))
+
+
 def _largest(rule: Rule, ends: np.ndarray) -> float:
     """The largest value of a piecewise polynomial, from a parabola through the largest of many of its values."""
-    places = np.linspace(0.0, 1.0, FINER * rule.degree + 1)
-    values = ends @ rule.interpolation(places).T
+    values = ends @ _between(rule.degree).T
     i, j = np.unravel_index(int(np.argmax(values)), values.shape)
-    j = int(np.clip(j, 1, len(places) - 2))
+    j = min(max(int(j), 1), values.shape[1] - 2)
     left, middle, right = values[i, j - 1 : j + 2]
     bend = left - 2.0 * middle + right
     if not bend < 0.0:

@@ -10,7 +10,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
 from ..graph.measures import default_measure
-from .figures import Size, Style, freeze, is_low, lay_out, new_axes, root, settle, styled, thin_ticks
+from .figures import Size, Style, freeze, is_low, new_axes, root, settle, styled, thin_ticks
 from .insets import Region
 from .legends import draw_legend, hold_legend
 from .picture import Picture
@@ -135,8 +135,7 @@ def draw_diagram(
         axes.set_xlabel(axis_label(x, unit=graph.units.get(x), notation=graph.notation))
     if not axes.get_ylabel():
         axes.set_ylabel(axis_label(y, is_low(axes), graph.units.get(y), notation=graph.notation))
-    lay_out(figure)
-    picture.refine()
+    picture.refine()  # what the layout changes of the axes' size later does not show in it
     if limits[0] is not None and limits[1] is None:
         fit_height(axes)  # once more: curves between stored points are known now
         picture.refine()

@@ -135,15 +135,6 @@ def settle(figure: Figure, passes: int = 1) -> None:
             figure.draw_without_rendering()
 
 
-def lay_out(figure: Figure) -> None:
-    """Give axes their size; what stands in them is not looked at."""
-    engine = figure.get_layout_engine()
-    if engine is None:
-        settle(figure)
-    else:
-        engine.execute(figure)
-
-
 def thin_ticks(*drawn: Axes) -> None:
     """Fewer ticks where their labels would touch; the figure must have been settled."""
     from matplotlib.ticker import MaxNLocator
