@@ -12,6 +12,7 @@ from ..graph.shortening import motion_name, short_word
 from ..graph.table import with_unit
 from ..shared.number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
+from .settings import PLACES
 
 if TYPE_CHECKING:
     from .chart import Chart
@@ -61,9 +62,11 @@ def title(chart: Chart) -> str:
 
 def _figures(chart: Chart) -> list[Callable[[float], str]]:
     """How values of the two parameters are written."""
+    values = [point.value for point in chart.points.values()]
     return [
-        figures_in(within, [point.value[k] for point in chart.points.values()]) for k, within in enumerate(chart.within)
-    ]  # fmt: skip
+        figures_in(within, [value[k] for value in values], PLACES.same * (within[1] - within[0]))
+        for k, within in enumerate(chart.within)
+    ]
 
 
 def _tables(chart: Chart) -> list[Table]:
