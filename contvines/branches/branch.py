@@ -10,12 +10,12 @@ import numpy as np
 
 from ..bifurcation.kinds import BORDERS
 from ..continuation.settings import hinted
-from ..flows.without_rates import MeasuresWithoutRates, measures_without_rates
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
 from .ending import Ending
 
 if TYPE_CHECKING:
+    from ..flows.without_rates import MeasuresWithoutRates
     from ..problems.protocol import BorderPoint, Problem
 
 
@@ -175,8 +175,10 @@ class Branch:
     @property
     def _bare(self) -> MeasuresWithoutRates | None:
         """What is measured of a flow that was loaded without its problem."""
-        if self.problem is not None:
+        if self.problem is not None or "flow" not in self.description:
             return None
+        from ..flows.without_rates import measures_without_rates  # which diagrams of machines do without
+
         return measures_without_rates(self.description, self.points.shape[1])
 
     @property
