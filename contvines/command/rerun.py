@@ -39,11 +39,17 @@ def rerun(
     from contvines.provenance import as_text, provenance
     from contvines.store import Store, load
     from contvines.store.differences import differences, of_chart, of_graph
+    from contvines.store.files import FROM_PYTHON
 
     before = load(file, problems=False)
     refuse_unfinished(before, file)
     with Store.open(file) as store:
         made, fingerprint, kept = store.made, store.fingerprint, store.study or {}
+    if not kept.get("source") and fingerprint == FROM_PYTHON:
+        raise ValueError(
+            f"{file}: this file keeps no study to run again, as it was saved from Python (graph.save): the script that made it computes it anew. "
+            "Files that contvines diagram, atlas and chart write keep theirs; a study may name a flow or a machine in a Python file."
+        )
     study, source = _study(file, kept.get("source"), trust)
     target = place_of(output, file, "-rerun.vines")
     command = source["command"]
@@ -109,7 +115,7 @@ def _study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str, An
 
     if not isinstance(source, dict) or not source.get("text"):
         raise ValueError(
-            f"{file}: this file keeps no study to run again: it was saved from Python, or by a version that kept none; "
+            f"{file}: this file keeps no study to run again: it was saved by a version that kept none, or from something else than a study; "
             f"contvines diagram STUDY.toml -o {file.stem}-again.vines computes the study anew."
         )
     data, place = toml_data(source["text"]), (file.absolute().parent / str(source["study"])).resolve()

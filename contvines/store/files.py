@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result", bound=Resumable)
 
+FROM_PYTHON = "saved from Python"  # instead of the name of a run
+
 
 @hinting
 def save(graph: Graph | Chart, path: str | Path, fingerprint: str | None = None) -> None:
@@ -42,7 +44,7 @@ def save(graph: Graph | Chart, path: str | Path, fingerprint: str | None = None)
         check_header(path)
     draft = draft_of(path)
     try:
-        with Store.create(draft, fingerprint or "saved from Python", graph.model) as store:
+        with Store.create(draft, fingerprint or FROM_PYTHON, graph.model) as store:
             store.checkpoint(graph)
             store.settle()
         for tail in TAILS:

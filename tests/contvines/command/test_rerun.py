@@ -74,7 +74,7 @@ def test_what_differs_is_listed(run, folder):
 def test_files_without_a_study_and_studies_with_code_are_refused(run, folder):
     save(fakes.pitchfork_graph(), "python.vines")
     status, _, err = run("rerun", "python.vines")
-    assert status == 1 and "keeps no study" in err
+    assert status == 1 and "keeps no study" in err and "the script that made it" in err
     assert run("diagram", "s.toml", "-q")[0] == 0
     edited(
         "s.vines",
