@@ -22,6 +22,11 @@ def test_help_lists_every_command(run):
         assert run(name, "--help")[0] == 0
 
 
+def test_the_package_runs_as_a_module():
+    made = subprocess.run([sys.executable, "-m", "contvines", "--help"], capture_output=True, text=True)
+    assert made.returncode == 0 and "Usage: contvines" in made.stdout
+
+
 def test_help_and_version_import_nothing_heavy():
     code = (
         "import sys\nfrom contvines.command.cli import main\n"
