@@ -11,7 +11,7 @@ from contvines.shared.floating_point import EPSILON
 
 from ..core.table import TableKernels
 from ..interrupts import HELD, OPEN
-from ..problems.abilities import Adaptive, Nearing, Rough
+from ..problems.abilities import Adaptive, Moving, Nearing, Rough
 from ..problems.protocol import KernelFunctions, Problem, array_of
 from . import layout
 from .aims import NO_COLUMNS, NOTHING, Aim
@@ -78,7 +78,8 @@ class Engine(Rows):
         self.adaptive = isinstance(problem, Adaptive)
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
-        self.metric = Metric(self.weights, self.scale, 1.0 / n, float(self.weights[n]))
+        self.moving = problem if isinstance(problem, Moving) else None
+        self.metric = Metric(self.weights, self.scale, 1.0 / n, float(self.weights[n]), self.moving)
         self.scratch = Scratch(np.zeros(n), *np.zeros((4, n + 1)))
         self.control = Control(
             settings.angle,
@@ -155,6 +156,14 @@ class Engine(Rows):
         z = np.empty(len(u) + 1)
         z[:-1], z[-1] = u, p
         return z
+
+    def steered(self, point: Solved) -> Solved:
+        """The point, with the direction along which a mesh moves with the solution."""
+        if self.moving is None:
+            return point
+        tangent = point.tangent.copy()
+        self.moving.steer(point.u, tangent)
+        return point._replace(tangent=self.unit(tangent))
 
     # ------------------------------------------------------------------ single points
     def solve(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .settings import SOLUTION
+
+if TYPE_CHECKING:
+    from ..problems.abilities import Moving
 
 # status codes (`contvines.continuation.chunk`)
 RUNNING, LEFT_INTERVAL, STEP_TOO_SMALL, NOT_EVALUABLE, BORDER = 0, 1, 2, 3, 4
@@ -57,13 +60,14 @@ class Metric(NamedTuple):
     """How lengths are measured: <a, b> = sum of weights_j a_j b_j over unknowns and parameter.
 
     ``weights`` and ``scale`` (typical sizes) have shape (N + 1,); ``of_unknowns`` and ``of_parameter`` are the weights of
-    unknowns whose scale is 1, and of the parameter.
+    unknowns whose scale is 1, and of the parameter. ``moving`` is the problem, if its unknowns belong to a mesh that moves along.
     """
 
     weights: np.ndarray
     scale: np.ndarray
     of_unknowns: float
     of_parameter: float
+    moving: Moving | None = None
 
 
 class Points(NamedTuple):

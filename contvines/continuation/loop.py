@@ -99,6 +99,8 @@ def march(kernels, judge, frame, chunk, first, h, control):
             h *= 0.5
             continue
         trouble = 0
+        if metric.moving is not None:
+            metric.moving.steer(u, tangent)
         norm, cosine, error = compare(tangent, tangents[i - 1], u, points[i], p, guess, metric)
         if fixed:
             p = bound

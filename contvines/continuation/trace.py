@@ -90,7 +90,7 @@ def _chunks(
     ):
         yield packed([start], Status.LEFT_INTERVAL)
         return
-    history = [start] if adaptive is None else _anchored(engine, adaptive, [start])
+    history = [start] if adaptive is None else _anchored(engine, adaptive, [engine.steered(start)])
     h = settings.first_step if first_step is None else first_step
     closing, reach = Closing(engine, start), Reach(engine, start)
     total, number = 1, 0
@@ -169,7 +169,7 @@ def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[
         border = engine.weights * tangent
         found = engine.solve(u, last.p, border, float(border @ engine.join(u, last.p)), tangent)
         if image is None or found is not None:
-            return [found or last]
+            return [engine.steered(found or last)]
         image = None
 
 

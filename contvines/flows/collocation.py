@@ -26,6 +26,8 @@ class Rule:
         Gauss points and weights.
     values, slopes : ndarray, shape (m, m + 1)
         From values at the nodes to values and derivatives at the Gauss points.
+    rates : ndarray, shape (m, m + 1)
+        From values at the nodes to derivatives at all nodes but the last.
     barycentric : ndarray, shape (m + 1,)
         Weights of the interpolation formula.
     top : ndarray, shape (m + 1,)
@@ -39,6 +41,7 @@ class Rule:
     weights: np.ndarray
     values: np.ndarray
     slopes: np.ndarray
+    rates: np.ndarray
     barycentric: np.ndarray
     top: np.ndarray
     constant: float
@@ -88,15 +91,15 @@ def rule(degree: int) -> Rule:
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(m + 1) / m)
     points, weights = leggauss(m)
     points, weights = 0.5 + 0.5 * points, 0.5 * weights
-    values, slopes, top = np.empty((m, m + 1)), np.empty((m, m + 1)), np.empty(m + 1)
-    barycentric = np.empty(m + 1)
+    values, slopes, rates = np.empty((3, m, m + 1))
+    barycentric, top = np.empty((2, m + 1))
     for j in range(m + 1):
         others = np.delete(nodes, j)
         barycentric[j] = 1.0 / np.prod(nodes[j] - others)
         basis = Polynomial.fromroots(others) * barycentric[j]
-        values[:, j], slopes[:, j] = basis(points), basis.deriv()(points)
+        values[:, j], slopes[:, j], rates[:, j] = basis(points), basis.deriv()(points), basis.deriv()(nodes[:-1])
         top[j] = factorial(m) * barycentric[j]
     # the error of Gauss collocation begins with the integral of the polynomial that vanishes at the Gauss points
     kernel = Polynomial.fromroots(points).integ()
     constant = float(np.abs(kernel(np.linspace(0.0, 1.0, 401)) - kernel(0.0)).max()) / factorial(m)
-    return Rule(nodes, points, weights, values, slopes, barycentric, top, constant)
+    return Rule(nodes, points, weights, values, slopes, rates, barycentric, top, constant)

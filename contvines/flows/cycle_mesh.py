@@ -11,6 +11,7 @@ from contvines.shared.floating_point import TINY
 
 from . import mesh
 from .cycle_unknowns import CycleUnknowns
+from .moving_mesh import steered
 
 MOST = 1280  # intervals
 ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
@@ -26,6 +27,18 @@ class CycleMesh(CycleUnknowns):
         """Estimated largest error of the curve between the mesh points, in units of the size of the cycle."""
         x, widths = self._curve(u)
         return mesh.error(self.rule, widths, x, self._sizes(x))
+
+    def steer(self, u: np.ndarray, tangent: np.ndarray) -> None:
+        """Let the mesh move along with the curve, and keep the phase; see :mod:`contvines.flows.moving_mesh`."""
+        x, widths = self._curve(u)
+        dx, dw, slopes = steered(
+            self.rule, widths, x, tangent[: self.states].reshape(x.shape), self.node_scale, copies=self.copies, pinned=not self.free_period
+        )
+        if self.reference is not None:
+            row = self.reference[0].reshape(x.shape) / self.node_scale
+            dx = dx - (row * dx).sum() / (row * slopes).sum() * slopes
+        tangent[: self.states] = dx.reshape(-1)
+        tangent[self.held] += dw
 
     def _curve(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         x = u[: self.states].reshape(self.intervals, self.rule.degree, self.node)

@@ -48,6 +48,8 @@ class CycleUnknowns(Parametrised, ProblemDefaults, ABC):
     kernels = KERNELS
     trouble = ""
     scales_learned = True
+    reference: tuple[np.ndarray, np.ndarray] | None = None
+    """Row of the phase condition that is kept, and the nodes that fulfil it, in units of the scale."""
 
     def __init__(
         self,
@@ -69,6 +71,7 @@ class CycleUnknowns(Parametrised, ProblemDefaults, ABC):
         self.dimension = self.states + self.free_period + self.intervals
         pattern = field.sparsity
         self.sparse = None if pattern is None else SparseEquations(pattern, self.rule, self.intervals)
+        self.held = slice(self.states + self.free_period, self.dimension)  # widths
         self.n_multipliers = self.node - self.free_period
         if self.sparse is not None:  # the largest ones alone
             self.kernels, self.n_multipliers = SPARSE, min(LEADING, self.n_multipliers)

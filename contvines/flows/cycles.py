@@ -56,6 +56,8 @@ class CycleProblem(CycleRelatives):
         x, period, widths = self.parts(u, p)
         if not period > 0.0:
             raise NotEvaluable(f"the period would be {period:.3g}")
+        if not widths.min() > 0.0:
+            raise NotEvaluable("mesh points would overtake one another")
         if work.core is not None and work.rates is not None:
             f, jacobian = work.rates.f, work.rates.jacobian
             size = work.core.evaluate(work.rates, self.field.values, x, widths, period, p)
@@ -135,9 +137,6 @@ class CycleProblem(CycleRelatives):
         size = float(np.sqrt((phase**2).sum()))
         work.phase[:] = (phase / (size or 1.0)).reshape(count, m * d)
         return size
-
-    reference: tuple[np.ndarray, np.ndarray] | None = None
-    """Row of the phase condition that is kept, and the nodes that fulfil it, in units of the scale."""
 
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
         """Keep the phase of a cycle for those that follow; None: corrections alone are orthogonal to the motion.

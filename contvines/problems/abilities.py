@@ -222,6 +222,19 @@ class EndsOnMesh(Protocol):
 
 
 @runtime_checkable
+class Moving(Protocol):
+    """Its unknowns belong to a mesh that moves along while a branch is followed.
+
+    ``held`` are those unknowns that no equation determines: corrections leave them as they are. ``steer(u, tangent)`` chooses, in place, of all directions
+    that change the solution alike the one that changes the other unknowns least.
+    """
+
+    held: slice
+
+    def steer(self, u: np.ndarray, tangent: np.ndarray) -> None: ...
+
+
+@runtime_checkable
 class Adaptive(Protocol):
     """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
 

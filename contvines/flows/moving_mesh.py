@@ -1,0 +1,79 @@
+"""Meshes that move along with a cycle: of all directions that change a curve alike, the one along which its nodes move least.
+
+Where fast parts of a cycle come earlier or later as a parameter changes, values at places that stand still change by the whole height of a jump, although
+the curve hardly changes at all. To first order a direction (dx, dw) of nodes and widths changes the curve as (dx + x' xi, dw + xi_(i+1) - xi_i) does,
+for any displacements xi of the mesh points in time, linear in between. Those are taken that make the sum of the squares of what nodes move, and of
+relative changes of widths, least: a system with three entries in a row, closed to a ring.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg.lapack import dptsv
+
+from . import mesh
+
+if TYPE_CHECKING:
+    from .collocation import Rule
+
+STIFFNESS = 30.0  # what a relative change of a width counts, beside a move of the nodes by the scale: less, and meshes lose their shares of the error
+FEWEST = 3  # intervals of a ring
+
+
+def steered(
+    rule: Rule,
+    widths: np.ndarray,
+    x: np.ndarray,
+    dx: np.ndarray,
+    scale: np.ndarray,
+    *,
+    copies: int = 1,
+    pinned: bool = False,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A direction of nodes and widths that changes a curve as a direction of nodes alone does, and slopes of the curve.
+
+    Parameters
+    ----------
+    rule : Rule
+    widths : ndarray, shape (N,)
+    x, dx : ndarray, shape (N, m, d)
+        The curve, and how it changes where the mesh stands still.
+    scale : ndarray, shape (d,)
+    copies : int
+        The mesh consists of so many equal parts, one after the other, and goes on to do so.
+    pinned : bool
+        The first mesh point stays where it is, as where time is given.
+
+    Returns
+    -------
+    dx, dw, slopes : ndarray, shapes (N, m, d), (N,), (N, m, d)
+    """
+    count, m, d = x.shape
+    slopes = np.matmul(rule.rates, mesh.closed(x)) / widths[:, None, None]
+    n = count // copies
+    if n < FEWEST:
+        return dx, np.zeros(count), slopes
+    scaled, after = slopes / scale, rule.nodes[:-1]
+    squares, products = (scaled**2).sum(axis=2), (scaled * (dx / scale)).sum(axis=2)
+    # by the displacements of the left and of the right mesh point of each interval
+    weights = np.stack([(1.0 - after) ** 2, after * (1.0 - after), after**2], axis=1)
+    sums = np.column_stack([squares @ weights, products @ (1.0 - after), products @ after])
+    left, both, right, here, there = sums.reshape(copies, n, 5).sum(axis=0).T
+    stiff = STIFFNESS * m * d * (widths.reshape(copies, n) ** -2.0).sum(axis=0)
+    diagonal = left + stiff + np.roll(right + stiff, 1)
+    beside, wanted = both - stiff, -here - np.roll(there, 1)
+    # the first mesh point last: everything but it is solved for, with it and without
+    sides = np.zeros((n - 1, 2))
+    sides[:, 0], sides[0, 1], sides[-1, 1] = wanted[1:], -beside[0], -beside[-1]
+    found, failed = dptsv(diagonal[1:], beside[1:-1], sides)[2:]
+    if failed:
+        return dx, np.zeros(count), slopes
+    first = 0.0
+    if not pinned:
+        ends = beside[0] * found[0] + beside[-1] * found[-1]
+        first = (wanted[0] - ends[0]) / (diagonal[0] + ends[1])
+    xi = np.tile(np.append(first, found[:, 0] + first * found[:, 1]), copies)
+    dw = np.roll(xi, -1) - xi
+    return dx + slopes * (xi[:, None] + after * dw[:, None])[:, :, None], dw, slopes
