@@ -18,7 +18,7 @@ from . import mesh
 if TYPE_CHECKING:
     from .collocation import Rule
 
-STIFFNESS = 30.0  # what a relative change of a width counts, beside a move of the nodes by the scale: less, and meshes lose their shares of the error
+STIFFNESS = 0.3  # what a relative change of a width counts, beside a move of the nodes by the scale: less, and meshes lose their shares of the error
 FEWEST = 3  # intervals of a ring
 
 
@@ -56,12 +56,13 @@ def steered(
     if n < FEWEST:
         return dx, np.zeros(count), slopes
     scaled, after = slopes / scale, rule.nodes[:-1]
-    squares, products = (scaled**2).sum(axis=2), (scaled * (dx / scale)).sum(axis=2)
+    squares, products = (scaled**2).sum(axis=2), (scaled * (_shape(x, dx) / scale)).sum(axis=2)
     # by the displacements of the left and of the right mesh point of each interval
     weights = np.stack([(1.0 - after) ** 2, after * (1.0 - after), after**2], axis=1)
     sums = np.column_stack([squares @ weights, products @ (1.0 - after), products @ after])
     left, both, right, here, there = sums.reshape(copies, n, 5).sum(axis=0).T
-    stiff = STIFFNESS * m * d * (widths.reshape(copies, n) ** -2.0).sum(axis=0)
+    size = float(np.ptp((x / scale).reshape(-1, d), axis=0).max())
+    stiff = STIFFNESS * size**2 * m * d * count * (1.0 / widths.reshape(copies, n)).sum(axis=0)
     diagonal = left + stiff + np.roll(right + stiff, 1)
     beside, wanted = both - stiff, -here - np.roll(there, 1)
     # the first mesh point last: everything but it is solved for, with it and without
@@ -77,3 +78,14 @@ def steered(
     xi = np.tile(np.append(first, found[:, 0] + first * found[:, 1]), copies)
     dw = np.roll(xi, -1) - xi
     return dx + slopes * (xi[:, None] + after * dw[:, None])[:, :, None], dw, slopes
+
+
+def _shape(x: np.ndarray, dx: np.ndarray) -> np.ndarray:
+    """What is left of a direction without what moves, and stretches, the whole range of each coordinate."""
+    flat, change = x.reshape(-1, x.shape[2]), dx.reshape(-1, x.shape[2])
+    places = np.arange(x.shape[2])
+    lowest, highest = flat.argmin(axis=0), flat.argmax(axis=0)
+    low, high = change[lowest, places], change[highest, places]
+    ranges = flat[highest, places] - flat[lowest, places]
+    stretch = np.divide(high - low, ranges, out=np.zeros(len(ranges)), where=ranges > 0.0)
+    return dx - low - stretch * (x - flat[lowest, places])
