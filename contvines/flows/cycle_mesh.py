@@ -31,13 +31,14 @@ class CycleMesh(CycleUnknowns):
     def steer(self, u: np.ndarray, tangent: np.ndarray) -> None:
         """Let the mesh move along with the curve, and keep the phase; see :mod:`contvines.flows.moving_mesh`."""
         x, widths = self._curve(u)
+        dx = tangent[: self.states].reshape(x.shape) / self.node_scale
         dx, dw, slopes = steered(
-            self.rule, widths, x, tangent[: self.states].reshape(x.shape), self.node_scale, copies=self.copies, pinned=not self.free_period
+            self.rule, widths, x / self.node_scale, dx, copies=self.copies, pinned=not self.free_period
         )
         if self.reference is not None:
-            row = self.reference[0].reshape(x.shape) / self.node_scale
+            row = self.reference[0].reshape(x.shape)
             dx = dx - (row * dx).sum() / (row * slopes).sum() * slopes
-        tangent[: self.states] = dx.reshape(-1)
+        tangent[: self.states] = (dx * self.node_scale).reshape(-1)
         tangent[self.held] += dw
 
     def _curve(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -131,4 +132,4 @@ class CycleMesh(CycleUnknowns):
         ]
         finer = np.concatenate(both, axis=1).reshape(-1)
         rest = u[self.states : self.states + self.free_period]
-        return np.concatenate([finer, rest, np.repeat(0.0 * widths if direction else 0.5 * widths, 2)])
+        return np.concatenate([finer, rest, np.repeat(0.5 * widths, 2)])

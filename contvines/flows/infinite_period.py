@@ -147,7 +147,7 @@ def _saddles(
     speeds: np.ndarray,
     widths: np.ndarray,
 ) -> tuple[Saddle, ...]:
-    """The equilibria with stable and unstable directions beside which the cycle stays longer and longer, in order along it."""
+    """The equilibria with stable and unstable directions beside which the cycle stays longer and longer, in order along it, the one with the largest share first."""
     delays, sizes = _delays(problem, point, x, rates, widths), np.ptp(x, axis=0)
     least = np.flatnonzero((speeds <= np.roll(speeds, 1)) & (speeds < np.roll(speeds, -1)))
     slowest = int(np.argmin(speeds))
@@ -169,7 +169,8 @@ def _saddles(
                 found[same[0]] = Saddle(place, values, share)
         elif share > SHARE or k == slowest:
             found.append(Saddle(place, values, share))
-    return tuple(found)
+    longest = max(range(len(found)), key=lambda i: found[i].share, default=0)
+    return tuple(found[longest:] + found[:longest])
 
 
 def _delays(

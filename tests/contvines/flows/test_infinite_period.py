@@ -51,7 +51,8 @@ def test_a_heteroclinic_cycle_of_a_predator_and_a_prey_with_an_allee_effect():
     places = sorted(saddle.place.tolist() for saddle in limit.saddles)
     assert np.allclose(places, [[0.1, 0.0], [1.0, 0.0]], atol=1e-6)
     assert sum(saddle.share for saddle in limit.saddles) == pytest.approx(1.0, abs=1e-3)
-    assert end.note.startswith("heteroclinic cycle of the saddle at (1, 0) with eigenvalues -0.9,")
+    # beside the threshold it stays longer: motions leave it at the rate 0.09, the capacity at 0.46
+    assert end.note.startswith("heteroclinic cycle of the saddle at (0.1, 0) with eigenvalues -0.3006, 0.09 ")
 
 
 def test_two_coupled_oscillators_whose_common_rotation_stands_still():

@@ -1,0 +1,75 @@
+"""Meshes that move along: the same curve, nodes that stay where the motion is; cycles whose jumps move."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.flows import mesh
+from contvines.flows.collocation import rule
+from contvines.flows.moving_mesh import steered
+
+RULE = rule(4)
+PLACES = np.linspace(0.0, 1.0, 701)[:-1]
+
+
+def curve(t: np.ndarray, shift: np.ndarray | float = 0.0, height: float = 1.0) -> np.ndarray:
+    """Two jumps in a period, at moments that may be shifted."""
+    s = 2.0 * np.pi * (t - shift)
+    return np.column_stack([height * np.tanh(6.0 * np.sin(s)), np.cos(s)])
+
+
+def on_mesh(widths: np.ndarray, values: np.ndarray) -> np.ndarray:
+    return values.reshape(len(widths), RULE.degree, 2)
+
+
+@pytest.mark.parametrize("copies", [1, 2])
+@pytest.mark.parametrize("pinned", [False, True])
+def test_the_curve_changes_as_it_would_where_the_mesh_stands_still(copies, pinned):
+    part = 1.0 + 0.3 * np.sin(np.arange(80.0 / copies))
+    widths = np.tile(part, copies) / (copies * part.sum())
+    places = mesh.node_places(RULE, widths)
+    x = on_mesh(widths, curve(places))
+    # d/ds of curve(t, s / 10 sin(4 pi t)): where it stands, jumps come earlier and later
+    exact = (curve(places, 1e-6 * np.sin(4.0 * np.pi * places)) - curve(places)) / 1e-5
+    dx, dw, _ = steered(RULE, widths, x, on_mesh(widths, exact), copies=copies, pinned=pinned)
+    assert dw.sum() == pytest.approx(0.0, abs=1e-12)
+    assert np.allclose(dw.reshape(copies, -1), dw.reshape(copies, -1)[0])
+    step = 1e-5
+    moved = mesh.evaluate(RULE, widths + step * dw, x + step * dx, PLACES)
+    still = mesh.evaluate(RULE, widths, x + step * on_mesh(widths, exact), PLACES)
+    # the origin of time may be shifted, unless it is pinned
+    rates = (curve(PLACES + 1e-6) - curve(PLACES - 1e-6)) / 2e-6
+    gap = moved - still
+    if not pinned:
+        gap -= rates * (rates * gap).sum() / (rates**2).sum()
+    assert np.abs(gap).max() < 0.02 * step * np.abs(exact).max()
+
+
+def test_nodes_go_with_a_jump_and_stay_where_the_whole_range_grows():
+    widths = np.full(80, 1.0 / 80)
+    places = mesh.node_places(RULE, widths)
+    x = on_mesh(widths, curve(places))
+    shifted = on_mesh(widths, (curve(places, 1e-6) - curve(places, -1e-6)) / 2e-6)
+    dx, dw, _ = steered(RULE, widths, x, shifted)
+    assert np.abs(dx).max() < 0.01 * np.abs(shifted).max() and np.abs(dw / widths).max() < 0.01
+    grown = on_mesh(widths, curve(places, height=2.0) - curve(places))
+    dx, dw, _ = steered(RULE, widths, x, grown)
+    assert np.allclose(dx, grown, atol=1e-9) and np.abs(dw / widths).max() < 1e-9
+
+
+@pytest.mark.slow
+def test_a_canard_is_passed_from_one_hopf_point_to_the_growing_relaxation_oscillations():
+    """Van der Pol with constant forcing, epsilon = 0.01: Hopf point at a = 1, then a canard explosion near 1 - eps / 8 - 3 eps^2 / 32
+
+    (Krupa and Szmolyan, SIAM J. Math. Anal. 33 (2001) 286: 1 - eps / 8; the next term by Zvonkin and Shubin 1984), to which the branch is upright.
+    """
+    flow = cv.FlowProblem(
+        lambda x, p: [(x[1] - x[0] ** 3 / 3 + x[0]) / 0.01, p.a - x[0]], [1.2, -0.6], {"a": 1.2}
+    )
+    graph = cv.diagram(flow, over="a", within=(0.0, 1.2), progress=False)
+    (hopf,) = graph.of_kind("hopf")
+    assert hopf.value == pytest.approx(1.0, abs=1e-9)
+    cycles = graph["B2"]
+    where = np.interp(1.0, cycles.measure("max x0") - 1.0, cycles.values)
+    assert where == pytest.approx(1.0 - 0.01 / 8.0 - 3.0 / 32.0 * 1e-4, abs=2e-6)
+    assert cycles.values.min() == 0.0 and len(cycles) < 400
