@@ -3,6 +3,7 @@
 #include "collocation.hpp"
 #include "coupled_cycles.hpp"
 #include "loci.hpp"
+#include "moving_mesh.hpp"
 #include "math.hpp"
 #include "record.hpp"
 #include "march.hpp"
@@ -98,4 +99,5 @@ EXPORT whole core_collocation_room(whole count, whole inner, whole d, whole k, w
 EXPORT double core_cycle_distance_to_rest(const collocation::Cycle* cycle, const double* f, const double* jacobian) {
     return collocation::distance_to_rest(*cycle, f, jacobian);
 }
+EXPORT void core_cycle_steer(const moving_mesh::Ring* ring, const double* u, const double* row, double* tangent) { moving_mesh::steer(*ring, u, row, tangent); }
 EXPORT double core_cycle_across(const collocation::Cycle* cycle, const double* speeds, double* maps) { return collocation::across(*cycle, speeds, maps); }

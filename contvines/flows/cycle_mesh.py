@@ -11,7 +11,6 @@ from contvines.shared.floating_point import TINY
 
 from . import mesh
 from .cycle_unknowns import CycleUnknowns
-from .moving_mesh import steered
 
 MOST = 1280  # intervals
 ENOUGH = 320  # intervals from which on it is not the mesh that makes Newton's method fail
@@ -30,16 +29,7 @@ class CycleMesh(CycleUnknowns):
 
     def steer(self, u: np.ndarray, tangent: np.ndarray) -> None:
         """Let the mesh move along with the curve, and keep the phase; see :mod:`contvines.flows.moving_mesh`."""
-        x, widths = self._curve(u)
-        dx = tangent[: self.states].reshape(x.shape) / self.node_scale
-        dx, dw, slopes = steered(
-            self.rule, widths, x / self.node_scale, dx, copies=self.copies, pinned=not self.free_period
-        )
-        if self.reference is not None:
-            row = self.reference[0].reshape(x.shape)
-            dx = dx - (row * dx).sum() / (row * slopes).sum() * slopes
-        tangent[: self.states] = (dx * self.node_scale).reshape(-1)
-        tangent[self.held] += dw
+        self.moving.steer(u, tangent, None if self.reference is None else self.reference[0].reshape(-1))
 
     def _curve(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         x = u[: self.states].reshape(self.intervals, self.rule.degree, self.node)

@@ -9,73 +9,106 @@ mesh point shares terms with its neighbours only: a system with three entries in
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-from scipy.linalg.lapack import dptsv
 
+from ..core.library import NOTHING, POINTER, function, native
+from ..core.records import pack, place
 from . import mesh
-
-if TYPE_CHECKING:
-    from .collocation import Rule
+from .collocation import Rule
 
 STIFFNESS = 0.3  # with less, meshes lose their shares of the error; with more, they stand still
 FEWEST = 3  # intervals of a ring
 
 
-def steered(
-    rule: Rule,
-    widths: np.ndarray,
-    x: np.ndarray,
-    dx: np.ndarray,
-    *,
-    copies: int = 1,
-    pinned: bool = False,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A direction of nodes and widths that changes a curve as a direction of nodes alone does, and slopes of the curve.
+class MovingMesh:
+    """What steers a direction of the unknowns of cycles: nodes (N, m, d), the period where it is unknown, widths (N,), and the parameter.
 
     Parameters
     ----------
     rule : Rule
-    widths : ndarray, shape (N,)
-    x, dx : ndarray, shape (N, m, d)
-        The curve, and how it changes where the mesh stands still, in units of the scale.
+    count : int
+        Intervals, N.
+    free : int
+        1 where the period is an unknown; else the first mesh point stays where it is, as time is given.
     copies : int
         The mesh consists of so many equal parts, one after the other, and goes on to do so.
-    pinned : bool
-        The first mesh point stays where it is, as where time is given.
-
-    Returns
-    -------
-    dx, dw, slopes : ndarray, shapes (N, m, d), (N,), (N, m, d)
+    scale : ndarray, shape (d,)
     """
-    count, m, d = x.shape
-    n, inside = count // copies, rule.nodes[:-1]
-    slopes = np.matmul(rule.rates, mesh.closed(x)) / widths[:, None, None]
-    if n < FEWEST:
-        return dx, np.zeros(count), slopes
-    squares, products = (slopes**2).sum(axis=2), (slopes * _of_shape(x, dx)).sum(axis=2)
-    # by the displacements of the left and of the right mesh point of each interval
-    weights = np.stack([(1.0 - inside) ** 2, inside * (1.0 - inside), inside**2], axis=1)
-    sums = np.column_stack([squares @ weights, products @ (1.0 - inside), products @ inside])
-    left, both, right, here, there = sums.reshape(copies, n, 5).sum(axis=0).T
-    size = float(np.ptp(x.reshape(-1, d), axis=0).max())
-    stiff = STIFFNESS * size**2 * count * m * d * (1.0 / widths.reshape(copies, n)).sum(axis=0)
-    diagonal = left + stiff + np.roll(right + stiff, 1)
-    beside, wanted = both - stiff, -here - np.roll(there, 1)
-    # the others in terms of the first mesh point, which closes the ring
-    sides = np.zeros((n - 1, 2))
-    sides[:, 0], sides[0, 1], sides[-1, 1] = wanted[1:], -beside[0], -beside[-1]
-    found, failed = dptsv(diagonal[1:], beside[1:-1], sides)[2:]
-    if failed:
-        return dx, np.zeros(count), slopes
-    first = 0.0
-    if not pinned:
-        ends = beside[0] * found[0] + beside[-1] * found[-1]
-        first = (wanted[0] - ends[0]) / (diagonal[0] + ends[1])
-    xi = np.tile(np.append(first, found[:, 0] + first * found[:, 1]), copies)
-    dw = np.roll(xi, -1) - xi
-    return dx + slopes * (xi[:, None] + inside * dw[:, None])[:, :, None], dw, slopes
+
+    def __init__(self, rule: Rule, count: int, free: int, copies: int, scale: np.ndarray) -> None:
+        self.rule, self.count, self.free, self.copies = rule, count, free, copies
+        self.scale = np.array(scale, dtype=float)
+        self.states = count * rule.degree * len(scale)
+        self.record = None
+        if native():
+            self.room = np.empty(self.states + 9 * count + 3 * len(scale))
+            sizes = count, rule.degree, len(scale), free, copies
+            self.record = pack(*sizes, rule.rates, rule.nodes, self.scale, STIFFNESS, self.room)
+            self._steer = function("core_cycle_steer", NOTHING, *[POINTER] * 4)
+
+    def steer(self, u: np.ndarray, tangent: np.ndarray, row: np.ndarray | None = None) -> None:
+        """Change a direction in place.
+
+        Parameters
+        ----------
+        u : ndarray, shape (unknowns,)
+        tangent : ndarray, shape (unknowns + 1,)
+        row : ndarray, shape (N m d,), optional
+            Row of the phase condition, in units of the scale: the direction of the nodes becomes orthogonal to it.
+        """
+        if self.count // self.copies < FEWEST:
+            return
+        if self.record is not None:
+            u = np.ascontiguousarray(u)
+            phase = None if row is None else place(row)
+            self._steer(place(self.record), place(u), phase, place(tangent))
+            return
+        n, widths = self.states, u[self.states + self.free :]
+        x = u[:n].reshape(self.count, self.rule.degree, -1) / self.scale
+        dx, slopes = tangent[:n].reshape(x.shape) / self.scale, self._slopes(x, widths)
+        xi = self._displacements(x, dx, slopes, widths)
+        dw = np.roll(xi, -1) - xi
+        dx += slopes * (xi[:, None] + self.rule.nodes[:-1] * dw[:, None])[:, :, None]
+        if row is not None:
+            phase = row.reshape(x.shape)
+            dx -= (phase * dx).sum() / (phase * slopes).sum() * slopes
+        tangent[:n] = (dx * self.scale).reshape(-1)
+        tangent[n + self.free : -1] += dw
+
+    def _slopes(self, x: np.ndarray, widths: np.ndarray) -> np.ndarray:
+        return np.matmul(self.rule.rates, mesh.closed(x)) / widths[:, None, None]
+
+    def _displacements(
+        self, x: np.ndarray, dx: np.ndarray, slopes: np.ndarray, widths: np.ndarray
+    ) -> np.ndarray:
+        """Displacements of the mesh points in time, shape (N,)."""
+        from scipy.linalg import solveh_banded
+
+        count, m, d = x.shape
+        n, inside = count // self.copies, self.rule.nodes[:-1]
+        squares, products = (slopes**2).sum(axis=2), (slopes * _of_shape(x, dx)).sum(axis=2)
+        # by the displacements of the left and of the right mesh point of each interval
+        weights = np.stack([(1.0 - inside) ** 2, inside * (1.0 - inside), inside**2], axis=1)
+        sums = np.column_stack([squares @ weights, products @ (1.0 - inside), products @ inside])
+        left, both, right, here, there = sums.reshape(self.copies, n, 5).sum(axis=0).T
+        size = float(np.ptp(x.reshape(-1, d), axis=0).max())
+        stiff = STIFFNESS * size**2 * count * m * d * (1.0 / widths.reshape(self.copies, n)).sum(axis=0)
+        diagonal = left + stiff + np.roll(right + stiff, 1)
+        beside, wanted = both - stiff, -here - np.roll(there, 1)
+        # the others in terms of the first mesh point, which closes the ring
+        sides = np.zeros((n - 1, 2))
+        sides[:, 0] = wanted[1:]
+        sides[0, 1] -= beside[0]
+        sides[-1, 1] -= beside[-1]
+        try:
+            found = solveh_banded(np.stack([diagonal[1:], np.append(beside[1:-1], 0.0)]), sides, lower=True)
+        except (np.linalg.LinAlgError, ValueError):  # nothing moves, or nothing is finite
+            return np.zeros(count)
+        first = 0.0
+        if self.free:
+            ends = beside[0] * found[0] + beside[-1] * found[-1]
+            first = (wanted[0] - ends[0]) / (diagonal[0] + ends[1])
+        return np.tile(np.append(first, found[:, 0] + first * found[:, 1]), self.copies)
 
 
 def _of_shape(x: np.ndarray, dx: np.ndarray) -> np.ndarray:

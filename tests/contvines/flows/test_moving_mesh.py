@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from contvines.flows import mesh
 from contvines.flows.collocation import rule
-from contvines.flows.moving_mesh import steered
+from contvines.flows.moving_mesh import MovingMesh
 
 RULE = rule(4)
 PLACES = np.linspace(0.0, 1.0, 701)[:-1]
@@ -16,6 +16,21 @@ def curve(t: np.ndarray, shift: np.ndarray | float = 0.0, height: float = 1.0) -
     """Two jumps in a period, at moments that may be shifted."""
     s = 2.0 * np.pi * (t - shift)
     return np.column_stack([height * np.tanh(6.0 * np.sin(s)), np.cos(s)])
+
+
+def steered(widths, x, dx, copies=1, pinned=False):
+    """Both cores: nodes and widths of the direction, at a scale of 2 and 0.5."""
+    scale, found = np.array([2.0, 0.5]), []
+    for compiled in (True, False):
+        moving = MovingMesh(RULE, len(widths), 1 - pinned, copies, scale)
+        if not compiled:
+            moving.record = None
+        period = np.ones(moving.free)
+        tangent = np.concatenate([dx.reshape(-1), 0.0 * period, 0.0 * widths, [0.0]])
+        moving.steer(np.concatenate([x.reshape(-1), period, widths]), tangent)
+        found.append(tangent)
+    assert np.allclose(*found, rtol=1e-9, atol=1e-10 * np.abs(found[0]).max())
+    return found[0][: x.size].reshape(x.shape), found[0][x.size + moving.free : -1]
 
 
 def on_mesh(widths: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -31,7 +46,7 @@ def test_the_curve_changes_as_it_would_where_the_mesh_stands_still(copies, pinne
     x = on_mesh(widths, curve(places))
     # d/ds of curve(t, s / 10 sin(4 pi t)): where it stands, jumps come earlier and later
     exact = (curve(places, 1e-6 * np.sin(4.0 * np.pi * places)) - curve(places)) / 1e-5
-    dx, dw, _ = steered(RULE, widths, x, on_mesh(widths, exact), copies=copies, pinned=pinned)
+    dx, dw = steered(widths, x, on_mesh(widths, exact), copies=copies, pinned=pinned)
     assert dw.sum() == pytest.approx(0.0, abs=1e-12)
     assert np.allclose(dw.reshape(copies, -1), dw.reshape(copies, -1)[0])
     step = 1e-5
@@ -50,10 +65,10 @@ def test_nodes_go_with_a_jump_and_stay_where_the_whole_range_grows():
     places = mesh.node_places(RULE, widths)
     x = on_mesh(widths, curve(places))
     shifted = on_mesh(widths, (curve(places, 1e-6) - curve(places, -1e-6)) / 2e-6)
-    dx, dw, _ = steered(RULE, widths, x, shifted)
+    dx, dw = steered(widths, x, shifted)
     assert np.abs(dx).max() < 0.01 * np.abs(shifted).max() and np.abs(dw / widths).max() < 0.01
     grown = on_mesh(widths, curve(places, height=2.0) - curve(places))
-    dx, dw, _ = steered(RULE, widths, x, grown)
+    dx, dw = steered(widths, x, grown)
     assert np.allclose(dx, grown, atol=1e-9) and np.abs(dw / widths).max() < 1e-9
 
 
