@@ -7,7 +7,7 @@ import numpy as np
 from .collocation import Rule
 
 EVEN = 0.3  # part of the mean by which the function to be equidistributed is raised, so that intervals do not differ too much
-SLACK = 1.2  # largest over mean share of the error at which a mesh stays as it is
+SLACK = 1.1  # largest over mean share of the error at which a mesh stays as it is
 
 
 def closed(x: np.ndarray, sign: float = 1.0) -> np.ndarray:
