@@ -138,7 +138,9 @@ def extrapolate(
             if metric.moving is not None:
                 # nothing corrects these: their errors grow by the formula above, and do not by that of Adams and Bashforth
                 held = metric.moving.held
-                u[held] = point[held] + h * ((1.0 + 0.5 * share) * here[:-1][held] - 0.5 * share * there[:-1][held])
+                u[held] = point[held] + h * (
+                    (1.0 + 0.5 * share) * here[:-1][held] - 0.5 * share * there[:-1][held]
+                )
             return value - c * change + float(way[-1])
     np.add(point, h * here[:-1], out=u)
     return value + h * float(here[-1])

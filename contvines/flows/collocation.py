@@ -97,7 +97,11 @@ def rule(degree: int) -> Rule:
         others = np.delete(nodes, j)
         barycentric[j] = 1.0 / np.prod(nodes[j] - others)
         basis = Polynomial.fromroots(others) * barycentric[j]
-        values[:, j], slopes[:, j], rates[:, j] = basis(points), basis.deriv()(points), basis.deriv()(nodes[:-1])
+        values[:, j], slopes[:, j], rates[:, j] = (
+            basis(points),
+            basis.deriv()(points),
+            basis.deriv()(nodes[:-1]),
+        )
         top[j] = factorial(m) * barycentric[j]
     # the error of Gauss collocation begins with the integral of the polynomial that vanishes at the Gauss points
     kernel = Polynomial.fromroots(points).integ()

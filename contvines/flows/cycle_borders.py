@@ -15,10 +15,13 @@ from . import mesh
 from .cycle_mesh import CycleMesh
 from .events import FINER
 from .kernels import CycleWork
+from .nearby_equilibrium import nearby_equilibrium
 from .sparse import distance_to_rest as rest_of_sparse
 
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
+
+NEARLY = 10.0  # times the distance at which a cycle counts as homoclinic: nearer than that the equilibrium itself is looked for
 
 
 class CycleBorders(CycleMesh):
@@ -49,9 +52,28 @@ class CycleBorders(CycleMesh):
         elif closeness is None:
             scaled = jacobian * (self.node_scale / self.node_scale[:, None])
             closeness = _distance_to_rest(scaled, f / self.node_scale)
+        if work.sparse is None and closeness < NEARLY * s.homoclinic * size:
+            closeness = size * self._from_equilibrium(x, work)
         if not size > 0.0 or not closeness < math.inf:
             return np.array([math.inf, short])
         return np.array([math.log10(max(closeness / size, TINY) / s.homoclinic), short])
+
+    def _from_equilibrium(self, x: np.ndarray, work: CycleWork) -> float:
+        """The distance from the equilibrium to which the shortest Newton step leads, relative to the size of the cycle in each coordinate; infinite where it leads to none.
+
+        Coordinates of fast and slow motions differ in size, and where a slow manifold folds, a step of Newton's method is short and no equilibrium near.
+        """
+        _, p, jacobian, f = work.along
+        try:
+            steps = np.linalg.solve(jacobian, f[..., None])[..., 0] / self.node_scale
+            curve = mesh.closed(x.reshape(self.intervals, -1, self.node))
+            points = np.einsum("cj,ijk->ick", self.rule.values, curve).reshape(-1, self.node)
+            start = points[int(np.nanargmin((steps**2).sum(axis=1)))]
+            sizes = self._sizes(x)
+            place = nearby_equilibrium(self, start, p, sizes)
+        except (np.linalg.LinAlgError, NotEvaluable, ValueError):
+            return math.inf
+        return math.inf if place is None else float(np.linalg.norm((place - start) / sizes))
 
     def from_rest(self, u: np.ndarray, p: float) -> float:
         """How near the cycle comes to an equilibrium, relative to its size in each direction: the same in all coordinates of the states, as beside Bogdanov-Takens

@@ -20,18 +20,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contvines.shared.floating_point import ROUNDED, TINY
+from contvines.shared.floating_point import TINY
+
+from .nearby_equilibrium import FAR, nearby_equilibrium
 
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
     from .cycle_mesh import CycleMesh
 
-FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to a point of least speed is the one at which it stays
 SHARE = 0.01  # of the growth of the period: less of it is none
 HALF = (
     -0.5
 )  # exponent of the period in the largest speed, between -1 of a cycle that comes to rest and 0 of others
-SWEEPS = 20
 
 
 class Limit(StrEnum):
@@ -153,7 +153,7 @@ def _saddles(
     slowest = int(np.argmin(speeds))
     found: list[Saddle] = []
     for k in sorted({*least.tolist(), slowest}):
-        place = _equilibrium(problem, x[k], float(point.value), sizes)
+        place = nearby_equilibrium(problem, x[k], float(point.value), sizes)
         if place is None:
             continue
         values = np.linalg.eigvals(problem.field.jacobian(place[None], float(point.value))[0])
@@ -198,20 +198,6 @@ def _run(near: np.ndarray, k: int) -> tuple[int, int]:
         return 0, len(near) - 1
     ahead = away[np.searchsorted(away, k) % len(away)]
     return int(away[np.searchsorted(away, k) - 1]), int(ahead)
-
-
-def _equilibrium(problem: CycleMesh, start: np.ndarray, p: float, sizes: np.ndarray) -> np.ndarray | None:
-    """The equilibrium near a point of a cycle."""
-    y, field = start.copy(), problem.field
-    for _ in range(SWEEPS):
-        matrix, rates = field.jacobian(y[None], p)[0], field(y[None], p)[0]
-        step = np.linalg.lstsq(matrix, -rates, rcond=ROUNDED)[0]
-        y = y + step
-        if not (np.abs(y - start) <= FAR * sizes).all():
-            return None
-        if (np.abs(step) <= problem.flow.settings.rounded * sizes).all():
-            return np.where(np.abs(y) > problem.flow.settings.rounded * sizes, y, 0.0)
-    return None
 
 
 def _place(x: np.ndarray) -> str:

@@ -117,7 +117,5 @@ def _of_shape(x: np.ndarray, dx: np.ndarray) -> np.ndarray:
     lowest, highest = flat.argmin(axis=0), flat.argmax(axis=0)
     low, moved = flat[lowest, each], change[lowest, each]
     ranges = flat[highest, each] - low
-    stretch = np.divide(
-        change[highest, each] - moved, ranges, out=np.zeros(len(ranges)), where=ranges > 0.0
-    )
+    stretch = np.divide(change[highest, each] - moved, ranges, out=np.zeros(len(ranges)), where=ranges > 0.0)
     return dx - moved - stretch * (x - low)

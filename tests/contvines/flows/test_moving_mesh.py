@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import contvines as cv
 from contvines.flows import mesh
@@ -88,3 +89,35 @@ def test_a_canard_is_passed_from_one_hopf_point_to_the_growing_relaxation_oscill
     where = np.interp(1.0, cycles.measure("max x0") - 1.0, cycles.values)
     assert where == pytest.approx(1.0 - 0.01 / 8.0 - 3.0 / 32.0 * 1e-4, abs=2e-6)
     assert cycles.values.min() == 0.0 and len(cycles) < 400
+
+
+@pytest.mark.slow
+def test_an_oregonator_from_one_hopf_point_to_the_other():
+    """Tyson's scaling (epsilon = 0.01, epsilon' = 1e-4, q = 8e-4), with canards at both ends, the upper one near the equilibrium, but not homoclinic.
+
+    In a window of f as wide as a last bit neither canard can be resolved. Hopf points: complex eigenvalues of a Jacobian written by hand.
+    """
+    q, fast, faster = 8e-4, 0.01, 1e-4
+
+    def rates(x, p):
+        return [
+            (q * x[1] - x[0] * x[1] + x[0] * (1.0 - x[0])) / fast,
+            (-q * x[1] - x[0] * x[1] + p.f * x[2]) / faster,
+            x[0] - x[2],
+        ]
+
+    def growth(f):
+        x = 0.5 * (1.0 - f - q + np.sqrt((1.0 - f - q) ** 2 + 4.0 * q * (1.0 + f)))
+        y = f * x / (q + x)
+        first = [(1.0 - y - 2.0 * x) / fast, (q - x) / fast, 0.0]
+        values = np.linalg.eigvals([first, [-y / faster, -(q + x) / faster, f / faster], [1.0, 0.0, -1.0]])
+        return values[np.argmax(values.real)].real
+
+    flow = cv.FlowProblem(rates, [0.7, 0.3, 0.7], {"f": 0.3})
+    graph = cv.diagram(flow, over="f", within=(0.3, 3.0), progress=False)
+    hopf = sorted(point.value for point in graph.of_kind("hopf"))
+    assert hopf == pytest.approx(
+        [brentq(growth, 0.4, 0.6, xtol=1e-13), brentq(growth, 2.2, 2.6, xtol=1e-13)], abs=1e-8
+    )
+    assert not graph.of_kind("homoclinic") and len(graph.branches) == 2
+    assert all(gap.high - gap.low < 1e-9 for gap in graph.unresolved)
