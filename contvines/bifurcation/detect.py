@@ -154,7 +154,7 @@ class Detector(SegmentSearch):
         start = seen = whole.at(share)
         beyond = share
         while start is not None and share * whole.length > settings.resolution:
-            if not self._hides(origin, start):
+            if not self._told(origin, start) or not self._hides(origin, start):
                 break
             closer = whole.at(NEARER * share)
             if closer is None:
@@ -178,8 +178,7 @@ class Detector(SegmentSearch):
 
         def told(event: Located) -> bool:
             """Whether the parameter at an event is another one than at the branch point, as far as both are known."""
-            rounded = rounding_of_parameter(self.engine, event.point) if self.engine.adaptive else 0.0
-            return abs(event.point.p - origin.p) > max(flat, rounded, 10.0 * event.error)
+            return self._told(origin, event.point, max(flat, 10.0 * event.error))
 
         found = [
             e
@@ -192,6 +191,11 @@ class Detector(SegmentSearch):
         bracket = (origin.p, first.p)
         found = [_placed(e, share + (1.0 - share) * e.position, bracket) for e in found]
         return before_stop(found) + ([] if leaping is None else [leaping])
+
+    def _told(self, origin: Solved, point: Solved, error: float = 0.0) -> bool:
+        """Whether the parameter of a point, known to an error and to rounding, is another one than that of a branch point."""
+        rounded = rounding_of_parameter(self.engine, point) if self.engine.adaptive else 0.0
+        return abs(point.p - origin.p) >= max(error, rounded)
 
     def _hides(self, origin: Solved, start: Solved) -> bool:
         """Whether a point beside a branch point tells that multipliers have passed the circle between both, or that the parameter has turned.
