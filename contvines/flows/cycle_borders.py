@@ -21,7 +21,9 @@ from .sparse import distance_to_rest as rest_of_sparse
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
 
-NEARLY = 10.0  # times the distance at which a cycle counts as homoclinic: nearer than that the equilibrium itself is looked for
+NEARLY = (
+    10.0  # times the distance at which a cycle counts as homoclinic: so near it must be in each coordinate
+)
 
 
 class CycleBorders(CycleMesh):
@@ -53,7 +55,7 @@ class CycleBorders(CycleMesh):
             scaled = jacobian * (self.node_scale / self.node_scale[:, None])
             closeness = _distance_to_rest(scaled, f / self.node_scale)
         if work.sparse is None and closeness < NEARLY * s.homoclinic * size:
-            closeness = size * self._from_equilibrium(x, work)
+            closeness = max(closeness, size * self._from_equilibrium(x, work) / NEARLY)
         if not size > 0.0 or not closeness < math.inf:
             return np.array([math.inf, short])
         return np.array([math.log10(max(closeness / size, TINY) / s.homoclinic), short])
