@@ -6,7 +6,7 @@ import copy
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -39,6 +39,9 @@ class Orbit(Cycle):
     params : float array (P,)
         Parameter vector, in the order of `model.parameter_names`.
     """
+
+    marginal: ClassVar[bool] = False
+    """Whether it is that of a special point, at which a multiplier is on the unit circle by definition."""
 
     # ------------------------------------------------------------------ one look at its equations
     def system(self, symmetric: bool) -> Equations:
@@ -95,7 +98,9 @@ class Orbit(Cycle):
 
     def critical(self, near: float) -> Self:
         """The same orbit as that of a special point, where a multiplier is on the unit circle by definition: the nearest, if it is so near."""
-        return self.with_multipliers(onto_circle(self.multipliers, near))
+        found = self.with_multipliers(onto_circle(self.multipliers, near))
+        vars(found)["marginal"] = True
+        return found
 
     @property
     def margins(self) -> list[Margin]:
@@ -126,8 +131,9 @@ class Orbit(Cycle):
 
     @property
     def stable(self) -> bool | None:
-        """Whether all multipliers lie inside the unit circle; None where one is on it and none outside, as at a fold."""
-        return attracts(np.abs(self.multipliers), 1.0)
+        """Whether all multipliers lie inside the unit circle; at special points None, unless one is outside."""
+        sizes = np.abs(self.multipliers)
+        return attracts(sizes, 1.0) if self.marginal else bool((sizes < 1.0).all())
 
     def measures(self, *wanted: str) -> dict[str, float]:
         """Measures by name, all of them if none is named; names: `problem().measure_names`.

@@ -28,20 +28,26 @@ class Equilibrium(Solution):
     parameters : dict of float
     eigenvalues : ndarray of complex
         Of the Jacobian; none where it is not at hand as a matrix.
+    marginal : bool
+        Whether it is that of a special point, at which an eigenvalue is on the imaginary axis by definition.
     """
 
     states: dict[str, float] = field(default_factory=dict)
     parameters: dict[str, float] = field(default_factory=dict)
     eigenvalues: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+    marginal: bool = False
 
     @property
     def stable(self) -> bool | None:
-        """Whether all eigenvalues have negative real parts; None where they are not known, or one is on the axis and none beyond, as at a fold."""
-        return attracts(np.real(self.eigenvalues), 0.0) if self.eigenvalues.size else None
+        """Whether all eigenvalues have negative real parts; None where they are not known, and at special points, unless one is positive."""
+        if not self.eigenvalues.size:
+            return None
+        rates = np.real(self.eigenvalues)
+        return attracts(rates, 0.0) if self.marginal else bool((rates < 0.0).all())
 
     def critical(self, near: float = 0.0) -> Equilibrium:
         """The same equilibrium as that of a special point, where an eigenvalue is on the imaginary axis by definition: the nearest."""
-        return replace(self, eigenvalues=onto_axis(self.eigenvalues))
+        return replace(self, eigenvalues=onto_axis(self.eigenvalues), marginal=True)
 
     def to_dict(self) -> dict[str, Any]:
         """The equilibrium as JSON-able dict."""

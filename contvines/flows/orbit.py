@@ -63,7 +63,11 @@ class CycleOrbit:
     multipliers : ndarray of complex
         Of autonomous flows without the trivial one.
     stable : bool or None
+    marginal : bool
+        Whether it is that of a special point, at which a multiplier is on the unit circle by definition.
     """
+
+    marginal = False
 
     def __init__(self, problem: CycleMesh, u: np.ndarray, p: float) -> None:
         self._problem, self.u, self.value = problem, u, p
@@ -156,13 +160,15 @@ class CycleOrbit:
 
     @property
     def stable(self) -> bool | None:
-        """Whether all multipliers are inside the unit circle; None where one is on it and none outside, as at a fold."""
-        return attracts(np.abs(self.multipliers), 1.0)
+        """Whether all multipliers are inside the unit circle; at special points None, unless one is outside."""
+        sizes = np.abs(self.multipliers)
+        return attracts(sizes, 1.0) if self.marginal else bool((sizes < 1.0).all())
 
     def critical(self, near: float) -> CycleOrbit:
         """The same cycle as that of a special point, where a multiplier is on the unit circle by definition: the nearest, if it is so near."""
         found = copy(self)
         vars(found)["_spectrum"] = (onto_circle(self.multipliers, near), self.trivial_error)
+        found.marginal = True
         return found
 
     @property

@@ -20,11 +20,9 @@ def default_measure(graph: Graph) -> str:
     Motions without impacts have no velocity B there; where none of the graph has, the largest |w| is shown.
     """
     for branch in graph.branches.values():
-        wanted = branch.default_measure
-        if branch.problem is None and not wanted:
-            continue
-        names = list(branch.measure_names if branch.problem is None else branch.problem.measure_names)
-        if not names:
+        known = branch if branch.problem is None else branch.problem
+        names, wanted = list(known.measure_names), known.default_measure
+        if not names or (branch.problem is None and not wanted):
             continue
         others = [n for n in names if n not in ("norm", graph.parameter)]
         choice = [n for n in (wanted, "max_abs_w", *others) if n in names]

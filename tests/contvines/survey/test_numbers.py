@@ -14,7 +14,7 @@ def branch(word, values, heights, real=True):
     values, heights = np.array(values, dtype=float), np.array(heights, dtype=float)
     return SimpleNamespace(
         real=real, problem=None, values=values, description={"word": word, "impacts": word.count("L")},
-        measure=lambda name: heights, pieces=lambda: [(0, len(values) - 1, True)],
+        measure=lambda name: heights, measure_names=("norm",), default_measure="", pieces=lambda: [(0, len(values) - 1, True)],
         stable_intervals=lambda: [(values.min(), values.max())], __len__=lambda: len(values),
     )  # fmt: skip
 
