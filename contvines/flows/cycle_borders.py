@@ -21,9 +21,7 @@ from .sparse import distance_to_rest as rest_of_sparse
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
 
-NEARLY = (
-    10.0  # times the distance at which a cycle counts as homoclinic: so near it must be in each coordinate
-)
+NEARLY = 10.0  # times the distance at which a cycle is homoclinic: so near it must be in each coordinate
 
 
 class CycleBorders(CycleMesh):
@@ -68,8 +66,7 @@ class CycleBorders(CycleMesh):
         _, p, jacobian, f = work.along
         try:
             steps = np.linalg.solve(jacobian, f[..., None])[..., 0] / self.node_scale
-            curve = mesh.closed(x.reshape(self.intervals, -1, self.node))
-            points = np.einsum("cj,ijk->ick", self.rule.values, curve).reshape(-1, self.node)
+            points = self._at_gauss_points(self.rule.values, x.reshape(self.intervals, -1, self.node))
             start = points[int(np.nanargmin((steps**2).sum(axis=1)))]
             sizes = self._sizes(x)
             place = nearby_equilibrium(self, start, p, sizes)

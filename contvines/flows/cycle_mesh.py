@@ -35,6 +35,10 @@ class CycleMesh(CycleUnknowns):
         x = u[: self.states].reshape(self.intervals, self.rule.degree, self.node)
         return x, u[self.states + self.free_period :]
 
+    def _at_gauss_points(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """Values, or derivatives, at the Gauss points of all intervals, shape (N m, d), from those at the nodes, (N, m, d)."""
+        return np.einsum("cj,ijk->ick", matrix, mesh.closed(x)).reshape(-1, self.node)
+
     def _sizes(self, x: np.ndarray) -> np.ndarray:
         ranges, s = np.ptp(x.reshape(-1, self.node), axis=0), self.flow.settings
         return np.maximum(

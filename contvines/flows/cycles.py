@@ -97,9 +97,6 @@ class CycleProblem(CycleRelatives):
             work.derivative[: self.states] = -by.reshape(-1)
         return size, f, jacobian
 
-    def _at_gauss_points(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
-        return np.einsum("cj,ijk->ick", matrix, mesh.closed(x)).reshape(-1, self.node)
-
     def _assemble(
         self,
         work: CycleWork,
