@@ -3,7 +3,6 @@
 A suite that is started by a shell as a background job ignores Ctrl-C, and so would all its children.
 """
 
-import ctypes
 import os
 import signal
 import subprocess
@@ -14,18 +13,23 @@ from weakref import WeakSet
 
 import pytest
 
-DEADLINE = 900  # seconds; no test needs as many
+DEADLINE = 600  # seconds; no child needs as many, and the limit of a whole test is longer
 TESTS = str(Path(__file__).parent)
-_libc = ctypes.CDLL(None) if sys.platform == "linux" else None
-_PR_SET_PDEATHSIG = 1
 
-
-def _born() -> None:
-    """What a child does before its program begins."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    signal.alarm(DEADLINE)
-    if _libc is not None:
-        _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+# What a child does before its program begins, in a process of its own: a function that `subprocess` calls between fork and exec
+# runs beside locks of the test's other threads, which nobody gives back there.
+BORN = """
+import os, signal, sys
+signal.alarm(int(sys.argv[1]))
+for number in (signal.SIGPIPE, signal.SIGXFSZ):
+    signal.signal(number, signal.SIG_DFL)
+if sys.platform == "linux":
+    import ctypes
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    if os.getppid() != int(sys.argv[2]):
+        sys.exit("the test has ended")
+os.execvp(sys.argv[3], sys.argv[3:])
+"""
 
 
 class Child(subprocess.Popen):
@@ -33,11 +37,11 @@ class Child(subprocess.Popen):
 
     known: ClassVar[WeakSet[Any]] = WeakSet()
 
-    def __init__(self, *words, **options):
+    def __init__(self, args, *more, **options):
         own = os.name == "posix" and _asked_by_a_test()
-        if own and options.get("preexec_fn") is None:
-            options["preexec_fn"] = _born
-        super().__init__(*words, **options)
+        if own:
+            args = [sys.executable, "-I", "-S", "-c", BORN, str(DEADLINE), str(os.getpid()), *args]
+        super().__init__(args, *more, **options)
         if own:
             Child.known.add(self)
 

@@ -25,7 +25,7 @@ def test_it():
 """
 
 
-def suite(tmp_path, end):
+def suite(tmp_path, end, *words):
     """A suite of one test below a folder `tests` with our conftest, in a process of its own that ignores Ctrl-C."""
     here = os.path.dirname(__file__)
     folder = tmp_path / "tests"
@@ -38,12 +38,12 @@ def suite(tmp_path, end):
     (tmp_path / "pytest.ini").write_text(
         "[pytest]\npythonpath = .\naddopts = -p no:cacheprovider --import-mode=importlib\n"
     )
+    ignoring = ["sh", "-c", "trap '' INT; exec \"$@\"", "sh"]
     return subprocess.Popen(
-        [sys.executable, "-m", "pytest", "-q", "-s", "-n", "0", "tests"],
+        [*ignoring, sys.executable, "-m", "pytest", "-q", "-s", *(words or ("-n", "0")), "tests"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
         env={**os.environ, "PYTHONPATH": ""},
     )
 
@@ -95,3 +95,11 @@ def test_an_interrupt_reaches_a_suite_that_ignored_it(tmp_path):
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
     assert process.returncode == 2  # pytest: interrupted
+
+
+def test_a_test_that_hangs_is_named_and_its_process_ends(tmp_path, pytestconfig):
+    assert float(pytestconfig.getini("faulthandler_timeout")) > 0.0
+    assert pytestconfig.getini("faulthandler_exit_on_timeout")
+    limits = "-o", "faulthandler_timeout=3", "-o", "faulthandler_exit_on_timeout=true"
+    said, _ = suite(tmp_path, "child.wait()", "-n", "1", *limits).communicate()
+    assert "crashed while running 'tests/test_one.py::test_it'" in said
