@@ -12,11 +12,15 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from threading import get_ident
 from types import FrameType, MappingProxyType, TracebackType
 from typing import Any
 
 # what `signal` hands on to: it makes enumerations of handlers, which takes longer than solving a point
 _plain = sys.modules["_signal"]
+
+MAIN = threading.main_thread().ident
+"""The thread in which interrupts are raised; sections of others hold nothing and take nothing."""
 
 
 class _State:
@@ -52,15 +56,12 @@ def listening() -> Iterator[None]:
 
 def _unheard() -> bool:
     """Whether an interrupt would be raised by Python itself, at once."""
-    return (
-        threading.current_thread() is threading.main_thread()
-        and _plain.getsignal(signal.SIGINT) is signal.default_int_handler
-    )
+    return get_ident() == MAIN and _plain.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def wanted() -> bool:
     """Whether an interrupt has come that is raised at the end of the section."""
-    return _state.wanted
+    return _state.wanted and get_ident() == MAIN
 
 
 def take() -> None:
@@ -85,6 +86,8 @@ class Section:
         self.held = held
 
     def __enter__(self) -> None:
+        if get_ident() != MAIN:
+            return
         if self.held and not _state.held and not _state.listening and _unheard():
             _state.alone = True
             try:
@@ -101,6 +104,8 @@ class Section:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        if get_ident() != MAIN:
+            return
         if self.held and _state.held:
             _state.held -= 1
             if _state.alone and not _state.held:

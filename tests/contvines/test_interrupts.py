@@ -11,7 +11,7 @@ import pytest
 
 import contvines as cv
 from contvines.graph.persistence import same_graph
-from contvines.interrupts import HELD, OPEN, listening
+from contvines.interrupts import HELD, OPEN, listening, wanted
 from tests.machines import ABSORBER
 
 PROGRAM = """
@@ -88,6 +88,31 @@ def test_elsewhere_an_interrupt_is_raised_at_once_and_only_once():
         raise AssertionError("not at once")
     with listening(), HELD, OPEN:
         pass  # nothing is left over
+
+
+def test_sections_of_other_threads_neither_keep_an_interrupt_back_nor_take_it():
+    begun, end = threading.Event(), threading.Event()
+    taken = []
+
+    def work():
+        with HELD:
+            begun.set()
+            end.wait()
+            taken.append(wanted())
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    begun.wait()
+    try:
+        with pytest.raises(KeyboardInterrupt), listening():
+            with HELD:
+                signal.raise_signal(signal.SIGINT)
+                end.set()
+                thread.join()
+            raise AssertionError("kept back beyond the section of this thread")
+    finally:
+        end.set()
+    assert taken == [False]
 
 
 def test_a_handler_of_the_users_own_is_left_alone():
