@@ -140,7 +140,7 @@ class _Worker:
             self.connection.send(pieces[place])
 
     def end(self) -> None:
-        self.process.terminate()
+        self.process.kill()  # it has nothing to put in order, and a signal that it may refuse would be waited for
         self.process.join()
         self.connection.close()
 
