@@ -32,12 +32,13 @@ def lengthened(
     """
     if not period > 0.0:
         raise ValueError(f"period = {period!r} must be positive")
-    while (now := float(u[problem.period_place])) != period:
-        wanted = min(max(period, now / LONGER), now * LONGER)
+    wanted = float(u[problem.period_place])
+    while wanted != period:  # what is found has the wanted period but for rounding
+        wanted = min(max(period, wanted / LONGER), wanted * LONGER)
         found = of_period(problem, _waiting(problem, u, p, wanted), p, wanted)
         if found is None:
             raise ValueError(
-                f"period = {period:.6g}: on the way there no cycle of period {wanted:.6g} is found beyond the one of {now:.6g}"
+                f"period = {period:.6g}: on the way there no cycle of period {wanted:.6g} is found beyond the one of {u[problem.period_place]:.6g}"
             )
         problem, u, p = found
     return problem, u, p

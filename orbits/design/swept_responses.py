@@ -119,7 +119,7 @@ class _Seen:
             if top.periods:
                 return
             longer = self.at(top.value, top.detail.state, LONG)
-            if self.response(longer) >= (1.0 - ENDS) * self.response(top):
+            if not self.response(longer) < (1.0 - ENDS) * self.response(top):
                 return
             self.rows[:] = [longer if row is top else row for row in self.rows]
 
