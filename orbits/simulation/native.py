@@ -214,7 +214,7 @@ class NativeSimulator:
             skip(self.engine, state, self.params, self.time + length, 1)
             if state[MODE] != 0.0:
                 return False
-            if np.abs(state[V:] - before[V:]).max() <= SIMULATING.settled * np.abs(state[V:]).max():
+            if not np.abs(state[V:] - before[V:]).max() > SIMULATING.settled * np.abs(state[V:]).max():
                 break
             length *= 2.0
         return True
