@@ -16,9 +16,10 @@ from .locate import Root, locate
 from .segment import Segment
 
 MARGIN_ROUNDING = 2.0 * EPSILON  # of margins, in units of the machine's own size
-NEARER = 0.1, 0.01  # parts of the distance of the point close before a border
+BENT = 0.1  # part of the distance of the point close before a border at which its margin tells a bend
+NEARER = 0.05, 0.03, 0.02, 0.01, 0.005  # parts of it at which unknowns that are known to few digits show
 TOLD = 10.0  # times that: a difference of margins which is no rounding
-ONE_SAMPLE = 10.0  # times an error that is seen once: what is stated
+SEEN = 10.0  # times an error that is seen in a few samples: what is stated
 ORDER = {name: i for i, name in enumerate(BORDERS)}  # of borders that are met at once
 
 
@@ -140,16 +141,16 @@ def _scatter(segment: Segment, root: Root, index: int, reach: float, aside: Solv
     smooth margin lies on it. Of a margin that jumps at the border nothing is said.
     """
     j = 2 * segment.engine.m + index
-    points = segment.several([root.position + part * reach for part in NEARER])
-    rises = [float(point.row[j] - root.point.row[j]) for point in (aside, *points) if point is not None]
-    if len(rises) < 3 or not np.isfinite(rises).all():
+    points = segment.several([root.position + part * reach for part in (BENT, *NEARER)])
+    found = [float(point.row[j] - root.point.row[j]) for point in (aside, *points) if point is not None]
+    rises, nearer = np.array(found), np.array(NEARER)
+    if len(rises) < 2 + len(nearer) or not np.isfinite(rises).all():
         return 0.0
-    if not abs(rises[2]) < 0.5 * abs(rises[0]):
+    if not (np.abs(rises[2:]) < 0.5 * abs(rises[0])).all():
         return 0.0
-    one, other = NEARER
-    bend = (rises[1] / one - rises[0]) / (one - 1.0)
-    apart = abs(rises[2] - other * (rises[0] + (other - 1.0) * bend))
-    return ONE_SAMPLE * apart / abs(rises[0]) * abs(aside.p - root.point.p)
+    bend = (rises[1] / BENT - rises[0]) / (BENT - 1.0)
+    apart = float(np.abs(rises[2:] - nearer * (rises[0] + (nearer - 1.0) * bend)).max())
+    return SEEN * apart / abs(rises[0]) * abs(aside.p - root.point.p)
 
 
 def _finite(margins: np.ndarray) -> np.ndarray:
