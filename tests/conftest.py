@@ -1,10 +1,12 @@
 """What all tests share: a native core that belongs to its sources; hypothesis draws the same examples every time, however long they take; `pytest --hypothesis-profile=search` draws new ones."""
 
+import os
 from contextlib import suppress
 
 from hypothesis import HealthCheck, settings
 
 from contvines.core.build import NotBuilt, build, up_to_date
+from contvines.survey import pools
 from tests.children import adopt, no_child_survives_its_test
 
 __all__ = ["no_child_survives_its_test"]
@@ -16,6 +18,9 @@ settings.register_profile(
 settings.register_profile("repeatable", settings.get_profile("patient"), derandomize=True)
 settings.register_profile("search", settings.get_profile("patient"), derandomize=False)
 settings.load_profile("repeatable")
+
+if "PYTEST_XDIST_WORKER" in os.environ:
+    pools.cores = lambda: 1  # every core has tests of its own; those of several processes say how many
 
 
 def pytest_collection_modifyitems(items):
