@@ -94,6 +94,22 @@ def test_no_copies_beside_a_thread_that_python_does_not_know():
     assert run(NATIVE).stdout == "0 False\n"
 
 
+STUCK = """
+import ctypes, os, threading
+from contvines.shared import processes
+processes.PATIENCE = 0.1
+libc = ctypes.CDLL(None)
+libc.pthread_create(ctypes.byref(ctypes.c_ulong()), None, ctypes.cast(libc.pause, ctypes.c_void_p), None)
+os.register_at_fork(after_in_child=threading.Event().wait)
+print(processes.may_be_copied())
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="copies are made on Linux alone")
+def test_no_copies_where_one_does_not_even_end():
+    assert run(STUCK).stdout == "False\n"
+
+
 KILLED = """
 import os, signal, sys, time
 from contvines.shared.processes import spread

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 THREADS = Path("/proc/self/task")  # a folder per thread
 ATTEMPTS = 3  # at one piece whose process is lost
+PATIENCE = 10.0  # seconds until a copy that does nothing counts as stuck
 
 
 def may_be_copied() -> bool:
@@ -35,17 +36,31 @@ def may_be_copied() -> bool:
     if _threads() > 1:
         # libraries of linear algebra keep threads that they end before a process is copied, and begin anew when they need them: after
         # an idle copy those that are left belong to somebody who knows nothing of copies
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", DeprecationWarning)  # Python's own, of copies beside threads
-            copy = os.fork()
-        if copy == 0:
-            os._exit(0)
-        os.waitpid(copy, 0)
-    return _threads() == 1
+        return _idle_copy_ends() and _threads() == 1
+    return True
 
 
 def _threads() -> int:
     return len(list(THREADS.iterdir()))
+
+
+def _idle_copy_ends() -> bool:
+    """Whether a copy that does nothing ends: what libraries do where one begins may wait for a thread that is not in it."""
+    from multiprocessing.connection import wait
+
+    end, other = os.pipe()  # it is at its end where nobody holds the other one
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # Python's own, of copies beside threads
+        copy = os.fork()
+    if copy == 0:
+        os._exit(0)
+    os.close(other)
+    ended = bool(wait([end], PATIENCE))
+    if not ended:
+        os.kill(copy, signal.SIGKILL)
+    os.waitpid(copy, 0)
+    os.close(end)
+    return ended
 
 
 def spread(
