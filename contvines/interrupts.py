@@ -10,8 +10,8 @@ from __future__ import annotations
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
+from contextlib import ContextDecorator
 from threading import get_ident
 from types import FrameType, MappingProxyType, TracebackType
 from typing import Any
@@ -33,25 +33,46 @@ class _State:
 _state = _State()
 
 
-@contextmanager
-def listening() -> Iterator[None]:
-    """Raise interrupts in good order inside; a handler of the user's own is left alone."""
-    if not _unheard():
-        yield
-        return
-    try:  # an interrupt may come as soon as it is listened to
+class _Listening(ContextDecorator):
+    """See :func:`listening`."""
+
+    own = False
+
+    def _recreate_cm(self) -> _Listening:  # each call of a decorated function listens by itself
+        return _Listening()
+
+    def __enter__(self) -> None:
+        if not _unheard():
+            return
         _state.listening = True
-        _plain.signal(signal.SIGINT, _interrupted)
-        yield
-    except BaseException:
-        take()
-        raise
-    finally:
-        _plain.signal(signal.SIGINT, signal.default_int_handler)
-        _state.held, _state.listening = 0, False
-    if _state.wanted:
-        take()
-        raise KeyboardInterrupt
+        try:
+            _plain.signal(signal.SIGINT, _interrupted)
+        except BaseException:  # an interrupt that came before: nothing begins
+            _state.listening = False
+            raise
+        self.own = True
+        if _state.wanted:
+            self.__exit__(None, None, None)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if not self.own:
+            return
+        if kind is not None:
+            _state.wanted = False
+        try:
+            _plain.signal(signal.SIGINT, signal.default_int_handler)
+        finally:
+            _state.held, _state.listening = 0, False
+            came, _state.wanted = _state.wanted, False
+        if came:
+            raise KeyboardInterrupt
+
+
+def listening() -> _Listening:
+    """Raise interrupts in good order inside, as a context or a decorator; a handler of the user's own is left alone."""
+    return _Listening()
 
 
 def _unheard() -> bool:
@@ -89,15 +110,8 @@ class Section:
         if get_ident() != MAIN:
             return
         if self.held and not _state.held and not _state.listening and _unheard():
-            _state.alone = True
-            try:
-                _plain.signal(signal.SIGINT, _interrupted)
-                _state.held = 1
-            except BaseException:  # an interrupt that came in between: the section does not begin
-                _plain.signal(signal.SIGINT, signal.default_int_handler)
-                _state.held, _state.alone = 0, False
-                take()
-                raise
+            _plain.signal(signal.SIGINT, _interrupted)
+            _state.held, _state.alone = 1, True
         else:
             _state.held += self.held
 
@@ -109,21 +123,25 @@ class Section:
         if self.held and _state.held:
             _state.held -= 1
             if _state.alone and not _state.held:
-                _plain.signal(signal.SIGINT, signal.default_int_handler)
                 _state.alone = False
+                _plain.signal(signal.SIGINT, signal.default_int_handler)
                 if kind is not None:
-                    take()
+                    _state.wanted = False
         if _state.wanted and kind is None and not _state.held:
-            take()
+            _state.wanted = False
             raise KeyboardInterrupt
 
 
 HELD, OPEN = Section(True), Section(False)
 
 
+# where sections begin and end nothing is cut in two either: what comes there is raised when it is done
+ENDS = {f.__code__ for c in (Section, _Listening) for f in (c.__enter__, c.__exit__)}
+
+
 def _interrupted(number: int, frame: FrameType | None) -> None:
     _state.wanted = True
-    if not _state.held:
+    if not _state.held and (frame is None or frame.f_code not in ENDS):
         raise KeyboardInterrupt
 
 
