@@ -16,7 +16,7 @@ import sys
 import threading
 import traceback
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -65,7 +65,7 @@ def _idle_copy_ends() -> bool:
 
 def spread(
     work: Callable[..., Any], pieces: Sequence[tuple[Any, ...]], count: int, lost: Callable[[int], Any]
-) -> Iterator[tuple[int, Any]]:
+) -> Generator[tuple[int, Any], None, None]:
     """``work(*piece)`` of each piece in `count` processes: the piece's place and its result, as they come.
 
     Where the iteration is left early (close it), the processes are ended amid their work.
