@@ -16,9 +16,9 @@ LOST = {"fold", "period-doubling", "symmetry-breaking", "neimark-sacker", "hopf"
 BEGINNING = ("fold",)  # where a branch begins at a bifurcation of another one, a multiplier is 1 as at a fold
 
 
-def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfBranch:
+def filled(half: HalfBranch, origin: int | None = None) -> HalfBranch:
     """The half with a solved point between neighbouring special points, or ends, that have none between them."""
-    special = {i for i, _ in half.events} | {0, len(half) - 1}
+    engine, special = half.engine, {i for i, _ in half.events} | {0, len(half) - 1}
     if origin is not None:
         special.add(origin)
     events = dict.fromkeys(i for i, _ in half.events)
@@ -39,7 +39,7 @@ def filled(engine: Engine, half: HalfBranch, origin: int | None = None) -> HalfB
         middle = next((found for s in (0.5, 0.4, 0.6) if (found := segment.at(s)) is not None), None)
         if middle is not None:
             inserted.append((i + 1, middle))
-    return half.inserted(engine, inserted) if inserted else half
+    return half.inserted(inserted) if inserted else half
 
 
 def a_sliver(one: Collection[str], other: Collection[str]) -> bool:
@@ -110,7 +110,6 @@ def _runs(chosen: np.ndarray) -> list[tuple[int, int]]:
 
 def make_branch(
     label: str,
-    engine: Engine,
     half: HalfBranch,
     real: bool,
     endings: tuple[Ending, Ending],
@@ -118,10 +117,10 @@ def make_branch(
     seed: str | None,
 ) -> Branch:
     """A Branch from what was found; ``marks``, and ``stable`` that depends on them, are left to the caller."""
-    problem, whole = engine.problem, half.joined()
+    engine, whole = half.engine, half.joined()
     return Branch(
         label=label,
-        problem=problem,
+        problem=engine.problem,
         points=whole.points,
         values=whole.values,
         tangents=whole.tangents,
@@ -132,6 +131,6 @@ def make_branch(
         endings=endings,
         closed=closed,
         seed=seed,
-        description=dict(problem.describe()),
-        parameter=problem.parameter,
+        description=dict(engine.problem.describe()),
+        parameter=engine.problem.parameter,
     )

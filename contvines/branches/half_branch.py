@@ -47,8 +47,12 @@ def piece_of(engine: Engine, point: Solved) -> Piece:
 
 @dataclass
 class HalfBranch:
-    """Points of a branch in order, and the events with their indices among them; `first` are the unknowns where the loop began."""
+    """Points of a branch in order, and the events with their indices among them; `first` are the unknowns where the loop began.
 
+    `engine` is that of all points: where a mesh became too coarse on the way, that of the finer one.
+    """
+
+    engine: Engine
     pieces: list[Piece]
     events: list[tuple[int, Located]] = field(default_factory=list)
     status: Status = Status.RUNNING
@@ -74,6 +78,7 @@ class HalfBranch:
             for i, e in self.events[::-1]
         ]
         return HalfBranch(
+            self.engine,
             [piece._replace(turned=not piece.turned) for piece in self.pieces[::-1]],
             events,
             self.status,
@@ -84,24 +89,28 @@ class HalfBranch:
         """This half, then the other one without its first ``skip`` points."""
         shift = len(self) - skip
         events = self.events + [(i + shift, e) for i, e in other.events]
-        return HalfBranch(self.pieces + other._slice(skip, len(other)), events, other.status)
+        return HalfBranch(self.engine, self.pieces + other._slice(skip, len(other)), events, other.status)
 
     def since(self, u: np.ndarray) -> HalfBranch:
         """From the first point with these unknowns on."""
         skip = next(i for i in range(len(self)) if np.array_equal(self.at(i)[0], u))
         events = [(i - skip, e) for i, e in self.events if i >= skip]
-        return HalfBranch(self._slice(skip, len(self)), events, self.status)
+        return HalfBranch(self.engine, self._slice(skip, len(self)), events, self.status)
 
-    def inserted(self, engine: Engine, points: list[tuple[int, Solved]]) -> HalfBranch:
+    def inserted(self, points: list[tuple[int, Solved]]) -> HalfBranch:
         """With more points, each before the point that has its index now; in increasing order."""
         pieces: list[Piece] = []
         here = 0
         for i, point in points:
-            pieces += [*self._slice(here, i), piece_of(engine, point)]
+            pieces += [*self._slice(here, i), piece_of(self.engine, point)]
             here = i
         where = [i for i, _ in points]
         events = [(i + int(np.searchsorted(where, i, side="right")), e) for i, e in self.events]
-        return HalfBranch(pieces + self._slice(here, len(self)), events, self.status)
+        return HalfBranch(self.engine, pieces + self._slice(here, len(self)), events, self.status)
+
+    def put(self, i: int, point: Solved) -> None:
+        """Another point in the place of point i."""
+        self.pieces = [*self._slice(0, i), piece_of(self.engine, point), *self._slice(i + 1, len(self))]
 
     def without(self, places: list[int]) -> HalfBranch:
         """Without some points, and their events."""
@@ -112,7 +121,7 @@ class HalfBranch:
             pieces += self._slice(here, i)
             here = i + 1
         events = [(i - int(np.searchsorted(gone, i)), e) for i, e in self.events if i not in gone]
-        return HalfBranch(pieces + self._slice(here, len(self)), events, self.status, self.first)
+        return HalfBranch(self.engine, pieces + self._slice(here, len(self)), events, self.status, self.first)
 
     def joined(self) -> Piece:
         """All points as one piece, in order."""
@@ -155,7 +164,7 @@ class HalfBranch:
 
 def single(engine: Engine, point: Solved) -> HalfBranch:
     """A half of one point."""
-    return HalfBranch([piece_of(engine, point)])
+    return HalfBranch(engine, [piece_of(engine, point)])
 
 
 def pack(events: list[Located], engine: Engine) -> dict[str, Any]:

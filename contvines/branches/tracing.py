@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Role
-from ..continuation.chunk import Status
+from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
-from ..continuation.trace import Retrace, chunks
+from ..continuation.trace import Finer, Retrace, chunks
 from ..journal import NullJournal
 from ..problems.abilities import Adaptive
+from .finer_mesh import Meshes
 from .half_branch import HalfBranch, Piece, pack, piece_of, single, unpack
 from .opening import SHORTER, opening
 
@@ -38,12 +39,14 @@ def trace_half(
     first_step: float | None = None,
     notice: Callable[[int, float], None] | None = None,
     origin: Solved | None = None,
+    meshes: Meshes | None = None,
 ) -> HalfBranch:
     """Follow a branch from a point in the direction of its tangent until it ends.
 
     A real branch ends at its first border, a virtual one where all margins are positive again; both end where they come
     back to the fixed space of a symmetry. Special points are put between the points. Where a step has led to another
-    branch, it is traced again with shorter ones.
+    branch, it is traced again with shorter ones. Where a mesh is too coarse, the branch goes on on a finer one, if it is given and what
+    has been found so far can be read there; else the half ends, and says so.
 
     Parameters
     ----------
@@ -58,6 +61,7 @@ def trace_half(
         Called after each chunk with the number of points so far and the parameter value.
     origin : Solved, optional
         The special point beside which the branch starts: it becomes the first point, and the segment between is looked at.
+    meshes : Meshes, optional
     """
     half, detector.parts = single(engine, start), 0
     if origin is not None:
@@ -69,21 +73,20 @@ def trace_half(
     half.first = start.u
     stop = real and engine.problem.n_margins > 0
     walk = chunks(engine, start, journal, key, stop, first_step)
-    retrace = None
-    adaptive = engine.problem if engine.adaptive and isinstance(engine.problem, Adaptive) else None
+    wish: Retrace | Finer | None = None
     for number in count_from(0):
-        chunk = next(walk) if retrace is None else walk.send(retrace)
+        chunk = next(walk) if wish is None else walk.send(wish)
         name = f"{key}/{number}/events"
-        stuck = chunk.status == Status.STEP_TOO_SMALL
-        if (
-            adaptive is not None
-            and chunk.status in UNFINISHED
-            and adaptive.too_coarse(chunk.points[-1], float(chunk.values[-1]), stuck)
-        ):
-            spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
-            half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
-            half.status = Status.COARSE
-            return half
+        if _too_coarse(engine, chunk):
+            onward = None if meshes is None else meshes.onward(half, real)
+            if onward is None:
+                spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
+                half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
+                half.status = Status.COARSE
+                return half
+            half, detector, image = onward
+            engine, wish = half.engine, Finer(half.engine, image)
+            continue
         known, scanned = journal.recall(name), detector.scan(chunk)
         if known is None:
             events = detector.look(chunk, scanned, real)
@@ -92,12 +95,12 @@ def trace_half(
         else:
             events, detector.parts = unpack(known), int(known.get("parts", 0))
         status, count = chunk.status, len(chunk)
-        retrace = None
+        wish = None
         if events and events[-1].role in AGAIN:
             part, i = AGAIN[events[-1].role], int(events.pop().position)
             change = chunk.points[i + 1] - chunk.points[i], chunk.values[i + 1] - chunk.values[i]
             status, count = Status.RUNNING, i + 1
-            retrace = Retrace(count, part * engine.norm(engine.join(change[0], float(change[1]))))
+            wish = Retrace(count, part * engine.norm(engine.join(change[0], float(change[1]))))
         elif events and events[-1].role is Role.LEFT:
             status, count = Status.LEFT_INTERVAL, int(events[-1].position) + 1
             events[-1] = replace(events[-1], role=Role.PLAIN)
@@ -129,3 +132,12 @@ def trace_half(
         if status != Status.RUNNING:
             break
     return half
+
+
+def _too_coarse(engine: Engine, chunk: Chunk) -> bool:
+    """Whether the mesh has become too coarse on a chunk."""
+    problem = engine.problem
+    if not (engine.adaptive and isinstance(problem, Adaptive) and chunk.status in UNFINISHED):
+        return False
+    stuck = chunk.status == Status.STEP_TOO_SMALL
+    return problem.too_coarse(chunk.points[-1], float(chunk.values[-1]), stuck)

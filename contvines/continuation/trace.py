@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
+from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -37,6 +38,14 @@ class Retrace:
     longest: float
 
 
+@dataclass(frozen=True, eq=False)
+class Finer:
+    """Wish to go on from the beginning of a chunk with another engine; ``image`` tells how points read there."""
+
+    engine: Engine
+    image: Callable[[Solved], Solved]
+
+
 def chunks(
     engine: Engine,
     start: Solved,
@@ -44,10 +53,11 @@ def chunks(
     key: str = "",
     stop_at_border: bool = False,
     first_step: float | None = None,
-) -> Generator[Chunk, Retrace | None, None]:
+) -> Generator[Chunk, Retrace | Finer | None, None]:
     """Follow the branch from a point in the direction of its tangent, a chunk at a time.
 
-    Who sees that a step of the chunk leads astray sends a :class:`Retrace`, and gets the next chunk from there.
+    Who sees that a step of the chunk leads astray sends a :class:`Retrace`, and gets the next chunk from there; who needs another mesh
+    sends a :class:`Finer`, and gets the same part of the branch on that.
 
     Parameters
     ----------
@@ -65,94 +75,98 @@ def chunks(
         The last one has a status other than RUNNING. A closed branch ends with its first point again. The rows of all
         chunks share their memory: take from them what is needed before the next one.
     """
-    try:
-        yield from _chunks(engine, start, journal, key, stop_at_border, first_step)
-    finally:
-        if engine.adaptive and isinstance(engine.problem, Adaptive):
-            engine.problem.anchor(None)
-
-
-def _chunks(
-    engine: Engine,
-    start: Solved,
-    journal: Journal | None,
-    key: str,
-    stop_at_border: bool,
-    first_step: float | None,
-) -> Generator[Chunk, Retrace | None, None]:
     settings = engine.settings
-    n, capacity = engine.n, settings.first_chunk
-    retrace: Retrace | None = None
-    problem = engine.problem
-    adaptive = problem if engine.adaptive and isinstance(problem, Adaptive) else None
-    if (start.p >= engine.upper and start.tangent[n] > 0.0) or (
-        start.p <= engine.lower and start.tangent[n] < 0.0
+    if (start.p >= engine.upper and start.tangent[-1] > 0.0) or (
+        start.p <= engine.lower and start.tangent[-1] < 0.0
     ):
         yield packed([start], Status.LEFT_INTERVAL)
         return
-    history = [start] if adaptive is None else _anchored(engine, adaptive, [engine.steered(start)])
-    h = settings.first_step if first_step is None else first_step
-    closing, reach = Closing(engine, start), Reach(engine, start)
-    total, number = 1, 0
-    most = min(8 * settings.chunk, LARGEST // (2 * n + engine.row_size))
-    if reach.learned:
-        most = min(settings.chunk, most)  # the longest step is decided anew for each
-    while True:
-        name = f"{key}/{number}"
-        known = journal.recall(name) if journal is not None else None
-        if known is not None:
-            chunk = Chunk(
-                *(np.asarray(known[part]) for part in layout.Points._fields),
-                status=Status(int(known["status"])),
-            )
-            h = float(known["h"])
-            reach.escapes(chunk)
-        else:
-            room, longest = capacity, settings.max_step * reach.growth(history[-1])
-            if retrace is not None:
-                room, longest = AGAIN, min(retrace.longest, longest)
-                h = min(h, longest)
-            if not engine.compiled:
-                # points are dear, and a branch that closes is found to only at the end of a chunk
-                room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
+    adaptive = _on_mesh(engine)
+    try:
+        history = [start] if adaptive is None else _anchored(engine, adaptive, [engine.steered(start)])
+        h, capacity = settings.first_step if first_step is None else first_step, settings.first_chunk
+        closing, reach = Closing(engine, start), Reach(engine, start)
+        wish: Retrace | Finer | None = None
+        total, number = 1, 0
+        while True:
+            name, before = f"{key}/{number}", (h, copy(closing), copy(reach))
+            most = min(8 * settings.chunk, LARGEST // (2 * engine.n + engine.row_size))
+            if reach.learned:
+                most = min(settings.chunk, most)  # the longest step is decided anew for each
+            known = journal.recall(name) if journal is not None else None
+            if known is not None:
+                chunk = Chunk(
+                    *(np.asarray(known[part]) for part in layout.Points._fields),
+                    status=Status(int(known["status"])),
+                )
+                h = float(known["h"])
+                reach.escapes(chunk)
+            else:
+                room, longest = capacity, settings.max_step * reach.growth(history[-1])
+                if isinstance(wish, Retrace):
+                    room, longest = AGAIN, min(wish.longest, longest)
+                    h = min(h, longest)
+                if not engine.compiled:
+                    # points are dear, and a branch that closes is found to only at the end of a chunk
+                    room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
+                if adaptive is not None:
+                    room = min(room, adaptive.chunk)
+                room = min(room, max(settings.max_points - total, 1))
+                apart = _apart(engine, max(h, longest))
+                chunk, h = _march(engine, history, room, h, longest, stop_at_border)
+                closed = closing.cut(chunk, apart)
+                away = reach.escapes(chunk, apart)
+                if closed is not None:
+                    chunk = closed
+                elif away is not None:
+                    chunk = chunk.cut(max(away + 1, 2))
+                    chunk.status = Status.ESCAPED
+                elif reach.creeps(chunk):
+                    chunk.status = Status.CREEPING
+                elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
+                    chunk.status = Status.MAX_POINTS
+                # a step that failed at once is nothing to keep: a start that is refused leaves no journal
+                if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
+                    journal.record(name, {**_kept(chunk), "status": int(chunk.status), "h": h})
+            chunk.before = history[-2] if len(history) > 1 else None
+            wish = yield chunk
+            number += 1
+            if isinstance(wish, Finer):
+                if adaptive is not None:
+                    adaptive.anchor(None)
+                last, start = wish.image(history[-1]), wish.image(closing.start)
+                h, closing, reach = before  # nothing is known of the chunk
+                engine, adaptive = wish.engine, _on_mesh(wish.engine)
+                assert adaptive is not None
+                history = _anchored(engine, adaptive, [engine.steered(last)])
+                for watch in (closing, reach):
+                    watch.engine, watch.start = engine, start
+                continue
+            if wish is not None:
+                chunk = chunk.cut(wish.count)
+            elif chunk.status != Status.RUNNING:
+                return
+            total += len(chunk) - 1
+            history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
             if adaptive is not None:
-                room = min(room, adaptive.chunk)
-            room = min(room, max(settings.max_points - total, 1))
-            apart = _apart(engine, max(h, longest))
-            chunk, h = _march(engine, history, room, h, longest, stop_at_border)
-            closed = closing.cut(chunk, apart)
-            away = reach.escapes(chunk, apart)
-            if closed is not None:
-                chunk = closed
-            elif away is not None:
-                chunk = chunk.cut(max(away + 1, 2))
-                chunk.status = Status.ESCAPED
-            elif reach.creeps(chunk):
-                chunk.status = Status.CREEPING
-            elif total + len(chunk) - 1 >= settings.max_points and chunk.status == Status.RUNNING:
-                chunk.status = Status.MAX_POINTS
-            # a step that failed at once is nothing to keep: a start that is refused leaves no journal
-            if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
-                values: dict[str, Any] = {part: getattr(chunk, part) for part in layout.Points._fields}
-                for part in (
-                    "points",
-                    "tangents",
-                ):  # the loop writes to others the next time, and nobody to these
-                    values[part] = values[part].view()
-                    values[part].flags.writeable = False
-                journal.record(name, {**values, "status": int(chunk.status), "h": h})
-        chunk.before = history[-2] if len(history) > 1 else None
-        retrace = yield chunk
-        if retrace is not None:
-            chunk = chunk.cut(retrace.count)
-        elif chunk.status != Status.RUNNING:
-            return
-        total += len(chunk) - 1
-        number += 1
-        history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
+                history = _anchored(engine, adaptive, history)
+            capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
+    finally:
         if adaptive is not None:
-            history = _anchored(engine, adaptive, history)
-        capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
+            adaptive.anchor(None)
+
+
+def _on_mesh(engine: Engine) -> Adaptive | None:
+    return engine.problem if engine.adaptive and isinstance(engine.problem, Adaptive) else None
+
+
+def _kept(chunk: Chunk) -> dict[str, Any]:
+    """What a journal keeps of a chunk: the loop writes to the other arrays the next time, and nobody to points and tangents."""
+    values: dict[str, Any] = {part: getattr(chunk, part) for part in layout.Points._fields}
+    for part in ("points", "tangents"):
+        values[part] = values[part].view()
+        values[part].flags.writeable = False
+    return values
 
 
 def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[Solved]:

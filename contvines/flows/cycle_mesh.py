@@ -113,17 +113,16 @@ class CycleMesh(CycleUnknowns):
         return self.with_unknowns(u, self.p0, 2 * self.intervals, self.parts_of_refined * self.copies)
 
     def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
-        """Unknowns, or a direction of unknowns, with twice as many intervals: every one halved, or the whole mesh twice in each period."""
-        x, widths = self._curve(u)
-        r = self.rule
+        """Unknowns, or a direction of unknowns, with twice as many intervals: every one halved, or the whole mesh twice in each period.
+
+        Where every interval is halved, rows of an array are unknowns, too.
+        """
         if self.parts_of_refined == 2:
-            own = self._curve(self.u0)[1] if direction else widths
+            own = self._curve(self.u0 if direction else u)[1]
             return self._onto(u, own, np.tile(0.5 * own, 2), direction)
-        ends = mesh.closed(x)
-        both = [
-            np.einsum("cj,ijk->ick", r.interpolation(s + 0.5 * r.nodes[:-1]), ends)[:, None]
-            for s in (0.0, 0.5)
-        ]
-        finer = np.concatenate(both, axis=1).reshape(-1)
-        rest = u[self.states : self.states + self.free_period]
-        return np.concatenate([finer, rest, np.repeat(0.5 * widths, 2)])
+        end = self.states + self.free_period
+        x = u[..., : self.states].reshape(*u.shape[:-1], self.intervals, self.rule.degree, self.node)
+        finer = mesh.halved(self.rule, x).reshape(*u.shape[:-1], 2 * self.states)
+        return np.concatenate(
+            [finer, u[..., self.states : end], np.repeat(0.5 * u[..., end:], 2, axis=-1)], axis=-1
+        )

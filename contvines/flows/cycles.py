@@ -18,6 +18,7 @@ from .forms import LARGEST, cubic, neimark_sacker, quadratic
 from .infinite_period import infinite_period
 from .kernels import CycleWork, linearise, spectrum
 from .measures import measured
+from .newton import solved
 from .orbit import CycleOrbit
 from .returns import ReturnMap
 from .section import FlowSection
@@ -252,8 +253,11 @@ class CycleProblem(CycleRelatives):
         return {name: np.array([values[i] for values in found]) for i, name in enumerate(names)}
 
     def orbit(self, u: np.ndarray, p: float) -> CycleOrbit:
-        """The cycle."""
-        return CycleOrbit(self, np.array(u, dtype=float), float(p))
+        """The cycle; solved for where the unknowns are those of a coarser mesh."""
+        u, p = np.array(u, dtype=float), float(p)
+        unsolved = linearise(self, u, p, self.workspace()) > self.flow.settings.rounded
+        found = solved(self, u, p) if unsolved else None
+        return CycleOrbit(self, u if found is None else found, p)
 
     def replay(self, u: np.ndarray, p: float) -> float | None:
         """Largest distance of a simulation from the cycle; see :meth:`CycleOrbit.replay`."""

@@ -11,11 +11,21 @@ SLACK = 1.1  # largest over mean share of the error at which a mesh stays as it 
 
 
 def closed(x: np.ndarray, sign: float = 1.0) -> np.ndarray:
-    """Values at all nodes of each interval, shape (N, m + 1, d), from those without the last one, (N, m, d)."""
-    after = np.roll(x[:, :1], -1, axis=0)
+    """Values at all nodes of each interval, shape (..., N, m + 1, d), from those without the last one, (..., N, m, d)."""
+    after = np.roll(x[..., :1, :], -1, axis=-3)
     if sign != 1.0:
-        after[-1] *= sign
-    return np.concatenate([x, after], axis=1)
+        after[..., -1, :, :] *= sign
+    return np.concatenate([x, after], axis=-2)
+
+
+def halved(rule: Rule, x: np.ndarray) -> np.ndarray:
+    """The same curve, or curves, with every interval halved, shape (..., 2 N, m, d)."""
+    places = 0.5 * rule.nodes[:-1]
+    matrix = rule.interpolation(np.concatenate([places, 0.5 + places]))
+    ends = closed(x)[..., None, :]
+    # a sum of products in this order: one of many curves comes out as it would alone, to the last bit
+    found = sum(matrix[:, j, None] * ends[..., j, :, :] for j in range(rule.degree + 1))
+    return np.reshape(found, (*x.shape[:-3], 2 * x.shape[-3], *x.shape[-2:]))
 
 
 def evaluate(rule: Rule, widths: np.ndarray, x: np.ndarray, places: np.ndarray) -> np.ndarray:

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..bifurcation.detect import Detector
 from ..bifurcation.kinds import BORDERS
 from ..branches.assembly import filled, make_branch
-from ..branches.ending import Ending, Reason
 from ..branches.half_branch import HalfBranch
-from ..branches.opening import from_border, on_this_side
-from ..branches.tracing import trace_half
-from ..continuation.chunk import Status
+from ..branches.opening import on_this_side
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..continuation.starts import solve_start, start_remark
 from ..interrupts import listening, take
-from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
+from .both_ways import DEAD, followed
 from .identity import parts_further_on
 from .label_special_points import mark, origin_index
 from .match_borders import is_border, same_border, tie_borders
@@ -34,7 +29,6 @@ if TYPE_CHECKING:
 BEYOND = (
     0.1 * MARGIN
 )  # a branch whose margins are less all along is none, though they are no less than what counts as rounding
-DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 
 
 def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) -> None:
@@ -199,17 +193,9 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
 
 def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     """Trace a branch that is not known, label its special points, and queue what leaves it."""
-    engine, detector = run.engine(pending.problem)
     run.serial += 1
     label = run.new_label("B")
-    half, endings, closed = both_ways(run, engine, detector, pending, first, real, label)
-    while any(ending.reason is Reason.COARSE for ending in endings):
-        finer = refined(run, engine, pending, first)
-        if finer is None:
-            break
-        run.serial += 1
-        engine, detector, first = finer
-        half, endings, closed = both_ways(run, engine, detector, pending, first, real, label)
+    half, endings, closed = followed(run, pending, first, real, label)
     if pending.kind is Origin.START and len(half) == 1 and not closed and half.status in DEAD:
         name = pending.problem.parameter
         raise ValueError(
@@ -221,18 +207,19 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "the equations cannot be followed beyond the border")
         return
-    if pending.kind is Origin.BORDER and of_no_length(run, engine, half):
+    if pending.kind is Origin.BORDER and of_no_length(run, half):
         run.numbers["B"] -= 1
         return  # a solution of the border itself, once more: nothing was crossed
-    if pending.kind is Origin.BORDER and begins_elsewhere(run, engine, half, pending):
+    if pending.kind is Origin.BORDER and begins_elsewhere(run, half, pending):
         run.numbers["B"] -= 1
         run.remark(str(pending.point), "a solution found nearby lies on a branch that does not begin here")
         return
     origin = origin_index(half, pending)
-    whole = filled(engine, half, origin)
+    whole = filled(half, origin)
     if whole is not half:
         half, origin = whole, origin_index(whole, pending)
-    branch = make_branch(label, engine, half, real, endings, closed, pending.point)
+    engine = half.engine
+    branch = make_branch(label, half, real, endings, closed, pending.point)
     run.graph.branches[label] = branch
     run.register.add(branch, engine, {i for i, _ in half.events} | {origin})
     run.connect(pending.point, pending.source, label, pending.note)
@@ -246,36 +233,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.tell(f"{label} finished", float(branch.values[-1]))
 
 
-def refined(
-    run: Run, engine: Engine, pending: Pending, first: Solved
-) -> tuple[Engine, Detector, Solved] | None:
-    """The same pending branch with more unknowns; None where it cannot be started there."""
-    coarse = pending.problem
-    assert isinstance(coarse, Adaptive)
-    problem = coarse.refined()
-    finer, detector = run.engine(problem)
-
-    def image(point: Solved | None, solve: bool = True) -> Solved | None:
-        if point is None:
-            return None
-        u = coarse.halved(point.u)
-        tangent = finer.unit(finer.join(coarse.halved(point.tangent[:-1], True), float(point.tangent[-1])))
-        if not solve:
-            return point._replace(u=u, tangent=tangent)
-        border = finer.weights * tangent
-        return finer.solve(u, point.p, border, float(border @ finer.join(u, point.p)), tangent)
-
-    begin = image(first)
-    if begin is None:
-        return None
-    pending.problem, pending.u = problem, begin.u
-    pending.tangent = begin.tangent if pending.tangent is not None else None
-    pending.origin = image(pending.origin, solve=False)
-    pending.ahead, pending.back = image(pending.ahead), image(pending.back)
-    return finer, detector, begin
-
-
-def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
+def of_no_length(run: Run, half: HalfBranch) -> bool:
     """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
     nowhere = run.settings.rounding
     whole, unit = half.joined(), run.unit(half.end)
@@ -284,17 +242,17 @@ def of_no_length(run: Run, engine: Engine, half: HalfBranch) -> bool:
         return True
     if length > run.settings.located * unit:
         return False
-    across = engine.join(np.ptp(whole.points, axis=0), 0.0)
+    engine, across = half.engine, np.append(np.ptp(whole.points, axis=0), 0.0)
     return bool(
         whole.smallest.max() <= nowhere or (length <= nowhere * unit and engine.norm(across) <= nowhere)
     )
 
 
-def begins_elsewhere(run: Run, engine: Engine, half: HalfBranch, pending: Pending) -> bool:
+def begins_elsewhere(run: Run, half: HalfBranch, pending: Pending) -> bool:
     """Whether a branch looked for beyond a border ends at other borders, both ways: it was only passing by."""
     ends = {i: e for i, e in half.events if i in (0, len(half) - 1) and e.kind in BORDERS}
     return len(ends) == 2 and not any(
-        is_border(run, engine.problem, e, str(pending.point)) for e in ends.values()
+        is_border(run, half.engine.problem, e, str(pending.point)) for e in ends.values()
     )
 
 
@@ -369,58 +327,3 @@ def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
     border = engine.weights * point.tangent
     found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), point.tangent)
     return found if found is not None and engine.lower <= found.p <= engine.upper else None
-
-
-def both_ways(
-    run: Run, engine: Engine, detector: Detector, pending: Pending, first: Solved, real: bool, label: str
-) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
-    """The whole branch in order, why it ends at either side, and whether it is closed."""
-    key = str(run.serial)
-
-    def notice(points: int, value: float) -> None:
-        run.tell(f"{label}: {points} points", value)
-
-    def go(start: Solved, side: str, origin: Solved | None = None) -> HalfBranch:
-        place = f"{key}/{side}"
-        return trace_half(
-            engine, start, detector, run.journal, place, real, pending.first_step, notice, origin
-        )
-
-    def ending(half: HalfBranch) -> Ending:
-        found = Ending.of(half.status, half.end)
-        if half.status in DEAD:
-            why = pending.problem.explain_end(*half.at(len(half) - 1), half.status == Status.STEP_TOO_SMALL)
-            return replace(found, text=why)
-        return found
-
-    def beginning(reason: Reason) -> Ending:
-        return Ending(reason, pending.p, pending.point, pending.source)
-
-    if pending.kind is Origin.REST:
-        ahead = from_border(engine, go(first, "ahead"), first)
-        return ahead, (beginning(Reason.GOES_ON), ending(ahead)), False
-    if pending.kind is Origin.SWITCH:
-        assert pending.origin is not None
-        starts = {"ahead": pending.ahead, "back": pending.back}
-        sides = {
-            side: go(point, side, pending.origin)
-            for side, point in starts.items()
-            if point is not None and engine.lower <= point.p <= engine.upper
-        }
-        if "ahead" in sides and sides["ahead"].status == Status.CLOSED:
-            assert sides["ahead"].first is not None
-            ahead = sides["ahead"].since(sides["ahead"].first)
-            return ahead, (ending(ahead), ending(ahead)), True
-        if len(sides) == 2:
-            whole = sides["back"].reversed().extended(sides["ahead"], skip=1)
-            return whole, (ending(sides["back"]), ending(sides["ahead"])), False
-        if "ahead" in sides:
-            return sides["ahead"], (beginning(Reason.LEAVES), ending(sides["ahead"])), False
-        return sides["back"].reversed(), (ending(sides["back"]), beginning(Reason.LEAVES)), False
-    if first.tangent[-1] < 0.0 and pending.kind is Origin.START:
-        first = first._replace(tangent=-first.tangent, sign=-first.sign)
-    ahead = go(first, "ahead")
-    if ahead.status == Status.CLOSED:
-        return ahead, (ending(ahead), ending(ahead)), True
-    back = go(first._replace(tangent=-first.tangent, sign=-first.sign), "back")
-    return back.reversed().extended(ahead, skip=1), (ending(back), ending(ahead)), False

@@ -122,6 +122,11 @@ class AdaptiveLocus(LocusProblem):
         self.mesh.parts_of_refined = base.parts_of_refined
         return coarse
 
+    @property
+    def parts_of_refined(self) -> int:
+        """Equal parts, into which `halved` divides the mesh."""
+        return self.mesh.parts_of_refined
+
     def refined(self) -> AdaptiveLocus:
         """The same locus with twice as many intervals."""
         finer = self.mesh.refined()
@@ -144,7 +149,9 @@ class AdaptiveLocus(LocusProblem):
 
     def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
         """Unknowns, or a direction of unknowns, with every interval halved."""
-        return np.concatenate([self.mesh.halved(u[: self.size], direction), u[self.size :]])
+        return np.concatenate(
+            [self.mesh.halved(u[..., : self.size], direction), u[..., self.size :]], axis=-1
+        )
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AdaptiveLocus | None:

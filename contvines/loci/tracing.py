@@ -263,7 +263,7 @@ def trace_locus(
             problem, u, p, q, within, settings, label, seed, virtual, journal, progress, finer + 1
         )
     endings = (Ending.said(ended[0]), Ending.said(ended[1]))
-    branch = make_branch(label, engine, whole, real, endings, ahead.status == Status.CLOSED, seed)
+    branch = make_branch(label, whole, real, endings, ahead.status == Status.CLOSED, seed)
     branch.description["unfolded"] = problem.unfolded
     for index, end in ((0, first), (-1, last)):
         if end is not None:

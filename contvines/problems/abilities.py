@@ -242,10 +242,14 @@ class Adaptive(Protocol):
     ``accuracy(u, p)`` is the relative accuracy of values on the mesh; ``normal_form`` is the coefficient at a fold (of the sign ``along`` a direction), a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms;
     ``anchor(u, p)`` keeps the phase of a solution for those that follow, until ``anchor(None)``, and ``in_phase(u)`` tells whether it suits another one;
     ``terms(u)`` has the sizes of the terms of each equation, which may cancel and round as numbers of that size do;
-    ``too_coarse(u, p)`` tells whether more unknowns are needed, and ``refined()`` and ``halved(u, direction)`` have these.
+    ``too_coarse(u, p)`` tells whether more unknowns are needed, and ``refined()`` and ``halved(u, direction)`` have these: on the same intervals,
+    each halved, where ``parts_of_refined`` is 1; rows of an array may be unknowns then.
     """
 
     chunk: int
+
+    @property
+    def parts_of_refined(self) -> int: ...
 
     def accuracy(self, u: np.ndarray, p: float) -> float: ...
     def normal_form(

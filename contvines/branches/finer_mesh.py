@@ -1,0 +1,146 @@
+"""Finer meshes for a branch that is being followed: what has been found of it is read on the next one, and it goes on there.
+
+A polynomial on an interval is the same one on both halves of it. So points stay as they were solved, with the error of their mesh,
+which was small enough where they are; special points are located again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from ..bifurcation.detect import Detector
+from ..bifurcation.located import Role
+from ..continuation.chunk import Status, packed
+from ..continuation.engine import Engine, Solved
+from ..problems.abilities import Adaptive
+from ..problems.protocol import Problem
+from .half_branch import HalfBranch, Piece
+
+
+class Meshes:
+    """The meshes of one branch, each with twice as many intervals as the one before.
+
+    Parameters
+    ----------
+    engine_of : callable
+        Engine and detector of a problem.
+    engine : Engine
+        Of the first mesh.
+    """
+
+    def __init__(self, engine_of: Callable[[Problem], tuple[Engine, Detector]], engine: Engine) -> None:
+        self.engine_of, self.engines = engine_of, [engine]
+
+    def finer(self, engine: Engine) -> Engine:
+        """The engine of the next mesh."""
+        place = self.engines.index(engine) + 1
+        if place == len(self.engines):
+            self.engines.append(self.engine_of(_adaptive(engine).refined())[0])
+        return self.engines[place]
+
+    def image(self, point: Solved, engine: Engine, solve: bool = True) -> Solved | None:
+        """How a point of a mesh reads on the next one; None where it cannot be solved there."""
+        finer = self.finer(engine)
+        read = _read(point, engine, finer)
+        return _solved(finer, read.u, read.p, read.tangent) if solve else read
+
+    def read(self, half: HalfBranch, wanted: Engine) -> HalfBranch:
+        """A half on a finer mesh, as it is."""
+        while half.engine is not wanted:
+            engine, finer = half.engine, self.finer(half.engine)
+            events = [(i, replace(e, point=_read(e.point, engine, finer))) for i, e in half.events]
+            first = None if half.first is None else _adaptive(engine).halved(half.first)
+            pieces = [_piece(piece, engine, finer) for piece in half.pieces]
+            half = HalfBranch(finer, pieces, events, half.status, first)
+        return half
+
+    def onward(
+        self, half: HalfBranch, real: bool
+    ) -> tuple[HalfBranch, Detector, Callable[[Solved], Solved]] | None:
+        """A half on the next mesh, the detector there, and how points of the half's mesh read there; None where it has other special points there."""
+        engine, problem = half.engine, _adaptive(half.engine)
+        if problem.parts_of_refined != 1:
+            return None  # a mesh with other intervals altogether
+        finer = self.finer(engine)
+        found = self.read(half, finer)
+        detector = self.engine_of(finer.problem)[1]
+        ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
+        same = ended and _located_again(found, detector, real)
+        detector.parts = self.engine_of(engine.problem)[1].parts
+
+        def image(point: Solved) -> Solved:
+            return self.image(point, engine) or _read(point, engine, finer)
+
+        return (found, detector, image) if same else None
+
+
+def _adaptive(engine: Engine) -> Adaptive:
+    assert isinstance(engine.problem, Adaptive)
+    return engine.problem
+
+
+def _read(point: Solved, engine: Engine, finer: Engine) -> Solved:
+    problem = _adaptive(engine)
+    direction = problem.halved(point.tangent[:-1], True)
+    tangent = finer.unit(finer.join(direction, float(point.tangent[-1])))
+    return point._replace(u=problem.halved(point.u), tangent=tangent)
+
+
+def _piece(piece: Piece, engine: Engine, finer: Engine) -> Piece:
+    problem = _adaptive(engine)
+    directions, slopes = problem.halved(piece.tangents[:, :-1], True), piece.tangents[:, -1]
+    tangents = np.array([finer.unit(finer.join(v, float(s))) for v, s in zip(directions, slopes)])
+    return piece._replace(points=problem.halved(piece.points), tangents=tangents)
+
+
+def _solved(finer: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
+    """The solution across a direction, in phase with the guess."""
+    problem, border = _adaptive(finer), finer.weights * tangent
+    problem.anchor(u, p)
+    found = finer.solve(u, p, border, float(border @ finer.join(u, p)), tangent)
+    found = None if found is None else finer.steered(found)
+    problem.anchor(None)
+    return found
+
+
+def _at_the_end(half: HalfBranch) -> bool:
+    """Solve for the last point, at its end of the interval."""
+    finer, last = half.engine, len(half) - 1
+    u, p, tangent = half.at(last)
+    _adaptive(finer).anchor(u, p)
+    found = finer.at_value(u, p, tangent)
+    _adaptive(finer).anchor(None)
+    if found is not None:
+        half.put(last, found)
+    return found is not None
+
+
+def _located_again(half: HalfBranch, detector: Detector, real: bool) -> bool:
+    """Locate the special points of a half between their neighbours on its mesh; whether they are the same ones."""
+    events, half.events = half.events, []
+    places = sorted({i for i, _ in events})
+    breaks = [k + 1 for k, (one, other) in enumerate(pairwise(places)) if other > one + 1]
+    for group in np.split(np.array(places, dtype=int), breaks) if places else []:
+        low, high = int(group[0]) - 1, int(group[-1]) + 1
+        if low < 1 or high >= len(half):
+            return False  # an end may be singular itself
+        ends = [end for i in (low, high) if (end := _solved(half.engine, *half.at(i))) is not None]
+        if len(ends) < 2:
+            return False
+        _adaptive(half.engine).anchor(ends[0].u, ends[0].p)  # as while a chunk is looked at
+        chunk = packed(ends, Status.RUNNING)
+        found = [e for e in detector.look(chunk, detector.scan(chunk), real) if e.role is not Role.PLAIN]
+        _adaptive(half.engine).anchor(None)
+        known = [(i, e) for i, e in events if low < i < high]
+        if not found:  # what was rounding on the mesh before
+            known = [(i, e) for i, e in known if e.role is not Role.UNRESOLVED]
+        if [(e.kind, e.role, e.name) for e in found] != [(e.kind, e.role, e.name) for _, e in known]:
+            return False
+        for (i, event), again in zip(known, found):
+            half.put(i, again.point)
+            half.events.append((i, replace(again, position=event.position)))
+    return True

@@ -1,0 +1,106 @@
+"""Branches whose cycles ask for more intervals on the way: what has been found stays, and goes on on the finer mesh."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+from contvines.flows import mesh
+from contvines.flows.collocation import rule
+from contvines.graph.persistence import same_graph
+
+
+def nerve(x, p):
+    """FitzHugh's and Nagumo's equations."""
+    return [x[0] - x[0] ** 3 / 3 - x[1] + p.current, 0.08 * (x[0] + 0.7 - 0.8 * x[1])]
+
+
+def flow():
+    return cv.FlowProblem(nerve, [-1.0, -0.5], {"current": 0.0})
+
+
+WHOLE = {"over": "current", "within": (0.0, 2.0)}
+
+
+@pytest.fixture(scope="module")
+def told():
+    """A graph, and the numbers of points of its cycles that were told on the way."""
+    numbers: list[int] = []
+
+    def listen(state):
+        words = state.message.split()
+        if "B2:" in words:
+            numbers.append(int(words[words.index("B2:") + 1]))
+
+    return cv.diagram(flow(), progress=listen, **WHOLE), numbers
+
+
+@pytest.mark.parametrize("degree", [2, 4, 7])
+def test_a_halved_mesh_has_the_same_curves(degree):
+    r, rng = rule(degree), np.random.default_rng(degree)
+    x, widths = rng.standard_normal((3, 6, degree, 2)), rng.uniform(0.5, 1.5, 6)
+    places = rng.random(200)
+    finer = mesh.halved(r, x)
+    for one, other in zip(x, finer):
+        before = mesh.evaluate(r, widths, one, places)
+        assert np.allclose(mesh.evaluate(r, np.repeat(0.5 * widths, 2), other, places), before, atol=1e-12)
+        assert np.array_equal(mesh.halved(r, one), other)
+
+
+def test_cycles_on_a_mesh_that_becomes_too_coarse_are_not_followed_again(told):
+    graph, numbers = told
+    assert graph.branches["B2"].problem.intervals > 20  # with which cycles begin
+    assert numbers == sorted(numbers) and numbers
+
+
+def test_cycles_from_before_and_behind_are_those_of_a_simulation(told):
+    """DOP853 goes once round each; by hand: Hopf points where the trace vanishes, x^2 = 1 - 0.064."""
+    graph, _ = told
+    x = np.sqrt(1.0 - 0.064)
+    hopf = [x**3 / 3 - x + (x + 0.7) / 0.8, -(x**3) / 3 + x + (0.7 - x) / 0.8]
+    assert [point.value for point in graph.of_kind("hopf")] == pytest.approx(sorted(hopf), abs=1e-9)
+    cycles = graph.branches["B2"]
+    for i in range(2, len(cycles) - 2, 20):
+        if max(np.abs(cycles.multipliers[i])) < 1e3:
+            orbit = cycles.orbit(i)
+            assert orbit.replay() < 1e-5
+            assert orbit.multipliers == pytest.approx(cycles.multipliers[i], rel=1e-4, abs=1e-6)
+
+
+def test_a_run_with_a_journal_goes_on_on_the_finer_mesh(told, tmp_path):
+    graph, _ = told
+    with cv.resume(tmp_path / "x.vines") as journal:
+        assert same_graph(cv.diagram(flow(), journal=journal, **WHOLE), graph)
+    with cv.resume(tmp_path / "x.vines") as journal:
+        assert same_graph(cv.diagram(flow(), journal=journal, **WHOLE), graph)
+
+
+def test_both_sides_of_a_start_come_to_the_same_mesh():
+    """Van der Pol's period tends to 2 pi, and to (3 - 2 ln 2) mu (Cartwright, with his terms up to mu^(-1/3))."""
+    vdp = cv.FlowProblem(
+        lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]],
+        [1.0, 0.0],
+        {"mu": 1.0},
+        mirror=lambda x: -x,
+    )
+    branch = cv.diagram(vdp.attractor(mu=2.0), over="mu", within=(0.01, 100.0)).branches["B1"]
+    periods, mu = branch.measure("period"), branch.values
+    low, high = int(np.argmin(mu)), int(np.argmax(mu))
+    assert periods[low] == pytest.approx(2 * np.pi * (1 + mu[low] ** 2 / 16), abs=1e-7)
+    assert periods[high] == pytest.approx((3 - 2 * np.log(2)) * 100 + 7.014 / 100 ** (1 / 3), rel=2e-3)
+    assert abs(branch.orbit(low).period_error) < 1e-6
+
+
+def test_a_branch_that_begins_again_on_a_finer_mesh_has_not_come_back():
+    """The Oregonator in Tyson's scaling: the mesh becomes too coarse with the first points."""
+
+    def rates(x, p):
+        return [
+            (8e-4 * x[1] - x[0] * x[1] + x[0] * (1 - x[0])) / 0.01,
+            (-8e-4 * x[1] - x[0] * x[1] + p.f * x[2]) / 1e-4,
+            x[0] - x[2],
+        ]
+
+    flow = cv.FlowProblem(rates, [0.5, 0.5, 0.5], {"f": 0.3})
+    graph = cv.diagram(flow, over="f", within=(0.3, 1.0), settings={"max_points": 60})
+    assert [point.kind for point in graph.special.values()].count("hopf") == 1
+    assert not graph.branches["B2"].closed and len(graph.branches["B2"]) > 40
