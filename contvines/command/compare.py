@@ -121,16 +121,19 @@ def peaks_compared(
     if not isinstance(model, Model):
         raise ValueError(f"the machine {model.name!r} has no closed forms to compare with")
 
-    found = {}
+    def grid(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+        values = np.linspace(low, high, POINTS)
+        return values, np.array([model.vector_at(over, float(value)) for value in values])
+
+    found, whole = {}, grid(*within)
     for kind in kinds:
-        low, high = within
-        for _ in range(3):  # each time between the neighbours of the largest
-            values = np.linspace(low, high, POINTS)
-            params = np.array([model.vector_at(over, float(value)) for value in values])
+        values, params = whole
+        for narrower in (True, True, False):  # between the neighbours of the largest
             response = reference(kind, model, params) * model.gauge("length", params)
             place = int(response.argmax())
-            low, high = values[max(place - 1, 0)], values[min(place + 1, POINTS - 1)]
             found[kind] = float(response[place]), float(values[place])
+            if narrower:
+                values, params = grid(values[max(place - 1, 0)], values[min(place + 1, POINTS - 1)])
     return found
 
 

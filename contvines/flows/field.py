@@ -262,6 +262,15 @@ class Field:
             result[:, :, j] = _difference(lambda s, unit=unit: self(x + s * unit, p, t)) / step
         return result
 
+    def carried(
+        self, x: np.ndarray, vectors: np.ndarray, p: float, t: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """f at the points, and df/dx times a vector at each, shape (n, d) both: of one call where complex numbers may be asked."""
+        if self.complex_step and self.compiled is None and self.given_jacobian is None:
+            found = self(x + 1j * COMPLEX_STEP * vectors, p, t)
+            return np.real(found), np.imag(found) / COMPLEX_STEP
+        return self(x, p, t), np.einsum("nab,nb->na", self.jacobian(x, p, t), vectors)
+
     def along(self, line: Callable[[complex], np.ndarray], p: float) -> np.ndarray:
         """Derivative of a function of the parameter at p: by the complex step where f and the period allow it, else by differences.
 

@@ -79,9 +79,8 @@ class WithVectors:
 
     def __call__(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """Rates, shape (n, 2 d)."""
-        states, vectors = np.hsplit(x, 2)
-        turned = np.einsum("nab,nb->na", self.field.jacobian(states, p, t), vectors)
-        return np.hstack([self.field(states, p, t), turned])
+        d = x.shape[1] // 2
+        return np.concatenate(self.field.carried(x[:, :d], x[:, d:], p, t), axis=1)
 
 
 class PopulatedFlow(Flow, Protocol):

@@ -148,8 +148,7 @@ def _sliding(omega: float, force: float, drag: float, eps: float, own: float) ->
         high *= 2.0
         if high > DESIGNING.endless:
             return math.inf
-    for _ in range(200):
-        middle = 0.5 * (low + high)
+    while low < (middle := 0.5 * (low + high)) < high:
         low, high = (middle, high) if missing(middle) < 0.0 else (low, middle)
     return high
 

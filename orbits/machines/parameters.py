@@ -99,20 +99,24 @@ class Parameter:
         ParameterError
             If it is no finite number within the limits, nor one of the words.
         """
-        name, says = self.name, self.limits.text
+        name = self.name
         if isinstance(value, str) and self.words:
             if value not in self.words:
                 known = ", ".join(f'"{word}"' for word in self.words)
-                raise ParameterError(f"{name} = {value!r} is unknown; give {known} or a number {says}")
+                raise ParameterError(
+                    f"{name} = {value!r} is unknown; give {known} or a number {self.limits.text}"
+                )
             return self.words[value]
         try:
             number = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            raise ParameterError(f"{name} = {value!r} is not a number; give a number {says}") from None
+            raise ParameterError(
+                f"{name} = {value!r} is not a number; give a number {self.limits.text}"
+            ) from None
         if not math.isfinite(number):
-            raise ParameterError(f"{name} = {number} is not finite; give a number {says}")
+            raise ParameterError(f"{name} = {number} is not finite; give a number {self.limits.text}")
         if number not in self.limits:
-            raise ParameterError(f"{name} = {number:g} is out of range; give a number {says}")
+            raise ParameterError(f"{name} = {number:g} is out of range; give a number {self.limits.text}")
         return number
 
     def named(self, value: object) -> str | float:

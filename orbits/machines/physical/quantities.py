@@ -95,6 +95,16 @@ class Basis:
         return np.array([[q.powers.get(name, 0.0) for name in self.numbers] for q in self.quantities])
 
     @cached_property
+    def sizes(self) -> np.ndarray:
+        """What a quantity is where the product of powers is one, shape (Q,)."""
+        return np.array([quantity.constant for quantity in self.quantities]) / self.units
+
+    @cached_property
+    def usual(self) -> np.ndarray:
+        """Defaults that are numbers, else NaN, shape (Q,)."""
+        return np.array([q.default if isinstance(q.default, float) else np.nan for q in self.quantities])
+
+    @cached_property
     def law(self) -> np.ndarray:
         """The numbers as products of powers of the quantities, shape (Q + 1, P): factors, then exponents."""
         exponents = (
@@ -109,11 +119,10 @@ class Basis:
 
     def amounts_of(self, numbers: np.ndarray) -> np.ndarray:
         """The quantities, counted in their units, of numbers (..., P); shape (..., Q)."""
-        constants = np.array([quantity.constant for quantity in self.quantities])
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = constants / self.units * np.prod(numbers[..., None, :] ** self.powers, axis=-1)
-        usual = [q.default if isinstance(q.default, float) else np.nan for q in self.quantities]
-        return np.where(np.isnan(found), usual, found)  # the ratio of two zeros is what it is without them
+            found = self.sizes * np.prod(numbers[..., None, :] ** self.powers, axis=-1)
+        # the ratio of two zeros is what it is without them
+        return np.where(np.isnan(found), self.usual, found)
 
     def path(self, place: int, amounts: np.ndarray) -> np.ndarray:
         """How the numbers follow quantity number `place` while the others stay, shape (2, P); see `orbits.machines.path`."""
