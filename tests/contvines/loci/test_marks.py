@@ -46,9 +46,9 @@ def test_branches_that_cross_do_not_fold_there():
     def kopel(u, p):
         return u * (1 - p.rho) + p.rho * p.mu * u[::-1] * (1 - u[::-1])
 
-    problem = cv.MapProblem(kopel, [0.5, 0.5], {"mu": 2.0, "rho": 0.8}, parameter="mu")
-    graph = cv.diagram(problem, over="mu", within=(1.5, 3.8), depth=0)
-    chart = cv.chart(graph, over="rho", within=(0.5, 1.4), depth=1, regions=False)
+    problem = cv.MapProblem(kopel, [0.5, 0.5], {"mu": 2.0, "rho": 0.9}, parameter="mu")
+    graph = cv.diagram(problem, over="mu", within=(2.0, 3.4), depth=0)
+    chart = cv.chart(graph, over="rho", within=(0.8, 1.2), depth=1, regions=False)
     assert all(locus.kind != "fold" for locus in chart.loci.values())
     (meeting,) = [point for point in chart.points.values() if point.kind == "fold-flip"]
     assert meeting.value == pytest.approx((3.0, 1.0), abs=1e-8)
