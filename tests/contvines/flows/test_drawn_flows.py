@@ -19,7 +19,7 @@ def test_what_an_atlas_says_is_true_and_nothing_is_missing(seed):
 def test_an_atlas_follows_nothing_that_leaves_beside_the_orbit_of_a_saddle_focus():
     """Glendinning and Sparrow 1984: doublings accumulate at the homoclinic orbit, and on each branch that leaves there again."""
     graph = atlas_of(drawn(4501, 107))
-    orbit = graph["HC1"]
+    orbit = graph.special["HC1"]
     doublings = [point for point in graph.of_kind("period-doubling") if point.branch == orbit.branch]
     gaps = [
         abs(point.value - orbit.value) for point in doublings[::2]

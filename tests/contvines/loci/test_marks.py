@@ -16,7 +16,7 @@ def henon(x, p):
 def neimark_sacker():
     problem = cv.MapProblem(henon, [0.6, 0.6], {"a": 1.0, "b": 0.5}, parameter="b")
     graph = cv.diagram(problem, over="b", within=(0.5, 1.5), depth=0)
-    return cv.locus(graph["NS1"], over="a", within=(-2.0, 4.0), bounds=(0.5, 1.5))
+    return cv.locus(graph.special["NS1"], over="a", within=(-2.0, 4.0), bounds=(0.5, 1.5))
 
 
 def test_strong_resonances_of_the_henon_map(neimark_sacker):
@@ -35,7 +35,9 @@ def test_a_chart_and_its_loci_hold_the_same_points(tmp_path):
     graph = cv.diagram(problem, over="b", within=(0.5, 1.5), depth=0)
     chart = cv.chart(graph, over="a", within=(-2.0, 4.0), depth=0, regions=False)
     chart.save(tmp_path / "chart.vines")
-    for one in (chart, cv.load(tmp_path / "chart.vines")):
+    again = cv.load(tmp_path / "chart.vines")
+    assert isinstance(again, cv.Chart)
+    for one in (chart, again):
         held = {label: point for locus in one.loci.values() for label, point in locus.points.items()}
         assert held and held == one.points
         assert one.points["R31"].value == pytest.approx((1.0, 1.25), abs=1e-8)
