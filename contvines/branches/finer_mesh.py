@@ -46,7 +46,7 @@ class Meshes:
         """How a point of a mesh reads on the next one; None where it cannot be solved there."""
         finer = self.finer(engine)
         read = _read(point, engine, finer)
-        return _solved(finer, read.u, read.p, read.tangent) if solve else read
+        return _solved(finer, read) if solve else read
 
     def read(self, half: HalfBranch, wanted: Engine) -> HalfBranch:
         """A half on a finer mesh, as it is."""
@@ -97,14 +97,19 @@ def _piece(piece: Piece, engine: Engine, finer: Engine) -> Piece:
     return piece._replace(points=problem.halved(piece.points), tangents=tangents)
 
 
-def _solved(finer: Engine, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
-    """The solution across a direction, in phase with the guess."""
-    problem, border = _adaptive(finer), finer.weights * tangent
-    problem.anchor(u, p)
-    found = finer.solve(u, p, border, float(border @ finer.join(u, p)), tangent)
+def _solved(finer: Engine, guess: Solved) -> Solved | None:
+    """The solution across the tangent of a guess, in phase with that."""
+    problem = _adaptive(finer)
+    problem.anchor(guess.u, guess.p)
+    guess = finer.standing(guess)
+    found = finer.across(guess.u, guess.p, guess.tangent)
     found = None if found is None else finer.steered(found)
     problem.anchor(None)
     return found
+
+
+def _guess(half: HalfBranch, i: int) -> Solved:
+    return Solved(*half.at(i), np.zeros(0), 0.0, 0.0, 0.0)
 
 
 def _at_the_end(half: HalfBranch) -> bool:
@@ -128,7 +133,7 @@ def _located_again(half: HalfBranch, detector: Detector, real: bool) -> bool:
         low, high = int(group[0]) - 1, int(group[-1]) + 1
         if low < 1 or high >= len(half):
             return False  # an end may be singular itself
-        ends = [end for i in (low, high) if (end := _solved(half.engine, *half.at(i))) is not None]
+        ends = [end for i in (low, high) if (end := _solved(half.engine, _guess(half, i))) is not None]
         if len(ends) < 2:
             return False
         _adaptive(half.engine).anchor(ends[0].u, ends[0].p)  # as while a chunk is looked at

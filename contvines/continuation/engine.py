@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,7 @@ from contvines.shared.floating_point import EPSILON
 from ..core.table import TableKernels
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Adaptive, Moving, Nearing, Rough
-from ..problems.protocol import KernelFunctions, Problem, array_of
+from ..problems.protocol import Problem, array_of
 from . import layout
 from .aims import NO_COLUMNS, NOTHING, Aim
 from .layout import Control, Found, Metric, Scratch, Way, solved_point
@@ -100,11 +101,16 @@ class Engine(Rows):
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
         self.known = np.zeros(layout.SIZE)
-        self.loop = self._loop(kernels)
+        self.loop = self._loop(self.metric)
 
-    def _loop(self, kernels: KernelFunctions) -> InterpretedLoop | NativeLoop:
+    @cached_property
+    def still(self) -> InterpretedLoop | NativeLoop:
+        """The loop of a mesh that stays where it is."""
+        return self._loop(self.metric._replace(moving=None))
+
+    def _loop(self, metric: Metric) -> InterpretedLoop | NativeLoop:
         """March and single points, in the native core for compiled problems."""
-        rest = self.metric, self.noise, self.known, self.scratch, self.settings.step_rule
+        kernels, rest = self.kernels, (metric, self.noise, self.known, self.scratch, self.settings.step_rule)
         if isinstance(kernels, TableKernels):
             from .native import NativeLoop
 
@@ -164,6 +170,19 @@ class Engine(Rows):
         tangent = point.tangent.copy()
         self.moving.steer(point.u, tangent)
         return point._replace(tangent=self.unit(tangent))
+
+    def standing(self, point: Solved) -> Solved:
+        """The point, with the direction along which a mesh stands where it is."""
+        if self.moving is None:
+            return point
+        tangent = point.tangent.copy()
+        self.moving.stand(point.u, tangent)
+        return point._replace(tangent=self.unit(tangent))
+
+    def across(self, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
+        """The solution across a direction through a guess."""
+        border = self.weights * tangent
+        return self.solve(u, p, border, float(border @ self.join(u, p)), tangent)
 
     # ------------------------------------------------------------------ single points
     def solve(

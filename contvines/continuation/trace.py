@@ -87,7 +87,7 @@ def chunks(
         h, capacity = settings.first_step if first_step is None else first_step, settings.first_chunk
         closing, reach = Closing(engine, start), Reach(engine, start)
         wish: Retrace | Finer | None = None
-        total, number = 1, 0
+        total, number, still = 1, 0, False
         while True:
             name, before = f"{key}/{number}", (h, copy(closing), copy(reach))
             most = min(8 * settings.chunk, LARGEST // (2 * engine.n + engine.row_size))
@@ -99,7 +99,7 @@ def chunks(
                     *(np.asarray(known[part]) for part in layout.Points._fields),
                     status=Status(int(known["status"])),
                 )
-                h = float(known["h"])
+                h, still = float(known["h"]), bool(known.get("still", False))
                 reach.escapes(chunk)
             else:
                 room, longest = capacity, settings.max_step * reach.growth(history[-1])
@@ -113,7 +113,17 @@ def chunks(
                     room = min(room, adaptive.chunk)
                 room = min(room, max(settings.max_points - total, 1))
                 apart = _apart(engine, max(h, longest))
-                chunk, h = _march(engine, history, room, h, longest, stop_at_border)
+                chunk, h = _march(engine, history, room, h, longest, stop_at_border, still)
+                stuck = chunk.status == Status.STEP_TOO_SMALL and engine.moving is not None and not still
+                still = stuck
+                if stuck:
+                    # the direction along which the mesh moves may jump where the solutions do not: for a chunk the mesh stands still
+                    h = settings.first_step
+                    if len(chunk) > 1:
+                        chunk.status = Status.RUNNING
+                    elif adaptive is not None:
+                        history, still = _anchored(engine, adaptive, history[-1:], still), False
+                        chunk, h = _march(engine, history, room, h, longest, stop_at_border, True)
                 closed = closing.cut(chunk, apart)
                 away = reach.escapes(chunk, apart)
                 if closed is not None:
@@ -127,7 +137,9 @@ def chunks(
                     chunk.status = Status.MAX_POINTS
                 # a step that failed at once is nothing to keep: a start that is refused leaves no journal
                 if len(chunk) > 1 and journal is not None and not isinstance(journal, NullJournal):
-                    journal.record(name, {**_kept(chunk), "status": int(chunk.status), "h": h})
+                    journal.record(
+                        name, {**_kept(chunk), "status": int(chunk.status), "h": h, "still": still}
+                    )
             chunk.before = history[-2] if len(history) > 1 else None
             wish = yield chunk
             number += 1
@@ -149,7 +161,7 @@ def chunks(
             total += len(chunk) - 1
             history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
             if adaptive is not None:
-                history = _anchored(engine, adaptive, history)
+                history = _anchored(engine, adaptive, history, still)
             capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
     finally:
         if adaptive is not None:
@@ -169,26 +181,33 @@ def _kept(chunk: Chunk) -> dict[str, Any]:
     return values
 
 
-def _anchored(engine: Engine, problem: Adaptive, history: list[Solved]) -> list[Solved]:
-    """The last points; where the mesh, or the phase that is kept, no longer suits the last one, that one alone, solved again."""
+def _anchored(engine: Engine, problem: Adaptive, history: list[Solved], still: bool = False) -> list[Solved]:
+    """The last points; where the mesh, or the phase that is kept, no longer suits the last one, or it is to stand still, that one alone, solved again."""
     last, image = history[-1], problem.adapted(history[-1].u)
-    if image is None and problem.in_phase(last.u):
+    if image is None and problem.in_phase(last.u) and not still:
         return history
+    problem.anchor(last.u, last.p)
+    last = engine.standing(last)
     while True:
         u, direction = last.u, last.tangent[:-1]
         if image is not None:
             u, direction = image(u), image(direction, True)
         problem.anchor(u, last.p)
-        tangent = engine.unit(engine.join(direction, float(last.tangent[-1])))
-        border = engine.weights * tangent
-        found = engine.solve(u, last.p, border, float(border @ engine.join(u, last.p)), tangent)
+        found = engine.across(u, last.p, engine.unit(engine.join(direction, float(last.tangent[-1]))))
         if image is None or found is not None:
-            return [engine.steered(found or last)]
+            found = found or last
+            return [found if still else engine.steered(found)]
         image = None
 
 
 def _march(
-    engine: Engine, history: list[Solved], capacity: int, h: float, longest: float, stop_at_border: bool
+    engine: Engine,
+    history: list[Solved],
+    capacity: int,
+    h: float,
+    longest: float,
+    stop_at_border: bool,
+    still: bool,
 ) -> tuple[Chunk, float]:
     first, n = len(history), engine.n
     size = first + capacity
@@ -203,8 +222,9 @@ def _march(
     for array, name in zip(arrays, OF_SOLVED, strict=True):
         array[:first] = [getattr(point, name) for point in history]
     control = engine.control._replace(stop_at_border=stop_at_border, max_step=longest)
+    loop = engine.still if still else engine.loop
     with engine.section:
-        filled, h, status = engine.loop.march(arrays, first, float(h), control)
+        filled, h, status = loop.march(arrays, first, float(h), control)
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
 
 

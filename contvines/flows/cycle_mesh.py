@@ -29,7 +29,15 @@ class CycleMesh(CycleUnknowns):
 
     def steer(self, u: np.ndarray, tangent: np.ndarray) -> None:
         """Let the mesh move along with the curve, and keep the phase; see :mod:`contvines.flows.moving_mesh`."""
-        self.moving.steer(u, tangent, None if self.reference is None else self.reference[0].reshape(-1))
+        self.moving.steer(u, tangent, self._phase_row)
+
+    def stand(self, u: np.ndarray, tangent: np.ndarray) -> None:
+        """Let the mesh stand where it is, and keep the phase."""
+        self.moving.stand(u, tangent, self._phase_row)
+
+    @property
+    def _phase_row(self) -> np.ndarray | None:
+        return None if self.reference is None else self.reference[0].reshape(-1)
 
     def _curve(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         x = u[: self.states].reshape(self.intervals, self.rule.degree, self.node)

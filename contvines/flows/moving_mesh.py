@@ -70,10 +70,26 @@ class MovingMesh:
         dw = np.roll(xi, -1) - xi
         dx += slopes * (xi[:, None] + self.rule.nodes[:-1] * dw[:, None])[:, :, None]
         if row is not None:
-            phase = row.reshape(x.shape)
-            dx -= (phase * dx).sum() / (phase * slopes).sum() * slopes
+            self._in_phase(dx, slopes, row)
         tangent[:n] = (dx * self.scale).reshape(-1)
         tangent[n + self.free : -1] += dw
+
+    def stand(self, u: np.ndarray, tangent: np.ndarray, row: np.ndarray | None = None) -> None:
+        """Change a direction in place to the one that changes the curve alike on a mesh that stands where it is; see :meth:`steer`."""
+        n, widths = self.states, u[self.states + self.free :]
+        x, dw = u[:n].reshape(self.count, self.rule.degree, -1) / self.scale, tangent[n + self.free : -1]
+        moved = (np.cumsum(dw) - dw)[:, None] + self.rule.nodes[:-1] * dw[:, None]
+        slopes = self._slopes(x, widths)
+        dx = tangent[:n].reshape(x.shape) / self.scale - slopes * moved[:, :, None]
+        if row is not None:
+            self._in_phase(dx, slopes, row)
+        tangent[:n] = (dx * self.scale).reshape(-1)
+        dw[:] = 0.0
+
+    @staticmethod
+    def _in_phase(dx: np.ndarray, slopes: np.ndarray, row: np.ndarray) -> None:
+        phase = row.reshape(dx.shape)
+        dx -= (phase * dx).sum() / (phase * slopes).sum() * slopes
 
     def _slopes(self, x: np.ndarray, widths: np.ndarray) -> np.ndarray:
         return np.matmul(self.rule.rates, mesh.closed(x)) / widths[:, None, None]

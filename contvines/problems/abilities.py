@@ -226,12 +226,13 @@ class Moving(Protocol):
     """Its unknowns belong to a mesh that moves along while a branch is followed.
 
     ``held`` are those unknowns that no equation determines: corrections leave them as they are. ``steer(u, tangent)`` chooses, in place, of all directions
-    that change the solution alike the one that changes the other unknowns least.
+    that change the solution alike the one that changes the other unknowns least, ``stand(u, tangent)`` the one of a mesh that stands where it is.
     """
 
     held: slice
 
     def steer(self, u: np.ndarray, tangent: np.ndarray) -> None: ...
+    def stand(self, u: np.ndarray, tangent: np.ndarray) -> None: ...
 
 
 @runtime_checkable
