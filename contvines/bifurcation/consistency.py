@@ -20,7 +20,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from .determinant import certain, turned
 from .located import Located, Role
-from .location_error import singular_within
+from .location_error import rounding_of_parameter, singular_within
 from .multiplier_counts import pairs_past
 from .segment import Segment
 from .settings import LOCATING
@@ -51,6 +51,8 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     side = turned(segment.a, segment.b)
     if engine.scaled and engine.signed and abs(plus) == 1 and side is False:
         plus = 0  # a count that the determinant contradicts is that of rounding
+    if plus and engine.adaptive and segment.a.sign == segment.b.sign and _at_one_value(segment):
+        plus = 0  # folds that are nearer than rounding
     if max(abs(end.tangent[-1]) for end in (segment.a, segment.b)) <= engine.upright(segment.a.p):
         plus = 0  # det(F_u) vanishes with the parameter's part of the tangent, all along an upright branch
     if not engine.scaled and engine.detection == "map" and side is not None and plus % 2 != side:
@@ -65,6 +67,12 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     # two that have come past +1 may meet, and be past -1 at the end
     odd = [change % 2 == number % 2 for change, number in zip((plus, minus), known)]
     return not (engine.adaptive and all(odd) and _explained(segment, found))
+
+
+def _at_one_value(segment: Segment) -> bool:
+    """Whether the parameter values of both ends cannot be told apart, for rounding."""
+    rounded = max(rounding_of_parameter(segment.engine, end) for end in (segment.a, segment.b))
+    return abs(segment.b.p - segment.a.p) <= 2.0 * rounded
 
 
 def _explained(segment: Segment, found: Sequence[Located]) -> bool:
