@@ -11,6 +11,19 @@ struct Ring {
     double* room;                             // N m d + 9 N + 3 d numbers
 };
 
+// The value and the change of an outermost node, on parabolas through it and its neighbours: nodes pass an extreme, these do not jump there.
+struct Extreme { double value, change; };
+inline Extreme at_extreme(const Ring& y, const double* u, const double* widths, const double* tangent, whole k) {
+    const whole m = y.degree, d = y.node, states = y.count * m * d, node = k / d;
+    const whole before = k >= d ? k - d : k - d + states, after = k + d < states ? k + d : k + d - states;
+    const whole from = before / d;
+    const double back = (y.nodes[from % m + 1] - y.nodes[from % m]) * widths[from / m], on = (y.nodes[node % m + 1] - y.nodes[node % m]) * widths[node / m];
+    const double rises = (u[after] - u[k]) / on, bend = (rises - (u[k] - u[before]) / back) / (back + on), slope = rises - bend * on;
+    const double away = (tangent[after] - tangent[k]) / on, turn = (away - (tangent[k] - tangent[before]) / back) / (back + on);
+    const double place = bend != 0.0 ? smaller(larger(-0.5 * slope / bend, -back), on) : 0.0;
+    return {u[k] + place * (slope + place * bend), tangent[k] + place * (away - turn * on + place * turn)};
+}
+
 inline void steer(const Ring& y, const double* u, const double* row, double* tangent) {
     const whole N = y.count, m = y.degree, d = y.node, n = N / y.copies, states = N * m * d;
     const double* widths = u + states + y.free;
@@ -23,9 +36,10 @@ inline void steer(const Ring& y, const double* u, const double* row, double* tan
             if (u[k] < u[lowest]) lowest = k;
             if (u[k] > u[highest]) highest = k;
         }
-        const double range = u[highest] - u[lowest];
-        low[a] = u[lowest], moved[a] = tangent[lowest], stretch[a] = range > 0.0 ? (tangent[highest] - tangent[lowest]) / range : 0.0;
-        size = larger(size, range / y.scale[a]);
+        const Extreme least = at_extreme(y, u, widths, tangent, lowest), most = at_extreme(y, u, widths, tangent, highest);
+        const double range = most.value - least.value;
+        low[a] = least.value, moved[a] = least.change, stretch[a] = range > 0.0 ? (most.change - least.change) / range : 0.0;
+        size = larger(size, (u[highest] - u[lowest]) / y.scale[a]);
     }
     for (whole i = 0; i < 5 * n; i++) square[i] = 0.0;
     const double stiff = y.stiffness * size * size * double(N * m * d);

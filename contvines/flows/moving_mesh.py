@@ -102,7 +102,7 @@ class MovingMesh:
 
         count, m, d = x.shape
         n, inside = count // self.copies, self.rule.nodes[:-1]
-        squares, products = (slopes**2).sum(axis=2), (slopes * _of_shape(x, dx)).sum(axis=2)
+        squares, products = (slopes**2).sum(axis=2), (slopes * self._of_shape(x, dx, widths)).sum(axis=2)
         # by the displacements of the left and of the right mesh point of each interval
         weights = np.stack([(1.0 - inside) ** 2, inside * (1.0 - inside), inside**2], axis=1)
         sums = np.column_stack([squares @ weights, products @ (1.0 - inside), products @ inside])
@@ -126,12 +126,32 @@ class MovingMesh:
             first = (wanted[0] - ends[0]) / (diagonal[0] + ends[1])
         return np.tile(np.append(first, found[:, 0] + first * found[:, 1]), self.copies)
 
+    def _of_shape(self, x: np.ndarray, dx: np.ndarray, widths: np.ndarray) -> np.ndarray:
+        """What is left of a direction without what moves and stretches the whole range of each coordinate: cycles that grow keep their mesh."""
+        flat, change, each = x.reshape(-1, x.shape[2]), dx.reshape(-1, x.shape[2]), np.arange(x.shape[2])
+        gaps = (np.diff(self.rule.nodes) * widths[:, None]).reshape(-1)
+        low, moved = _at_extreme(flat, change, gaps, flat.argmin(axis=0), each)
+        high, raised = _at_extreme(flat, change, gaps, flat.argmax(axis=0), each)
+        ranges = high - low
+        stretch = np.divide(raised - moved, ranges, out=np.zeros(len(ranges)), where=ranges > 0.0)
+        return dx - moved - stretch * (x - low)
 
-def _of_shape(x: np.ndarray, dx: np.ndarray) -> np.ndarray:
-    """What is left of a direction without what moves and stretches the whole range of each coordinate: cycles that grow keep their mesh."""
-    flat, change, each = x.reshape(-1, x.shape[2]), dx.reshape(-1, x.shape[2]), np.arange(x.shape[2])
-    lowest, highest = flat.argmin(axis=0), flat.argmax(axis=0)
-    low, moved = flat[lowest, each], change[lowest, each]
-    ranges = flat[highest, each] - low
-    stretch = np.divide(change[highest, each] - moved, ranges, out=np.zeros(len(ranges)), where=ranges > 0.0)
-    return dx - moved - stretch * (x - low)
+
+def _at_extreme(
+    flat: np.ndarray, change: np.ndarray, gaps: np.ndarray, k: np.ndarray, each: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Extreme values and how they change, on parabolas through the outermost nodes k and their neighbours: nodes pass an extreme, these do not jump there."""
+    before, after = (k - 1) % len(flat), (k + 1) % len(flat)
+    back, on = gaps[before], gaps[k]
+
+    def parabola(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        middle = values[k, each]
+        falls, rises = (middle - values[before, each]) / back, (values[after, each] - middle) / on
+        bend = (rises - falls) / (back + on)
+        return middle, rises - bend * on, bend
+
+    value, slope, bend = parabola(flat)
+    place = np.divide(-0.5 * slope, bend, out=np.zeros(len(bend)), where=bend != 0.0)
+    place = np.clip(place, -back, on)
+    moved = parabola(change)
+    return value + place * (slope + place * bend), moved[0] + place * (moved[1] + place * moved[2])
