@@ -27,6 +27,7 @@ AGAIN = {
     Role.LEAP: SHORTER,
     Role.LANDING: 0.7,
 }  # parts of the steps that are traced again: those that end next to a meeting, and their successors, end elsewhere
+SHORTEST = 0.1  # part of a first step: where a mesh lags behind after shorter ones it is too coarse
 
 
 def trace_half(
@@ -77,7 +78,10 @@ def trace_half(
     for number in count_from(0):
         chunk = next(walk) if wish is None else walk.send(wish)
         name = f"{key}/{number}/events"
-        if _too_coarse(engine, chunk):
+        lag = _lag(engine, chunk)
+        if _too_coarse(engine, chunk) or (
+            lag is not None and lag.longest < SHORTEST * engine.settings.first_step
+        ):
             onward = None if meshes is None else meshes.onward(half, real)
             if onward is None:
                 spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
@@ -87,6 +91,7 @@ def trace_half(
             half, detector, image = onward
             engine, wish = half.engine, Finer(half.engine, image)
             continue
+        chunk = chunk if lag is None else chunk.cut(lag.count)
         known, scanned = journal.recall(name), detector.scan(chunk)
         if known is None:
             events = detector.look(chunk, scanned, real)
@@ -94,8 +99,8 @@ def trace_half(
                 journal.record(name, {**pack(events, engine), "parts": detector.parts})
         else:
             events, detector.parts = unpack(known), int(known.get("parts", 0))
-        status, count = chunk.status, len(chunk)
-        wish = None
+        status, count = chunk.status if lag is None else Status.RUNNING, len(chunk)
+        wish = lag
         if events and events[-1].role in AGAIN:
             part, i = AGAIN[events[-1].role], int(events.pop().position)
             change = chunk.points[i + 1] - chunk.points[i], chunk.values[i + 1] - chunk.values[i]
@@ -141,3 +146,17 @@ def _too_coarse(engine: Engine, chunk: Chunk) -> bool:
         return False
     stuck = chunk.status == Status.STEP_TOO_SMALL
     return problem.too_coarse(chunk.points[-1], float(chunk.values[-1]), stuck)
+
+
+def _lag(engine: Engine, chunk: Chunk) -> Retrace | None:
+    """Where the mesh lags behind the solutions of a chunk: from the last point before on it is adapted again, with steps that are not longer."""
+    problem = engine.problem
+    if not (engine.adaptive and isinstance(problem, Adaptive) and chunk.status in UNFINISHED):
+        return None
+    if len(chunk) < 2 or not problem.lags(chunk.points[-1]):
+        return None
+    count = next(i for i in range(1, len(chunk)) if problem.lags(chunk.points[i]))
+    step = engine.join(
+        chunk.points[count] - chunk.points[count - 1], chunk.values[count] - chunk.values[count - 1]
+    )
+    return Retrace(count, (1.0 if count > 1 else 0.5) * engine.norm(step))

@@ -71,15 +71,23 @@ class CycleMesh(CycleUnknowns):
         rest = v[self.states : self.states + self.free_period]
         return np.concatenate([moved.reshape(-1), rest, np.zeros_like(new) if direction else new])
 
+    def lags(self, u: np.ndarray) -> bool:
+        """Whether the error of a cycle is too large on its own mesh."""
+        return self.estimated_error(u) > self.flow.error
+
     def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
-        """Whether a cycle asks for more intervals: its error is too large, Newton's method fails beside it, as at canards on a coarse mesh,
-        it becomes one of half the period, which takes a mesh with equal halves to tell, or a decay gets lost."""
+        """Whether a cycle asks for more intervals: its error is too large on a mesh that suits it, too, Newton's method fails beside it, as at canards on a
+        coarse mesh, it becomes one of half the period, which takes a mesh with equal halves to tell, or a decay gets lost."""
         if stuck:
             return self.intervals < ENOUGH * self.copies
         if self.free_period and self.copies % 2 and self._asymmetry(u) < self.flow.settings.halving:
             self.parts_of_refined = 2
             return True
-        return self.intervals < MOST and (self.estimated_error(u) > self.flow.error or self._lost_decay(u, p))
+        return self.intervals < MOST and (self._in_error(u) or self._lost_decay(u, p))
+
+    def _in_error(self, u: np.ndarray) -> bool:
+        image = self.adapted(u) if self.lags(u) else None
+        return self.lags(u) and (image is None or self.lags(image(u)))
 
     def _lost_decay(self, u: np.ndarray, p: float) -> bool:
         """Whether motions beside the cycle that decay (or grow) by more than a factor e in a period do so by less as collocation has it.

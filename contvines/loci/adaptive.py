@@ -114,6 +114,10 @@ class AdaptiveLocus(LocusProblem):
         own[: self.size] = self.mesh.terms(u[: self.size])
         return own
 
+    def lags(self, u: np.ndarray) -> bool:
+        """Whether the motion asks for another mesh."""
+        return self.mesh.lags(u[: self.size])
+
     def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
         """Whether more intervals are needed."""
         inner, value = self.split(u)
