@@ -69,7 +69,7 @@ class Meshes:
         found = self.read(half, finer)
         detector = self.engine_of(finer.problem)[1]
         ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
-        same = ended and _located_again(found, detector, real)
+        same = ended and _located_again(found, detector, real) and not (real and _past_a_border(found))
         detector.parts = self.engine_of(engine.problem)[1].parts
 
         def image(point: Solved) -> Solved:
@@ -110,6 +110,12 @@ def _solved(finer: Engine, guess: Solved) -> Solved | None:
 
 def _guess(half: HalfBranch, i: int) -> Solved:
     return Solved(*half.at(i), np.zeros(0), 0.0, 0.0, 0.0)
+
+
+def _past_a_border(half: HalfBranch) -> bool:
+    """Whether a border lies before the last point, on this mesh."""
+    last = _solved(half.engine, _guess(half, len(half) - 1))
+    return last is not None and bool(half.engine.smallest_margin(last.row) < 0.0)
 
 
 def _at_the_end(half: HalfBranch) -> bool:

@@ -71,7 +71,7 @@ def trace_half(
             return half
         if closer is not start:
             start, first_step = closer, engine.distance(origin, closer)
-    half.first = start.u
+    half.first, begun = start.u, len(half)
     stop = real and engine.problem.n_margins > 0
     walk = chunks(engine, start, journal, key, stop, first_step)
     wish: Retrace | Finer | None = None
@@ -114,6 +114,11 @@ def trace_half(
         elif status == Status.BORDER:
             # the loop saw a negative margin that could not be located: keep what is certainly real
             count -= 1
+        beside = bool(half.events) and half.events[-1][0] == len(half) - 2
+        if engine.adaptive and len(half) > begun and not beside:
+            half.replace_last(
+                chunk.solved(0)
+            )  # on the mesh of what follows; what was found before lies on that of the point
         whole = Piece(
             chunk.points,
             chunk.values,

@@ -194,10 +194,16 @@ def _anchored(engine: Engine, problem: Adaptive, history: list[Solved], still: b
             u, direction = image(u), image(direction, True)
         problem.anchor(u, last.p)
         found = engine.across(u, last.p, engine.unit(engine.join(direction, float(last.tangent[-1]))))
+        if image is not None and found is not None and _past_a_border(engine, history[-1], found):
+            found = None  # on the mesh on which it is not there yet it is met with the next steps
         if image is None or found is not None:
             found = found or last
             return [found if still else engine.steered(found)]
         image = None
+
+
+def _past_a_border(engine: Engine, before: Solved, after: Solved) -> bool:
+    return bool(engine.smallest_margin(before.row) >= 0.0 > engine.smallest_margin(after.row))
 
 
 def _march(

@@ -62,7 +62,7 @@ def test_cycles_from_before_and_behind_are_those_of_a_simulation(told):
     for i in range(2, len(cycles) - 2, 20):
         if max(np.abs(cycles.multipliers[i])) < 1e3:
             orbit = cycles.orbit(i)
-            assert orbit.replay() < 1e-5
+            assert orbit.replay() < 1e-4  # beside the canards a simulation loses digits
             assert orbit.multipliers == pytest.approx(cycles.multipliers[i], rel=1e-4, abs=1e-6)
 
 
