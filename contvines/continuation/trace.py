@@ -148,7 +148,7 @@ def chunks(
                     adaptive.anchor(None)
                 last, start = wish.image(history[-1]), wish.image(closing.start)
                 h, closing, reach = before  # nothing is known of the chunk
-                engine, adaptive = wish.engine, _on_mesh(wish.engine)
+                engine, adaptive, still = wish.engine, _on_mesh(wish.engine), False
                 assert adaptive is not None
                 history = _anchored(engine, adaptive, [engine.steered(last)])
                 for watch in (closing, reach):
