@@ -33,13 +33,20 @@ class Segment:
         self.chord = np.empty((4, engine.n + 1))
         self.za, self.zb = self.chord[0], self.chord[2]
         self.za[:-1], self.za[-1], self.zb[:-1], self.zb[-1] = a.u, a.p, b.u, b.p
-        chord, turn = self.zb - self.za, a.tangent - b.tangent
+        begin, end = a.tangent, b.tangent
+        read = engine.on_one_mesh(a.u, b.u, begin)
+        if read is not None:
+            self.za[:-1] = read
+        chord = self.zb - self.za
         self.length = engine.norm(chord)
         self.direction = chord / self.length if self.length > 0.0 else a.tangent
+        if read is not None:
+            begin = end = self.direction  # tangents tell how meshes move that are not one
+        turn = begin - end
         self.border = engine.weights * self.direction
         self.arc = self.length * (1.0 + engine.inner(turn, turn) / 24.0)
-        np.multiply(self.arc, a.tangent, out=self.chord[1])
-        np.multiply(self.arc, b.tangent, out=self.chord[3])
+        np.multiply(self.arc, begin, out=self.chord[1])
+        np.multiply(self.arc, end, out=self.chord[3])
         self.start = float(self.border.dot(self.za))
 
     @cached_property

@@ -27,7 +27,9 @@ def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
         if first == last or ends_here or (first - at) * (last - at) > 0.0:
             continue
         part = (at - first) / (last - first)
-        solved = engine.at_value((1.0 - part) * branch.points[i] + part * branch.points[i + 1], at)
+        one, other = branch.points[i], branch.points[i + 1]
+        read = engine.on_one_mesh(one, other, branch.tangents[i])
+        solved = engine.at_value((1.0 - part) * (one if read is None else read) + part * other, at)
         if solved is not None and engine.smallest_margin(solved.row) >= MARGIN:
             found.append(solved)
     return engine, found

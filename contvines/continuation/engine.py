@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .native import NativeLoop
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
+ALONG = 0.7  # cosine of the angle between a tangent and the way to the next point on a mesh that moves along, at least
 ONE = np.zeros(1)  # a single place: the chord's first end
 NO_AIM = Aim(NOTHING, NO_COLUMNS)
 
@@ -178,6 +179,21 @@ class Engine(Rows):
         tangent = point.tangent.copy()
         self.moving.stand(point.u, tangent)
         return point._replace(tangent=self.unit(tangent))
+
+    def on_one_mesh(self, u: np.ndarray, other: np.ndarray, tangent: np.ndarray) -> np.ndarray | None:
+        """Unknowns as they read on the mesh of those of the next point, where the mesh was adapted between both; else None.
+
+        There the way from one to the other is not along the tangent.
+        """
+        if self.moving is None:
+            return None
+        chord = self.join(other - u, 0.0)
+        along = self.inner(self.join(tangent[:-1], 0.0), chord)
+        return (
+            None
+            if along > ALONG * self.norm(chord) * self.norm(self.join(tangent[:-1], 0.0))
+            else self.moving.carried(u, other)
+        )
 
     def across(self, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
         """The solution across a direction through a guess."""

@@ -75,9 +75,9 @@ def chunks(
         The last one has a status other than RUNNING. A closed branch ends with its first point again. The rows of all
         chunks share their memory: take from them what is needed before the next one.
     """
-    settings = engine.settings
-    if (start.p >= engine.upper and start.tangent[-1] > 0.0) or (
-        start.p <= engine.lower and start.tangent[-1] < 0.0
+    settings, near = engine.settings, engine.settled(start.p)
+    if (start.p >= engine.upper - near and start.tangent[-1] > 0.0) or (
+        start.p <= engine.lower + near and start.tangent[-1] < 0.0
     ):
         yield packed([start], Status.LEFT_INTERVAL)
         return

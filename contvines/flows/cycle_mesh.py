@@ -35,6 +35,10 @@ class CycleMesh(CycleUnknowns):
         """Let the mesh stand where it is, and keep the phase."""
         self.moving.stand(u, tangent, self._phase_row)
 
+    def carried(self, u: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Unknowns as they read on the mesh of others."""
+        return self._onto(u, self._curve(u)[1], self._curve(other)[1], False)
+
     @property
     def _phase_row(self) -> np.ndarray | None:
         return None if self.reference is None else self.reference[0].reshape(-1)

@@ -227,12 +227,14 @@ class Moving(Protocol):
 
     ``held`` are those unknowns that no equation determines: corrections leave them as they are. ``steer(u, tangent)`` chooses, in place, of all directions
     that change the solution alike the one that changes the other unknowns least, ``stand(u, tangent)`` the one of a mesh that stands where it is.
+    ``carried(u, other)`` reads unknowns on the mesh of others.
     """
 
     held: slice
 
     def steer(self, u: np.ndarray, tangent: np.ndarray) -> None: ...
     def stand(self, u: np.ndarray, tangent: np.ndarray) -> None: ...
+    def carried(self, u: np.ndarray, other: np.ndarray) -> np.ndarray: ...
 
 
 @runtime_checkable
