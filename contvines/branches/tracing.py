@@ -8,7 +8,7 @@ from itertools import count as count_from
 from typing import TYPE_CHECKING
 
 from ..bifurcation.detect import Detector
-from ..bifurcation.located import Role
+from ..bifurcation.located import Located, Role
 from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.trace import Finer, Retrace, chunks
@@ -84,10 +84,7 @@ def trace_half(
         ):
             onward = None if meshes is None else meshes.onward(half, real)
             if onward is None:
-                spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
-                half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
-                half.status = Status.COARSE
-                return half
+                return _ended(half, chunk)
             half, detector, image = onward
             engine, wish = half.engine, Finer(half.engine, image)
             continue
@@ -99,6 +96,8 @@ def trace_half(
                 journal.record(name, {**pack(events, engine), "parts": detector.parts})
         else:
             events, detector.parts = unpack(known), int(known.get("parts", 0))
+        if any(_repeats(engine, event) for event in events):
+            return _ended(half, chunk)
         status, count = chunk.status if lag is None else Status.RUNNING, len(chunk)
         wish = lag
         if events and events[-1].role in AGAIN:
@@ -142,6 +141,22 @@ def trace_half(
         if status != Status.RUNNING:
             break
     return half
+
+
+def _ended(half: HalfBranch, chunk: Chunk) -> HalfBranch:
+    """A half that ends where its mesh is too coarse."""
+    engine, half.status = half.engine, Status.COARSE
+    spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
+    half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
+    return half
+
+
+def _repeats(engine: Engine, event: Located) -> bool:
+    """Whether a branch comes to solutions that only repeat shorter ones, and turns round there, on a mesh that cannot tell it."""
+    problem = engine.problem
+    if not (engine.adaptive and isinstance(problem, Adaptive) and event.kind == "branch-point"):
+        return False
+    return problem.too_coarse(event.point.u, event.point.p) and problem.parts_of_refined > 1
 
 
 def _too_coarse(engine: Engine, chunk: Chunk) -> bool:

@@ -139,7 +139,7 @@ class CycleMesh(CycleUnknowns):
         """
         if self.parts_of_refined == 2:
             own = self._curve(self.u0 if direction else u)[1]
-            return self._onto(u, own, np.tile(0.5 * own, 2), direction)
+            return self._onto(u, own, mesh.with_equal_halves(own), direction)
         end = self.states + self.free_period
         x = u[..., : self.states].reshape(*u.shape[:-1], self.intervals, self.rule.degree, self.node)
         finer = mesh.halved(self.rule, x).reshape(*u.shape[:-1], 2 * self.states)

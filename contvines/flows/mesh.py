@@ -76,6 +76,14 @@ def along_data(times: np.ndarray, states: np.ndarray, count: int, copies: int) -
     return np.tile(np.diff(edges) / copies, copies)
 
 
+def with_equal_halves(widths: np.ndarray) -> np.ndarray:
+    """Widths of twice as many intervals, the same ones in both halves of the period, each where either half has one at hand."""
+    number, places = np.arange(len(widths) + 1.0), np.append(0.0, np.cumsum(widths))
+    here = np.unique(np.clip(np.concatenate([places, places - 0.5, [0.5]]), 0.0, 0.5))
+    passed = np.interp(here, places, number) + np.interp(here + 0.5, places, number)
+    return np.tile(np.diff(np.interp(number, passed - passed[0], here)), 2)
+
+
 def density(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """|x^(m + 1)|^(1 / (m + 1)) on each interval, in units of the period and the scale, from jumps of the m-th derivative."""
     m = rule.degree

@@ -1,5 +1,7 @@
 """Branches whose cycles ask for more intervals on the way: what has been found stays, and goes on on the finer mesh."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -104,3 +106,46 @@ def test_a_branch_that_begins_again_on_a_finer_mesh_has_not_come_back():
     graph = cv.diagram(flow, over="f", within=(0.3, 1.0), settings={"max_points": 60})
     assert [point.kind for point in graph.special.values()].count("hopf") == 1
     assert not graph.branches["B2"].closed and len(graph.branches["B2"]) > 40
+
+
+@pytest.mark.parametrize("count", [5, 12])
+def test_a_mesh_with_equal_halves_is_as_dense_as_both_halves_before(count):
+    """An interval of the new mesh has as much of the two halves' intervals, counted by hand, as one of the old."""
+    widths = np.random.default_rng(count).uniform(0.1, 1.0, count)
+    widths /= widths.sum()
+    new = mesh.with_equal_halves(widths)
+    assert len(new) == 2 * count and new.min() > 0.0 and new.sum() == pytest.approx(1.0)
+    assert new[:count] == pytest.approx(new[count:], rel=1e-12)
+    own, ends = np.append(0.0, np.cumsum(widths)), np.append(0.0, np.cumsum(new[:count]))
+    for low, high in pairwise(ends):
+        shares = [
+            max(min(b, high + late) - max(a, low + late), 0.0) / (b - a)
+            for late in (0.0, 0.5)
+            for a, b in pairwise(own)
+        ]
+        assert sum(shares) == pytest.approx(1.0)
+    assert mesh.with_equal_halves(np.full(count, 1 / count)) == pytest.approx(np.full(2 * count, 0.5 / count))
+
+
+@pytest.mark.slow
+def test_a_branch_that_comes_to_a_cycle_of_half_the_period_ends_there():
+    """Hindmarsh's and Rose's neuron: a burst of two spikes becomes one spike, whose period doubling is that of a shooting with DOP853.
+
+    The spikes are so sharp that a step passes by the cycle of half the period, behind which the branch comes back.
+    """
+    flow = cv.FlowProblem(
+        lambda x, p: [
+            x[1] - x[0] ** 3 + 3 * x[0] ** 2 - x[2] + p.current,
+            1 - 5 * x[0] ** 2 - x[1],
+            0.01 * (4 * (x[0] + 1.6) - x[2]),
+        ],
+        [-1.6, -12.0, 0.0],
+        {"current": 0.0},
+    )
+    graph = cv.diagram(flow, over="current", within=(0.0, 5.0), depth=1)
+    branch = graph.branches["B2"]
+    labels = [label for _, label in branch.marks]
+    assert len(set(labels)) == len(labels) and not graph.of_kind("branch-point")
+    assert graph.special[labels[-1]].kind == "period-doubling"
+    assert branch.values[-1] == pytest.approx(3.5444385833, abs=1e-8)
+    assert branch.orbit(len(branch) - 1).period == pytest.approx(2 * 28.973487936, abs=1e-5)
