@@ -33,6 +33,7 @@ CONVERGED = (LIMITS.smooth, *[LIMITS.growing] * POLES)
 EXTRAPOLATION = CUBIC * np.power.outer(PLACES, np.arange(POLES + 1)).T  # of values times powers of the place
 
 
+@np.errstate(all="ignore")  # multipliers beside homoclinic orbits, and their products, are beyond all numbers
 def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
     """The point at a border, its tangent and multipliers replaced by their limits where they are rounding; and the point close to it."""
     engine, point, position = segment.engine, root.point, root.position
