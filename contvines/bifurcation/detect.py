@@ -22,6 +22,7 @@ from .multiplier_counts import counts
 from .scan import Scan, reached, scanner
 from .segment import Segment
 from .segment_search import SegmentSearch
+from .symmetry_test import turns_round
 
 BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
 MOST = 0.5  # ... but not more
@@ -58,7 +59,7 @@ class Detector(SegmentSearch):
         own = [np.asarray(own.values(wide), dtype=float) for own in self.own]
         if extra:
             scanned = self.scan(wide)
-        meets, lands = self._meetings_and_landings(scanned)
+        meets, lands = self._meetings_and_landings(wide, scanned)
         if scanned.quiet and not (own or meets.any() or lands.any()):
             return []
         lengths = scanned.lengths
@@ -221,16 +222,19 @@ class Detector(SegmentSearch):
         (_, *before), (_, *after) = counts(engine, np.array([origin.row, start.row])).tolist()
         return before != after
 
-    def _meetings_and_landings(self, scanned: Scan) -> tuple[np.ndarray, np.ndarray]:
+    def _meetings_and_landings(self, chunk: Chunk, scanned: Scan) -> tuple[np.ndarray, np.ndarray]:
         """Segments on which the part that a symmetry changes turns round, and those that end next to where it does.
 
         A doubled branch that comes back to the fixed space is there as singular as any branch point: the nearer a point, the more of the other
         branch rounding mixes into its tangent, and what such points say is nothing. A step of another length ends elsewhere.
         """
         meets, lands = (np.zeros(len(scanned.lengths), dtype=bool) for _ in range(2))
-        for size, turn in zip(scanned.sizes, scanned.turns):
+        for test, size, turn in zip(self.symmetries, scanned.sizes, scanned.turns):
             far = size > self.engine.settings.symmetric
             meets |= far[1:] & far[:-1] & (turn < 0.0)
+            for i in np.flatnonzero((turn < 0.0) & ~meets).tolist() if test.kind == "hopf" else ():
+                pair = slice(i, i + 2)
+                meets[i] = turns_round(test, test.part(chunk.points[pair], chunk.values[pair]), np.inf)
             lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < NEXT * size[:-1])
         return meets, lands
 

@@ -26,7 +26,7 @@ from .point_on_branch import PointOnBranch
 from .scan import reached, spectra
 from .segment import Segment
 from .settings import LIMITS
-from .symmetry_test import SymmetryTest
+from .symmetry_test import SymmetryTest, turns_round
 
 if TYPE_CHECKING:
     from .user_functions import Own, UserFunction
@@ -221,7 +221,7 @@ class SegmentSearch:
         least = settings.symmetric * max(1.0, inexact)
         for index, test in enumerate(self.symmetries):
             ends = test.part(np.array([segment.a.u, segment.b.u]), [segment.a.p, segment.b.p])
-            if not (ends[0] @ ends[1] < 0.0 and np.abs(ends).max(axis=1).min() > least):
+            if not turns_round(test, ends, least):
                 continue
             scale = float(np.sqrt(ends[0] @ ends[0]))
 

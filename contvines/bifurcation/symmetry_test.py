@@ -14,6 +14,8 @@ from .settings import LOCATING
 if TYPE_CHECKING:
     from ..problems.protocol import Symmetry
 
+OPPOSITE = 0.9  # cosine of the angle between what is opposite, at least, but for the sign
+
 
 @lru_cache(maxsize=64)
 def _patternless(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -79,3 +81,18 @@ class SymmetryTest:
             return signs * v[order]
         scale = CENTRAL / max(float(np.abs(v).max()), TINY)
         return (self.symmetry.apply(u + scale * v) - self.symmetry.apply(u - scale * v)) / (2.0 * scale)
+
+
+def turns_round(test: SymmetryTest, parts: np.ndarray, least: float) -> bool:
+    """Whether the part that a symmetry changes has turned round between two points, shape (2, N).
+
+    Both are larger than noise; or a cycle has become an equilibrium there: all its many unknowns are opposite, as those of noise are not.
+    """
+    along = float(parts[0] @ parts[1])
+    if not along < 0.0:
+        return False
+    if np.abs(parts).max(axis=1).min() > least:
+        return True
+    return test.kind == "hopf" and along < -OPPOSITE * float(
+        np.linalg.norm(parts[0]) * np.linalg.norm(parts[1])
+    )

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import contvines as cv
 from contvines.flows import mesh
@@ -149,3 +150,29 @@ def test_a_branch_that_comes_to_a_cycle_of_half_the_period_ends_there():
     assert graph.special[labels[-1]].kind == "period-doubling"
     assert branch.values[-1] == pytest.approx(3.5444385833, abs=1e-8)
     assert branch.orbit(len(branch) - 1).period == pytest.approx(2 * 28.973487936, abs=1e-5)
+
+
+@pytest.mark.slow
+def test_an_oregonator_of_two_variables_from_one_hopf_point_to_the_other():
+    """Beside the second Hopf point the parameter is that of the square of an amplitude, times 2.5e4: the last steps are shorter than 1e-6."""
+    q, eps = 8e-4, 0.1
+
+    def rates(x, p):
+        return [(x[0] * (1 - x[0]) - p.f * x[1] * (x[0] - q) / (x[0] + q)) / eps, x[0] - x[1]]
+
+    def rest(f):
+        return brentq(lambda x: x * (1 - x) - f * x * (x - q) / (x + q), 1e-5, 1.0)
+
+    def trace(f):
+        x = rest(f)
+        return (1 - 2 * x - f * x * 2 * q / (x + q) ** 2) / eps - 1
+
+    flow = cv.FlowProblem(rates, [0.5, 0.5], {"f": 0.3})
+    graph = cv.diagram(flow, over="f", within=(0.3, 3.0))
+    hopf = brentq(trace, 0.4, 0.7), brentq(trace, 2.1, 2.4)
+    assert [point.value for point in graph.of_kind("hopf")] == pytest.approx(hopf, abs=1e-9)
+    cycles = graph.branches["B2"]
+    assert [ending.point for ending in cycles.endings] == ["HB1", "HB2"]
+    labels = [label for _, label in cycles.marks]
+    assert len(labels) == len(set(labels)) and not graph.of_kind("branch-point")
+    assert not graph.of_kind("period-doubling")  # in the plane
