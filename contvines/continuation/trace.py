@@ -75,11 +75,11 @@ def chunks(
         The last one has a status other than RUNNING. A closed branch ends with its first point again. The rows of all
         chunks share their memory: take from them what is needed before the next one.
     """
-    settings, near = engine.settings, engine.settled(start.p)
-    if (start.p >= engine.upper - near and start.tangent[-1] > 0.0) or (
-        start.p <= engine.lower + near and start.tangent[-1] < 0.0
-    ):
-        yield packed([start], Status.LEFT_INTERVAL)
+    settings, bound = engine.settings, engine.upper if start.tangent[-1] > 0.0 else engine.lower
+    left = (bound - start.p) * np.sign(start.tangent[-1])
+    if left <= engine.settled(start.p) and start.tangent[-1] != 0.0:
+        end = engine.at_value(start.u, bound, start.tangent) if left > 0.0 else None  # no step is so short
+        yield packed([start] if end is None else [start, end], Status.LEFT_INTERVAL)
         return
     adaptive = _on_mesh(engine)
     try:
