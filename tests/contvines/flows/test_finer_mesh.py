@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 
 import contvines as cv
 from contvines.flows import mesh
@@ -161,7 +161,7 @@ def test_an_oregonator_of_two_variables_from_one_hopf_point_to_the_other():
         return [(x[0] * (1 - x[0]) - p.f * x[1] * (x[0] - q) / (x[0] + q)) / eps, x[0] - x[1]]
 
     def rest(f):
-        return brentq(lambda x: x * (1 - x) - f * x * (x - q) / (x + q), 1e-5, 1.0)
+        return root_scalar(lambda x: x * (1 - x) - f * x * (x - q) / (x + q), bracket=(1e-5, 1.0)).root
 
     def trace(f):
         x = rest(f)
@@ -169,7 +169,7 @@ def test_an_oregonator_of_two_variables_from_one_hopf_point_to_the_other():
 
     flow = cv.FlowProblem(rates, [0.5, 0.5], {"f": 0.3})
     graph = cv.diagram(flow, over="f", within=(0.3, 3.0))
-    hopf = brentq(trace, 0.4, 0.7), brentq(trace, 2.1, 2.4)
+    hopf = [root_scalar(trace, bracket=between).root for between in ((0.4, 0.7), (2.1, 2.4))]
     assert [point.value for point in graph.of_kind("hopf")] == pytest.approx(hopf, abs=1e-9)
     cycles = graph.branches["B2"]
     assert [ending.point for ending in cycles.endings] == ["HB1", "HB2"]
