@@ -29,24 +29,7 @@ _known: dict[str, FlowProblem] = {}  # branches of one graph share their flow
 def from_description(description: Mapping[str, Any], trust: bool = False) -> Equilibria | CycleProblem | None:
     """Equilibria or cycles of a flow from what ``describe()`` returned; None where its functions are not at hand."""
     flow = _flow(description, trust)
-    if flow is None:
-        return None
-    return problem_of(flow, description)
-
-
-def problem_of(flow: FlowProblem, description: Mapping[str, Any]) -> Equilibria | CycleProblem:
-    """Equilibria or cycles of a flow from what ``describe()`` returned."""
-    values = description["p0"]
-    named = dict(values) if isinstance(values, Mapping) else {description["parameter"]: values}
-    cycle = description.get("cycle")
-    if cycle is None:
-        found = flow.equilibria(description["parameter"], named)
-        found.u0 = np.array(description["u0"], dtype=float)
-        return found
-    flow.sizes = np.array(cycle["scale"], dtype=float), float(cycle["clock"])
-    field = flow.field.against(flow.values.against(description["parameter"], named))
-    counts = cycle["intervals"], cycle["rounds"], cycle["copies"]
-    return flow.cycles(field, np.array(cycle["u0"], dtype=float), counts, (*flow.sizes, cycle["unit"]))
+    return None if flow is None else flow.problem_of(description)
 
 
 def read_ode(

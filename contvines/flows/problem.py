@@ -528,6 +528,20 @@ class FlowProblem:
             self.sizes = np.array(sizes[0], dtype=float), float(sizes[1])
         return CycleProblem(self, field, u, *counts, *self.sizes, sizes[2])
 
+    def problem_of(self, description: Mapping[str, Any]) -> Equilibria | CycleProblem:
+        """Equilibria or cycles from what ``describe()`` of them returned."""
+        values = description["p0"]
+        named = dict(values) if isinstance(values, Mapping) else {description["parameter"]: values}
+        cycle = description.get("cycle")
+        if cycle is None:
+            found = self.equilibria(description["parameter"], named)
+            found.u0 = np.array(description["u0"], dtype=float)
+            return found
+        self.sizes = np.array(cycle["scale"], dtype=float), float(cycle["clock"])
+        field = self.field.against(self.values.against(description["parameter"], named))
+        counts = cycle["intervals"], cycle["rounds"], cycle["copies"]
+        return self.cycles(field, np.array(cycle["u0"], dtype=float), counts, (*self.sizes, cycle["unit"]))
+
     # ------------------------------------------------------------------ measures, and what else attracts
     @property
     def of_cycles(self) -> dict[str, str]:

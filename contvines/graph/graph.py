@@ -12,7 +12,7 @@ from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import LABELS, RENAMED, kind_named
 from ..continuation.settings import hinted
 from ..interrupts import Resumable
-from ..problems.abilities import notation_of
+from ..problems.abilities import Several, notation_of
 from ..shared.plot_options import PlotOptions
 from .attractor import Attractor
 from .unresolved import Unresolved
@@ -224,14 +224,18 @@ class Graph(Resumable):
 
         return prove(self, labels, **options)
 
-    def attach(self, problem: Problem) -> None:
-        """Give all branches and special points without a problem this one (after loading a callable's graph)."""
-        for branch in self.branches.values():
-            if branch.problem is None and branch.points.shape[1] == problem.dimension:
-                branch.problem = problem
+    def attach(self, problem: Problem | Several) -> None:
+        """Give all branches and special points without a problem this one, or that of a flow (after loading a callable's graph)."""
+        own = {
+            label: problem.problem_of(branch.description) if isinstance(problem, Several) else problem
+            for label, branch in self.branches.items()
+        }
+        for label, branch in self.branches.items():
+            if branch.problem is None and branch.points.shape[1] == own[label].dimension:
+                branch.problem = own[label]
         for point in self.special.values():
-            if point.problem is None and len(point.u) == problem.dimension:
-                point.problem = problem
+            if point.problem is None and len(point.u) == own[point.branch].dimension:
+                point.problem = own[point.branch]
 
     def to_dict(self) -> dict[str, Any]:
         """The graph as JSON-able dict: model, parameter, branches, special, switches."""

@@ -238,6 +238,13 @@ class Moving(Protocol):
 
 
 @runtime_checkable
+class Several(Protocol):
+    """Has a problem for each branch: ``problem_of(description)`` is the one that described itself so."""
+
+    def problem_of(self, description: Mapping[str, Any]) -> Problem: ...
+
+
+@runtime_checkable
 class Adaptive(Protocol):
     """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
 

@@ -15,7 +15,6 @@ import numpy as np
 from contvines.flows import FlowProblem
 from contvines.flows.cycles import CycleProblem
 from contvines.flows.equilibria import Equilibria
-from contvines.flows.files import problem_of
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
 from orbits.flows.page import measures, sampling
@@ -351,4 +350,4 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> Equilibria |
         return None
     params = machine.vector(description["p0"])
     flow = smooth(machine, tuple(about["modes"]), params, np.array(about["x0"], dtype=float))
-    return problem_of(flow, description)
+    return flow.problem_of(description)
