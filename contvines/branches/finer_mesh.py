@@ -20,6 +20,8 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from .half_branch import HalfBranch, Piece
 
+FAR = 1e-3  # of a typical size: from the same point on the mesh before
+
 
 class Meshes:
     """The meshes of one branch, each with twice as many intervals as the one before.
@@ -69,7 +71,8 @@ class Meshes:
         found = self.read(half, finer)
         detector = self.engine_of(finer.problem)[1]
         ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
-        same = ended and _located_again(found, detector, real) and not (real and _past_a_border(found))
+        same = ended and not _elsewhere(found) and _located_again(found, detector, real)
+        same = same and not (real and _past_a_border(found))
         detector.parts = self.engine_of(engine.problem)[1].parts
 
         def image(point: Solved) -> Solved:
@@ -110,6 +113,13 @@ def _solved(finer: Engine, guess: Solved) -> Solved | None:
 
 def _guess(half: HalfBranch, i: int) -> Solved:
     return Solved(*half.at(i), np.zeros(0), 0.0, 0.0, 0.0)
+
+
+def _elsewhere(half: HalfBranch) -> bool:
+    """Whether the last point is far away on this mesh: what looked good enough on the one before was none, as of a cycle that passes a saddle within rounding."""
+    guess = _guess(half, len(half) - 1)
+    last = _solved(half.engine, guess)
+    return last is not None and half.engine.distance(guess, last) > FAR
 
 
 def _past_a_border(half: HalfBranch) -> bool:

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import root_scalar
 
 import contvines as cv
@@ -176,3 +177,30 @@ def test_an_oregonator_of_two_variables_from_one_hopf_point_to_the_other():
     labels = [label for _, label in cycles.marks]
     assert len(labels) == len(set(labels)) and not graph.of_kind("branch-point")
     assert not graph.of_kind("period-doubling")  # in the plane
+
+
+def test_cycles_near_rounding_have_the_periods_of_a_simulation_in_logarithms():
+    """Rosenzweig's and MacArthur's prey falls to 1e-14 of its largest number; DOP853 follows the logarithms."""
+
+    def slow(t, y, k):
+        x, z = np.exp(y)
+        return [1 - x / k - z / (0.3 + x), 0.8 * x / (0.3 + x) - 0.3]
+
+    def passes(t, y, k):
+        return y[1] - np.log(0.5)
+
+    flow = cv.FlowProblem(
+        lambda x, p: [
+            x[0] * (1 - x[0] / p.k) - x[0] * x[1] / (0.3 + x[0]),
+            0.8 * x[0] * x[1] / (0.3 + x[0]) - 0.3 * x[1],
+        ],
+        [0.2, 0.0],
+        {"k": 0.1},
+    )
+    graph = cv.diagram(flow, over="k", within=(0.1, 10.0))
+    cycles = next(b for b in graph if b.description["word"] == "cycle")
+    periods = cycles.measure("period")
+    for i in (len(cycles) // 2, len(cycles) - 8):
+        tight = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-12, "events": passes}
+        found = solve_ivp(slow, (0, 1200), np.log([0.2, 0.4]), args=(cycles.values[i],), **tight)
+        assert periods[i] == pytest.approx(np.diff(found.t_events[0][::2])[-1], rel=1e-3)
