@@ -71,8 +71,7 @@ class Meshes:
         found = self.read(half, finer)
         detector = self.engine_of(finer.problem)[1]
         ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
-        same = ended and not _elsewhere(found) and _located_again(found, detector, real)
-        same = same and not (real and _past_a_border(found))
+        same = ended and _goes_on(found, real) and _located_again(found, detector, real)
         detector.parts = self.engine_of(engine.problem)[1].parts
 
         def image(point: Solved) -> Solved:
@@ -115,17 +114,14 @@ def _guess(half: HalfBranch, i: int) -> Solved:
     return Solved(*half.at(i), np.zeros(0), 0.0, 0.0, 0.0)
 
 
-def _elsewhere(half: HalfBranch) -> bool:
-    """Whether the last point is far away on this mesh: what looked good enough on the one before was none, as of a cycle that passes a saddle within rounding."""
+def _goes_on(half: HalfBranch, real: bool) -> bool:
+    """Whether the last point lies where it did, on this mesh: not far away, as a cycle that passes a saddle within rounding, and before a border."""
     guess = _guess(half, len(half) - 1)
     last = _solved(half.engine, guess)
-    return last is not None and half.engine.distance(guess, last) > FAR
-
-
-def _past_a_border(half: HalfBranch) -> bool:
-    """Whether a border lies before the last point, on this mesh."""
-    last = _solved(half.engine, _guess(half, len(half) - 1))
-    return last is not None and bool(half.engine.smallest_margin(last.row) < 0.0)
+    if last is None:
+        return True
+    near = half.engine.distance(guess, last) <= FAR
+    return near and not (real and bool(half.engine.smallest_margin(last.row) < 0.0))
 
 
 def _at_the_end(half: HalfBranch) -> bool:
