@@ -40,7 +40,8 @@ if TYPE_CHECKING:
     from .cycle_mesh import CycleMesh
     from .flow import Sizes
 
-INTERVALS = 40  # of a cycle from data, to begin with
+INTERVALS = 40  # of a cycle from data, to begin with ...
+MORE = 4, 16  # ... and times those, where that does not converge, as bursts of sharp spikes
 
 
 class FlowOptions(TypedDict, total=False):
@@ -487,10 +488,14 @@ class FlowProblem:
         count = INTERVALS * (rounds if field.forced else 1)
         unit, clock = abs(parameters.start) or 1.0, float(times[-1] - times[0])
         found = None
-        for widths in (np.full(count, 1.0 / count), mesh.along_data(times, states / scale, count, copies)):
-            guess = self._guess(field, parameters.start, times, states, widths, rounds)
-            cycles = self.cycles(field, guess, (count, rounds, copies), (scale, clock, unit))
-            found = found or settled(cycles, guess, parameters.start)
+        for more in (1, *MORE):
+            if found is not None:
+                break
+            n = more * count
+            for widths in (np.full(n, 1.0 / n), mesh.along_data(times, states / scale, n, copies)):
+                guess = self._guess(field, parameters.start, times, states, widths, rounds)
+                cycles = self.cycles(field, guess, (n, rounds, copies), (scale, clock, unit))
+                found = found or settled(cycles, guess, parameters.start)
         if found is None:
             raise ValueError(
                 "Newton's method does not converge from these states; give a longer transient= (of attractor), or times and states nearer to one period of a cycle"
