@@ -16,7 +16,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from ..continuation.engine import Engine, Solved
+from ..continuation.engine import Engine
 from ..problems.abilities import Adaptive
 from ..problems.protocol import BorderPoint
 
@@ -55,15 +55,15 @@ def mesh_error(engine: Engine, special: Special) -> float | None:
         return None
     u, p, tangent = special.u, float(special.value), engine.unit(special.tangent)
     singular = special.kind in SINGULAR
-    here = None if singular else _on(engine, u, p, tangent)
-    beside = _on(engine, *_moved(u, p, tangent, settings.offset), tangent)
+    here = None if singular else engine.across(u, p, tangent)
+    beside = engine.across(*_moved(u, p, tangent, settings.offset), tangent)
     coarse = beside if singular else here
     if coarse is None or beside is None:
         return None
     problem.u0 = coarse.u
     finer = Engine(problem.refined(), engine.within, settings)
     direction = np.append(problem.halved(tangent[:-1], True), tangent[-1])
-    fine = _on(finer, problem.halved(coarse.u), coarse.p, direction)
+    fine = finer.across(problem.halved(coarse.u), coarse.p, direction)
     if fine is None:
         return None
     first = 0.0 if here is None else _vanishing(engine, special, here.row)
@@ -77,12 +77,6 @@ def mesh_error(engine: Engine, special: Special) -> float | None:
 
 def _moved(u: np.ndarray, p: float, tangent: np.ndarray, by: float) -> tuple[np.ndarray, float]:
     return u + by * tangent[:-1], p + by * float(tangent[-1])
-
-
-def _on(engine: Engine, u: np.ndarray, p: float, direction: np.ndarray) -> Solved | None:
-    """The solution on the plane across a direction through a guess."""
-    border = engine.weights * direction
-    return engine.solve(u, p, border, float(border @ engine.join(u, p)), direction)
 
 
 def _vanishing(engine: Engine, special: Special, row: np.ndarray) -> float:

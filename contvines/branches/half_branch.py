@@ -112,12 +112,6 @@ class HalfBranch:
         """Another point in the place of point i."""
         self.pieces = [*self._slice(0, i), piece_of(self.engine, point), *self._slice(i + 1, len(self))]
 
-    def replace_last(self, point: Solved) -> None:
-        """Another point in the place of the last one."""
-        last = self.pieces.pop()
-        self.pieces += [last.part(0, len(last.values) - 1)] if len(last.values) > 1 else []
-        self.pieces.append(piece_of(self.engine, point))
-
     def without(self, places: list[int]) -> HalfBranch:
         """Without some points, and their events."""
         gone = sorted(set(places))

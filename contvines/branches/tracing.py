@@ -115,9 +115,8 @@ def trace_half(
             count -= 1
         beside = bool(half.events) and half.events[-1][0] == len(half) - 2
         if engine.adaptive and len(half) > begun and not beside:
-            half.replace_last(
-                chunk.solved(0)
-            )  # on the mesh of what follows; what was found before lies on that of the point
+            # on the mesh of what follows; what was found before lies on that of the point
+            half.put(len(half) - 1, chunk.solved(0))
         whole = Piece(
             chunk.points,
             chunk.values,
