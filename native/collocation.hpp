@@ -1,5 +1,5 @@
 // Cycles of flows by Gauss collocation: equations and derivatives from values at the Gauss points, and their elimination in O(N).
-// contvines/flows/assembly.py and elimination.py, the reference, say what is computed. Unknowns inside an interval, then those of one
+// contvines/flows/cycles.py and elimination.py, the reference, say what is computed. Unknowns inside an interval, then those of one
 // mesh point after the other, are eliminated by Householder reflections (Wright, SIAM J. Sci. Stat. Comput. 13 (1992) 742).
 #pragma once
 #include "math.hpp"
@@ -101,34 +101,34 @@ inline void add(double* __restrict to, double by, const double* __restrict from,
 }
 
 // Reflections that clear the first columns of an array below its diagonal; the sign of the determinant of what is eliminated. Loops begin at a multiple
-// of four: what stands left of the diagonal is of no use to anybody.
-inline double triangularise(double* a, whole rows, whole columns, whole width, double* dots) {
-    double sign = 1.0, reflected[64];
+// of four: what stands left of the diagonal is of no use to anybody; on it the inverse is left. `v` has room for a column.
+inline double triangularise(double* a, whole rows, whole columns, whole width, double* v) {
+    double sign = 1.0;
     for (whole j = 0; j < columns; j++) {
         double square = 0.0, head = a[j * width + j];
-        for (whole i = j + 1; i < rows; i++) square += a[i * width + j] * a[i * width + j];
+        for (whole i = j + 1; i < rows; i++) v[i] = a[i * width + j], square += v[i] * v[i];
         if (square > 0.0) {
-            const whole from = (j + 1) & ~whole(3);
-            double norm = -copysign(sqrt(square + head * head), head), first = head - norm, by = 1.0 / (norm * first), *top = a + j * width;
-            double* v = rows <= 64 ? reflected : dots + width;
-            for (whole c = from; c < width; c += 4) *reinterpret_cast<Four*>(dots + c) = first * *reinterpret_cast<Four*>(top + c);
-            for (whole i = j + 1; i < rows; i++) v[i] = a[i * width + j], add(dots, v[i], a + i * width, from, width);
-            for (whole c = from; c < width; c += 4) *reinterpret_cast<Four*>(dots + c) *= by;
-            add(top, first, dots, from, width);
-            for (whole i = j + 1; i < rows; i++) add(a + i * width, v[i], dots, from, width);
-            top[j] = norm, sign = -sign;
+            const double norm = -copysign(sqrt(square + head * head), head), first = head - norm, by = 1.0 / (norm * first);
+            for (whole c = (j + 1) & ~whole(3); c < width; c += 4) {
+                double* column = a + c;
+                Four dot = first * *reinterpret_cast<Four*>(column + j * width);
+                for (whole i = j + 1; i < rows; i++) dot += v[i] * *reinterpret_cast<Four*>(column + i * width);
+                dot *= by;
+                *reinterpret_cast<Four*>(column + j * width) += first * dot;
+                for (whole i = j + 1; i < rows; i++) *reinterpret_cast<Four*>(column + i * width) += v[i] * dot;
+            }
+            a[j * width + j] = norm, sign = -sign;
         }
         if (a[j * width + j] < 0.0) sign = -sign;
+        a[j * width + j] = 1.0 / a[j * width + j];
     }
     return sign;
 }
 
-// Take the unknowns of the first columns out of a border row (as wide as the panel), with the triangle that gives them.
-inline void take_out(const double* panel, whole columns, whole width, double* row) {
-    for (whole j = 0; j < columns; j++) {
-        double y = row[j] / panel[j * width + j];
-        if (y != 0.0) add(row, -y, panel + j * width, (j + 1) & ~whole(3), width);
-    }
+// Take the unknowns of the first columns out of some border rows (as wide as the panel), with the triangle that gives them.
+inline void take_out(const double* panel, whole columns, whole width, double* border, whole rows) {
+    for (whole j = 0; j < columns; j++)
+        for (whole r = 0; r < rows; r++) add(border + r * width, -border[r * width + j] * panel[j * width + j], panel + j * width, (j + 1) & ~whole(3), width);
 }
 
 // n equations by complete pivoting, rows scaled: sides (n, s) become the solutions. The determinant's sign, 0 of a singular matrix, whose
@@ -198,25 +198,19 @@ struct System {
 
 inline whole room_for(whole count, whole inner, whole d, whole k, whole s) {
     const whole all = inner + d, width = padded(inner + 2 * d + k + s), wide = padded(3 * d + k + s);
-    return count * (inner * width + d * wide) + all * width + 2 * d * wide + (k + 2) * (width + wide) + 2 * (d + k) * (d + k + s + 1) + 2 * d * s + all + d;
+    return count * (inner * width + d * wide) + all * width + 2 * d * wide + (2 * k + s) * (width + wide) + 2 * (d + k) * (d + k + s + 1) + 2 * d * s + all + d;
 }
 
-// The unknowns of one eliminated group: triangle R and R^-1 applied to what the panel holds right of it.
-inline void back(const double* panel, whole n, whole width, const double* first, whole nf, const double* second, whole ns, const double* shared, whole k,
-                 whole s, double* x, whole stride) {
+// The unknowns of one eliminated group, for s sides: z (s, stride) has what multiplies the columns right of the triangle, and 0 everywhere else.
+inline void back(const double* panel, whole n, whole width, whole side, whole s, double* z, whole stride) {
     for (whole r = n - 1; r >= 0; r--) {
-        const double *row = panel + r * width, *p = row + n;
-        double* own = x + r * stride;
-        for (whole c = 0; c < s; c++) own[c] = p[nf + ns + k + c];
-        for (whole j = r + 1; j < n; j++)
-            for (whole c = 0; c < s; c++) own[c] -= row[j] * x[j * stride + c];
-        for (whole j = 0; j < nf; j++)
-            for (whole c = 0; c < s; c++) own[c] -= p[j] * first[j * s + c];
-        for (whole j = 0; j < ns; j++)
-            for (whole c = 0; c < s; c++) own[c] -= p[nf + j] * second[j * s + c];
-        for (whole j = 0; j < k; j++)
-            for (whole c = 0; c < s; c++) own[c] -= p[nf + ns + j] * shared[j * s + c];
-        for (whole c = 0; c < s; c++) own[c] /= row[r];
+        const double* row = panel + r * width;
+        for (whole c = 0; c < s; c++) {
+            double* own = z + c * stride;
+            Four sum = {};
+            for (whole j = r & ~whole(3); j < width; j += 4) sum += *reinterpret_cast<const Four*>(row + j) * *reinterpret_cast<const Four*>(own + j);
+            own[r] = (row[side + c] - ((sum[0] + sum[1]) + (sum[2] + sum[3]))) * row[r];
+        }
     }
 }
 
@@ -224,8 +218,8 @@ inline double solve(const System& y) {
     const whole N = y.count, n = y.inner, d = y.node, k = y.shared, s = y.sides, K = k + s, all = n + d, width = padded(n + 2 * d + K), wide = padded(3 * d + K);
     const whole widest = width > wide ? width : wide;
     double *kept = y.room, *chain = kept + N * n * width, *panel = chain + N * d * wide, *two = panel + all * width;
-    double *border = two + 2 * d * wide, *dots = border + k * widest, *small = dots + widest + all + d;
-    double *sides = small + (d + k) * (d + k), *ends = sides + (d + k) * s, *foot = ends + 2 * d * s;
+    double *border = two + 2 * d * wide, *next = border + k * width, *z = next + k * wide, *column = z + s * widest, *small = column + all + d;
+    double *sides = small + (d + k) * (d + k), *ends = sides + (d + k) * s, *foot = ends + d * s;
     double *at_first = foot + k * K, *here = at_first + k * d;
     auto* order = reinterpret_cast<whole*>(here + k * d);
     double sign = 1.0;
@@ -242,7 +236,7 @@ inline double solve(const System& y) {
             for (whole c = 0; c < K; c++) row[n + 2 * d + c] = C[i * K + c];
             for (whole c = n + 2 * d + K; c < width; c++) row[c] = 0.0;
         }
-        sign *= triangularise(panel, all, n, width, dots);
+        sign *= triangularise(panel, all, n, width, column);
         for (whole i = 0; i < n * width; i++) kept[b * n * width + i] = panel[i];
         const double* rest = panel + n * width;
         for (whole i = 0; i < d; i++)
@@ -254,8 +248,8 @@ inline double solve(const System& y) {
             for (whole c = 0; c < d; c++) row[n + c] = own[c] + here[r * d + c], row[n + d + c] = 0.0;
             for (whole c = 0; c < K; c++) row[n + 2 * d + c] = foot[r * K + c];
             for (whole c = n + 2 * d + K; c < width; c++) row[c] = 0.0;
-            take_out(panel, n, width, row);
         }
+        take_out(panel, n, width, border, k);
         if (b == 0) {  // two: x_i | x_0 | x_(i + 1) | shared
             for (whole i = 0; i < d; i++) {
                 double *row = two + i * wide, *from = panel + (n + i) * width + n;
@@ -274,15 +268,18 @@ inline double solve(const System& y) {
             for (whole c = 0; c < d; c++) upper[2 * d + c] = 0.0, lower[c] = from[c], lower[d + c] = 0.0, lower[2 * d + c] = from[d + c];
             for (whole c = 0; c < K; c++) lower[3 * d + c] = from[2 * d + c];
         }
-        sign *= triangularise(two, 2 * d, d, wide, dots);
+        sign *= triangularise(two, 2 * d, d, wide, column);
         for (whole i = 0; i < d * wide; i++) chain[b * d * wide + i] = two[i];
         for (whole r = 0; r < k; r++) {
             const double* from = border + r * width + n;
-            double* row = dots;
+            double* row = next + r * wide;
             for (whole c = 0; c < d; c++) row[c] = from[c], row[d + c] = at_first[r * d + c], row[2 * d + c] = from[d + c];
             for (whole c = 0; c < K; c++) row[3 * d + c] = from[2 * d + c];
             for (whole c = 3 * d + K; c < wide; c++) row[c] = 0.0;
-            take_out(two, d, wide, row);
+        }
+        take_out(two, d, wide, next, k);
+        for (whole r = 0; r < k; r++) {
+            const double* row = next + r * wide;
             for (whole c = 0; c < d; c++) at_first[r * d + c] = row[d + c], here[r * d + c] = row[2 * d + c];
             for (whole c = 0; c < K; c++) foot[r * K + c] = row[3 * d + c];
         }
@@ -305,10 +302,26 @@ inline double solve(const System& y) {
     const double* shared = sides + d * s;
     for (whole i = 0; i < k * s; i++) y.at_shared[i] = shared[i];
     for (whole i = 0; i < d * s; i++) y.found[i] = sides[i], ends[i] = y.closure * sides[i];
+    auto put = [z, s, widest](whole at, const double* from, whole size) {
+        for (whole c = 0; c < s; c++)
+            for (whole j = 0; j < size; j++) z[c * widest + at + j] = from[j * s + c];
+    };
+    auto take = [z, s, widest](double* to, whole size) {
+        for (whole c = 0; c < s; c++)
+            for (whole j = 0; j < size; j++) to[j * s + c] = z[c * widest + j];
+    };
     for (whole b = N - 1; b >= 0; b--) {
         double* own = y.found + b * all * s;
-        if (b > 0) back(chain + b * d * wide, d, wide, sides, d, ends, d, shared, k, s, own, s);
-        back(kept + b * n * width, n, width, own, d, ends, d, shared, k, s, own + d * s, s);
+        if (b > 0) {
+            for (whole i = 0; i < s * widest; i++) z[i] = 0.0;
+            put(d, sides, d), put(2 * d, ends, d), put(3 * d, shared, k);
+            back(chain + b * d * wide, d, wide, 3 * d + k, s, z, widest);
+            take(own, d);
+        }
+        for (whole i = 0; i < s * widest; i++) z[i] = 0.0;
+        put(n, own, d), put(n + d, ends, d), put(n + 2 * d, shared, k);
+        back(kept + b * n * width, n, width, n + 2 * d + k, s, z, widest);
+        take(own + d * s, n);
         for (whole i = 0; i < d * s; i++) ends[i] = own[i];
     }
     return sign;
@@ -320,9 +333,9 @@ inline double bordered(const Cycle& y, double closure, double corner, const doub
     double widths_n = 0.0, widths_p = 0.0;
     for (whole i = tail; i < size; i++) widths_p -= border[i] * y.derivative[i] * y.unit, widths_n -= border[i] * -y.residual[i];
     for (whole i = 0; i < N; i++)
-        for (whole r = 0; r < all; r++) {
+        for (whole r = 0, a = 0; r < all; r++, a = a + 1 < d ? a + 1 : 0) {
             const whole at = i * all + r;
-            double *column = y.columns + at * K, own = y.scale[r % d];
+            double *column = y.columns + at * K, own = y.scale[a];
             if (y.free) column[0] = y.by_period[at], y.rows[(i * k) * all + r] = y.phase[at];
             column[k - 1] = y.derivative[at] / own * y.unit, column[k] = -y.residual[at] / own, column[k + 1] = 0.0;
             y.rows[(i * k + k - 1) * all + r] = border[at] * own;
@@ -334,7 +347,7 @@ inline double bordered(const Cycle& y, double closure, double corner, const doub
     }
     last[k - 1] = border[size] * y.unit + widths_p, last[k] = n + widths_n, last[k + 1] = 1.0;
     double sign = solve({N, all - d, d, k, 2, closure, y.blocks, y.columns, y.rows, y.foot, y.left, y.right, y.states, y.shared, y.room});
-    for (whole i = 0; i < states; i++) step[i] = y.states[2 * i] * y.scale[i % d], tangent[i] = y.states[2 * i + 1] * y.scale[i % d];
+    for (whole i = 0, a = 0; i < states; i++, a = a + 1 < d ? a + 1 : 0) step[i] = y.states[2 * i] * y.scale[a], tangent[i] = y.states[2 * i + 1] * y.scale[a];
     if (y.free) step[states] = y.shared[0] * y.clock, tangent[states] = y.shared[1] * y.clock;
     step[size] = y.shared[2 * k - 2] * y.unit, tangent[size] = y.shared[2 * k - 1] * y.unit;
     for (whole i = tail; i < size; i++) step[i] = -y.residual[i] - y.derivative[i] * step[size], tangent[i] = -y.derivative[i] * tangent[size];
@@ -372,10 +385,13 @@ inline double distance_to_rest(const Cycle& y, const double* f, const double* ja
     const whole d = y.node;
     double least = HUGE_VAL, *a = y.room, *b = a + d * d;
     for (whole i = 0; i < y.count * y.degree; i++) {
+        double size = 0.0, speed = 0.0;
         for (whole r = 0; r < d; r++) {
-            for (whole c = 0; c < d; c++) a[r * d + c] = jacobian[(i * d + r) * d + c] / y.scale[r] * y.scale[c];
-            b[r] = f[i * d + r] / y.scale[r];
+            const double unit = 1.0 / y.scale[r];
+            for (whole c = 0; c < d; c++) a[r * d + c] = jacobian[(i * d + r) * d + c] * unit * y.scale[c], size += a[r * d + c] * a[r * d + c];
+            b[r] = f[i * d + r] * unit, speed += b[r] * b[r];
         }
+        if (speed > least * size) continue;  // |x| >= |a x| / |a|
         if (!solve_plain(a, b, d, 1)) return -1.0;
         double square = 0.0;
         for (whole r = 0; r < d; r++) square += b[r] * b[r];

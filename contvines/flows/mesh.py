@@ -12,7 +12,7 @@ SLACK = 1.1  # largest over mean share of the error at which a mesh stays as it 
 
 def closed(x: np.ndarray, sign: float = 1.0) -> np.ndarray:
     """Values at all nodes of each interval, shape (..., N, m + 1, d), from those without the last one, (..., N, m, d)."""
-    after = np.roll(x[..., :1, :], -1, axis=-3)
+    after = np.concatenate([x[..., 1:, :1, :], x[..., :1, :1, :]], axis=-3)
     if sign != 1.0:
         after[..., -1, :, :] *= sign
     return np.concatenate([x, after], axis=-2)
