@@ -10,6 +10,7 @@ import numpy as np
 from ..continuation.aims import Aim
 from ..continuation.engine import Engine, Hit, Solved
 from ..continuation.layout import Found, solved_point, solved_points
+from ..continuation.mesh_motion import MeshMotion
 from .multiplier_counts import counts
 
 FAR = 3.0  # decades between a multiplier and the circle
@@ -34,7 +35,7 @@ class Segment:
         self.za, self.zb = self.chord[0], self.chord[2]
         self.za[:-1], self.za[-1], self.zb[:-1], self.zb[-1] = a.u, a.p, b.u, b.p
         begin, end = a.tangent, b.tangent
-        read = engine.on_one_mesh(a.u, b.u, begin)
+        read = MeshMotion(engine).carried(a.u, b.u, begin)
         if read is not None:
             self.za[:-1] = read
         chord = self.zb - self.za

@@ -16,6 +16,7 @@ from ..bifurcation.detect import Detector
 from ..bifurcation.located import Role
 from ..continuation.chunk import Status, packed
 from ..continuation.engine import Engine, Solved
+from ..continuation.mesh_motion import MeshMotion
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from .half_branch import HalfBranch, Piece
@@ -48,7 +49,7 @@ class Meshes:
         """How a point of a mesh reads on the next one; None where it cannot be solved there."""
         finer = self.finer(engine)
         read = _read(point, engine, finer)
-        return _solved(finer, read) if solve else read
+        return MeshMotion(finer).solved(read) if solve else read
 
     def read(self, half: HalfBranch, wanted: Engine) -> HalfBranch:
         """A half on a finer mesh, as it is."""
@@ -81,8 +82,8 @@ class Meshes:
 
 
 def _adaptive(engine: Engine) -> Adaptive:
-    assert isinstance(engine.problem, Adaptive)
-    return engine.problem
+    assert engine.adaptive is not None
+    return engine.adaptive
 
 
 def _read(point: Solved, engine: Engine, finer: Engine) -> Solved:
@@ -99,17 +100,6 @@ def _piece(piece: Piece, engine: Engine, finer: Engine) -> Piece:
     return piece._replace(points=problem.halved(piece.points), tangents=tangents)
 
 
-def _solved(finer: Engine, guess: Solved) -> Solved | None:
-    """The solution across the tangent of a guess, in phase with that."""
-    problem = _adaptive(finer)
-    problem.anchor(guess.u, guess.p)
-    guess = finer.standing(guess)
-    found = finer.across(guess.u, guess.p, guess.tangent)
-    found = None if found is None else finer.steered(found)
-    problem.anchor(None)
-    return found
-
-
 def _guess(half: HalfBranch, i: int) -> Solved:
     return Solved(*half.at(i), np.zeros(0), 0.0, 0.0, 0.0)
 
@@ -117,7 +107,7 @@ def _guess(half: HalfBranch, i: int) -> Solved:
 def _goes_on(half: HalfBranch, real: bool) -> bool:
     """Whether the last point lies where it did, on this mesh: not far away, as a cycle that passes a saddle within rounding, and before a border."""
     guess = _guess(half, len(half) - 1)
-    last = _solved(half.engine, guess)
+    last = MeshMotion(half.engine).solved(guess)
     if last is None:
         return True
     near = half.engine.distance(guess, last) <= FAR
@@ -145,7 +135,8 @@ def _located_again(half: HalfBranch, detector: Detector, real: bool) -> bool:
         low, high = int(group[0]) - 1, int(group[-1]) + 1
         if low < 1 or high >= len(half):
             return False  # an end may be singular itself
-        ends = [end for i in (low, high) if (end := _solved(half.engine, _guess(half, i))) is not None]
+        solved = [MeshMotion(half.engine).solved(_guess(half, i)) for i in (low, high)]
+        ends = [end for end in solved if end is not None]
         if len(ends) < 2:
             return False
         _adaptive(half.engine).anchor(ends[0].u, ends[0].p)  # as while a chunk is looked at

@@ -13,7 +13,6 @@ from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
 from ..continuation.trace import Finer, Retrace, chunks
 from ..journal import NullJournal
-from ..problems.abilities import Adaptive
 from .finer_mesh import Meshes
 from .half_branch import HalfBranch, Piece, pack, piece_of, single, unpack
 from .opening import SHORTER, opening
@@ -152,16 +151,16 @@ def _ended(half: HalfBranch, chunk: Chunk) -> HalfBranch:
 
 def _repeats(engine: Engine, event: Located) -> bool:
     """Whether a branch comes to solutions that only repeat shorter ones, and turns round there, on a mesh that cannot tell it."""
-    problem = engine.problem
-    if not (engine.adaptive and isinstance(problem, Adaptive) and event.kind == "branch-point"):
+    problem = engine.adaptive
+    if problem is None or event.kind != "branch-point":
         return False
     return problem.too_coarse(event.point.u, event.point.p) and problem.parts_of_refined > 1
 
 
 def _too_coarse(engine: Engine, chunk: Chunk) -> bool:
     """Whether the mesh has become too coarse on a chunk."""
-    problem = engine.problem
-    if not (engine.adaptive and isinstance(problem, Adaptive) and chunk.status in UNFINISHED):
+    problem = engine.adaptive
+    if problem is None or chunk.status not in UNFINISHED:
         return False
     stuck = chunk.status == Status.STEP_TOO_SMALL
     return problem.too_coarse(chunk.points[-1], float(chunk.values[-1]), stuck)
@@ -169,10 +168,10 @@ def _too_coarse(engine: Engine, chunk: Chunk) -> bool:
 
 def _lag(engine: Engine, chunk: Chunk) -> Retrace | None:
     """Where the mesh lags behind the solutions of a chunk: from the last point before on it is adapted again, with steps that are not longer."""
-    problem = engine.problem
-    if not (engine.adaptive and isinstance(problem, Adaptive) and chunk.status in UNFINISHED):
+    problem = engine.adaptive
+    if problem is None or chunk.status not in UNFINISHED or len(chunk) < 2:
         return None
-    if len(chunk) < 2 or not problem.lags(chunk.points[-1]):
+    if not problem.lags(chunk.points[-1]):
         return None
     count = next(i for i in range(1, len(chunk)) if problem.lags(chunk.points[i]))
     step = engine.join(

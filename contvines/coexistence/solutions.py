@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..branches.branch import Branch
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
+from ..continuation.mesh_motion import MeshMotion
 from ..continuation.settings import Settings
 
 
@@ -28,7 +29,7 @@ def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
             continue
         part = (at - first) / (last - first)
         one, other = branch.points[i], branch.points[i + 1]
-        read = engine.on_one_mesh(one, other, branch.tangents[i])
+        read = MeshMotion(engine).carried(one, other, branch.tangents[i])
         solved = engine.at_value((1.0 - part) * (one if read is None else read) + part * other, at)
         if solved is not None and engine.smallest_margin(solved.row) >= MARGIN:
             found.append(solved)

@@ -21,7 +21,7 @@ class Closing:
     def cut(self, chunk: Chunk, apart: float = np.inf) -> Chunk | None:
         """The chunk up to the start, or None if it does not get there; neighbours are at most so far apart."""
         engine = self.engine
-        if engine.adaptive:
+        if engine.adaptive is not None:
             return self._on_other_meshes(chunk)
         if chunk.values[0] == self.start.p:
             changes = chunk.values[1:] - chunk.values[:-1]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
     from .native import NativeLoop
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
-ALONG = 0.7  # cosine of the angle between a tangent and the way to the next point on a mesh that moves along, at least
 ONE = np.zeros(1)  # a single place: the chord's first end
 NO_AIM = Aim(NOTHING, NO_COLUMNS)
 
@@ -77,7 +75,7 @@ class Engine(Rows):
         self.exchanges = self.scaled and self.detection != "none"
         nearing = problem if isinstance(problem, Nearing) else None
         self.many, self.signed = nearing is not None and nearing.many, nearing is None or nearing.signed
-        self.adaptive = isinstance(problem, Adaptive)
+        self.adaptive = problem if isinstance(problem, Adaptive) else None
         self.weights = 1.0 / (n * self.scale**2)
         self.weights[n] = 1.0 / (self.upper - self.lower) ** 2
         self.moving = problem if isinstance(problem, Moving) else None
@@ -102,14 +100,9 @@ class Engine(Rows):
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
         self.known = np.zeros(layout.SIZE)
-        self.loop = self._loop(self.metric)
+        self.loop = self.loop_with(self.metric)
 
-    @cached_property
-    def still(self) -> InterpretedLoop | NativeLoop:
-        """The loop of a mesh that stays where it is."""
-        return self._loop(self.metric._replace(moving=None))
-
-    def _loop(self, metric: Metric) -> InterpretedLoop | NativeLoop:
+    def loop_with(self, metric: Metric) -> InterpretedLoop | NativeLoop:
         """March and single points, in the native core for compiled problems."""
         kernels, rest = self.kernels, (metric, self.noise, self.known, self.scratch, self.settings.step_rule)
         if isinstance(kernels, TableKernels):
@@ -163,37 +156,6 @@ class Engine(Rows):
         z = np.empty(len(u) + 1)
         z[:-1], z[-1] = u, p
         return z
-
-    def steered(self, point: Solved) -> Solved:
-        """The point, with the direction along which a mesh moves with the solution."""
-        if self.moving is None:
-            return point
-        tangent = point.tangent.copy()
-        self.moving.steer(point.u, tangent)
-        return point._replace(tangent=self.unit(tangent))
-
-    def standing(self, point: Solved) -> Solved:
-        """The point, with the direction along which a mesh stands where it is."""
-        if self.moving is None:
-            return point
-        tangent = point.tangent.copy()
-        self.moving.stand(point.u, tangent)
-        return point._replace(tangent=self.unit(tangent))
-
-    def on_one_mesh(self, u: np.ndarray, other: np.ndarray, tangent: np.ndarray) -> np.ndarray | None:
-        """Unknowns as they read on the mesh of those of the next point, where the mesh was adapted between both; else None.
-
-        There the way from one to the other is not along the tangent.
-        """
-        if self.moving is None:
-            return None
-        chord = self.join(other - u, 0.0)
-        along = self.inner(self.join(tangent[:-1], 0.0), chord)
-        return (
-            None
-            if along > ALONG * self.norm(chord) * self.norm(self.join(tangent[:-1], 0.0))
-            else self.moving.carried(u, other)
-        )
 
     def across(self, u: np.ndarray, p: float, tangent: np.ndarray) -> Solved | None:
         """The solution across a direction through a guess."""

@@ -37,7 +37,7 @@ class Reach:
         self.engine, self.start = engine, start
         self.learned = engine.problem.scales_learned
         # cycles explode within next to no change of the parameter (canards) and stay bounded; their periods have a margin
-        self.bounded = engine.adaptive
+        self.bounded = engine.adaptive is not None
         # largest distances so far, each twice the one before, and the extremes of the parameter since
         self.doubled = engine.settings.escape
         self.slow = 0  # points in a row that came next to nowhere

@@ -12,18 +12,20 @@ import numpy as np
 
 from ..interrupts import listening
 from ..journal import NullJournal
-from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from . import layout
 from .chunk import OF_SOLVED, Chunk, Status, packed
 from .closing import Closing
 from .engine import Engine, Solved
+from .mesh_motion import MeshMotion
 from .reach import Reach
 from .settings import Settings, hinting
 from .step_rule import BY_ANGLE
 
 if TYPE_CHECKING:
     from ..journal import Journal
+    from .interpreted import InterpretedLoop
+    from .native import NativeLoop
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
 FEWEST = 8  # points in a chunk, however many unknowns there are
@@ -81,9 +83,9 @@ def chunks(
         end = engine.at_value(start.u, bound, start.tangent) if left > 0.0 else None  # no step is so short
         yield packed([start] if end is None else [start, end], Status.LEFT_INTERVAL)
         return
-    adaptive = _on_mesh(engine)
+    motion = MeshMotion(engine)
     try:
-        history = [start] if adaptive is None else _anchored(engine, adaptive, [engine.steered(start)])
+        history = motion.adapted([motion.steered(start)])
         h, capacity = settings.first_step if first_step is None else first_step, settings.first_chunk
         closing, reach = Closing(engine, start), Reach(engine, start)
         wish: Retrace | Finer | None = None
@@ -109,11 +111,12 @@ def chunks(
                 if not engine.compiled:
                     # points are dear, and a branch that closes is found to only at the end of a chunk
                     room = min(room, max(most, FEWEST), max(AGAIN, total // 2))
-                if adaptive is not None:
-                    room = min(room, adaptive.chunk)
+                if engine.adaptive is not None:
+                    room = min(room, engine.adaptive.chunk)
                 room = min(room, max(settings.max_points - total, 1))
                 apart = _apart(engine, max(h, longest))
-                chunk, h = _march(engine, history, room, h, longest, stop_at_border, still)
+                loop = motion.standing_loop if still else engine.loop
+                chunk, h = _march(engine, loop, history, room, h, longest, stop_at_border)
                 stuck = chunk.status == Status.STEP_TOO_SMALL and engine.moving is not None and not still
                 still = stuck
                 if stuck:
@@ -121,9 +124,10 @@ def chunks(
                     h = settings.first_step
                     if len(chunk) > 1:
                         chunk.status = Status.RUNNING
-                    elif adaptive is not None:
-                        history, still = _anchored(engine, adaptive, history[-1:], still), False
-                        chunk, h = _march(engine, history, room, h, longest, stop_at_border, True)
+                    else:
+                        history, still = motion.adapted(history[-1:], still), False
+                        loop = motion.standing_loop
+                        chunk, h = _march(engine, loop, history, room, h, longest, stop_at_border)
                 closed = closing.cut(chunk, apart)
                 away = reach.escapes(chunk, apart)
                 if closed is not None:
@@ -144,13 +148,11 @@ def chunks(
             wish = yield chunk
             number += 1
             if isinstance(wish, Finer):
-                if adaptive is not None:
-                    adaptive.anchor(None)
+                motion.release()
                 last, start = wish.image(history[-1]), wish.image(closing.start)
                 h, closing, reach = before  # nothing is known of the chunk
-                engine, adaptive, still = wish.engine, _on_mesh(wish.engine), False
-                assert adaptive is not None
-                history = _anchored(engine, adaptive, [engine.steered(last)])
+                engine, motion, still = wish.engine, MeshMotion(wish.engine), False
+                history = motion.adapted([motion.steered(last)])
                 for watch in (closing, reach):
                     watch.engine, watch.start = engine, start
                 continue
@@ -160,16 +162,10 @@ def chunks(
                 return
             total += len(chunk) - 1
             history = [chunk.solved(i) for i in range(max(0, len(chunk) - 2), len(chunk))]
-            if adaptive is not None:
-                history = _anchored(engine, adaptive, history, still)
+            history = motion.adapted(history, still)
             capacity = settings.chunk if number == 1 else min(2 * capacity, max(settings.chunk, most))
     finally:
-        if adaptive is not None:
-            adaptive.anchor(None)
-
-
-def _on_mesh(engine: Engine) -> Adaptive | None:
-    return engine.problem if engine.adaptive and isinstance(engine.problem, Adaptive) else None
+        motion.release()
 
 
 def _kept(chunk: Chunk) -> dict[str, Any]:
@@ -181,39 +177,14 @@ def _kept(chunk: Chunk) -> dict[str, Any]:
     return values
 
 
-def _anchored(engine: Engine, problem: Adaptive, history: list[Solved], still: bool = False) -> list[Solved]:
-    """The last points; where the mesh, or the phase that is kept, no longer suits the last one, or it is to stand still, that one alone, solved again."""
-    last, image = history[-1], problem.adapted(history[-1].u)
-    if image is None and problem.in_phase(last.u) and not still:
-        return history
-    problem.anchor(last.u, last.p)
-    last = engine.standing(last)
-    while True:
-        u, direction = last.u, last.tangent[:-1]
-        if image is not None:
-            u, direction = image(u), image(direction, True)
-        problem.anchor(u, last.p)
-        found = engine.across(u, last.p, engine.unit(engine.join(direction, float(last.tangent[-1]))))
-        if image is not None and found is not None and _past_a_border(engine, history[-1], found):
-            found = None  # on the mesh on which it is not there yet it is met with the next steps
-        if image is None or found is not None:
-            found = found or last
-            return [found if still else engine.steered(found)]
-        image = None
-
-
-def _past_a_border(engine: Engine, before: Solved, after: Solved) -> bool:
-    return bool(engine.smallest_margin(before.row) >= 0.0 > engine.smallest_margin(after.row))
-
-
 def _march(
     engine: Engine,
+    loop: InterpretedLoop | NativeLoop,
     history: list[Solved],
     capacity: int,
     h: float,
     longest: float,
     stop_at_border: bool,
-    still: bool,
 ) -> tuple[Chunk, float]:
     first, n = len(history), engine.n
     size = first + capacity
@@ -228,7 +199,6 @@ def _march(
     for array, name in zip(arrays, OF_SOLVED, strict=True):
         array[:first] = [getattr(point, name) for point in history]
     control = engine.control._replace(stop_at_border=stop_at_border, max_step=longest)
-    loop = engine.still if still else engine.loop
     with engine.section:
         filled, h, status = loop.march(arrays, first, float(h), control)
     return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
