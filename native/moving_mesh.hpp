@@ -7,7 +7,7 @@ namespace moving_mesh {
 struct Ring {
     whole count, degree, node, free, copies;  // N, m, d; whether the period is an unknown
     const double *rates, *nodes, *scale;      // (m, m + 1), (m + 1), (d)
-    double stiffness;
+    double stiffness, least;                  // size of a cycle, in units of the scale, below which its mesh stands still
     double* room;                             // N m d + 9 N + 3 d numbers
 };
 
@@ -41,6 +41,7 @@ inline void steer(const Ring& y, const double* u, const double* row, double* tan
         low[a] = least.value, moved[a] = least.change, stretch[a] = range > 0.0 ? (most.change - least.change) / range : 0.0;
         size = larger(size, (u[highest] - u[lowest]) / y.scale[a]);
     }
+    if (!(size > y.least)) return;
     for (whole i = 0; i < 5 * n; i++) square[i] = 0.0;
     const double stiff = y.stiffness * size * size * double(N * m * d);
     for (whole i = 0; i < N; i++) {

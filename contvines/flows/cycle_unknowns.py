@@ -81,7 +81,9 @@ class CycleUnknowns(Parametrised, ProblemDefaults, ABC):
         if len(self.u0) != self.dimension:
             raise ValueError(f"{len(self.u0)} unknowns; {self.dimension} are needed")
         self.node_scale = np.ones(self.node) if scale is None else np.array(scale, dtype=float)
-        self.moving = MovingMesh(self.rule, self.intervals, self.free_period, self.copies, self.node_scale)
+        self.moving = MovingMesh(
+            self.rule, self.intervals, self.free_period, self.copies, self.node_scale, flow.settings.same
+        )
         self.clock, self.parameter_scale = float(clock), float(unit)
         self.missed = 0.0  # by which the trivial multiplier, as computed last, misses 1
         self._size()

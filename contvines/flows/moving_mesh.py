@@ -33,17 +33,21 @@ class MovingMesh:
     copies : int
         The mesh consists of so many equal parts, one after the other, and goes on to do so.
     scale : ndarray, shape (d,)
+    least : float
+        Size of a cycle, in units of the scale, below which its mesh stands still: what rests has no fast parts.
     """
 
-    def __init__(self, rule: Rule, count: int, free: int, copies: int, scale: np.ndarray) -> None:
-        self.rule, self.count, self.free, self.copies = rule, count, free, copies
+    def __init__(
+        self, rule: Rule, count: int, free: int, copies: int, scale: np.ndarray, least: float = 0.0
+    ) -> None:
+        self.rule, self.count, self.free, self.copies, self.least = rule, count, free, copies, least
         self.scale = np.array(scale, dtype=float)
         self.states = count * rule.degree * len(scale)
         self.record = None
         if native():
             self.room = np.empty(self.states + 9 * count + 3 * len(scale))
             sizes = count, rule.degree, len(scale), free, copies
-            self.record = pack(*sizes, rule.rates, rule.nodes, self.scale, STIFFNESS, self.room)
+            self.record = pack(*sizes, rule.rates, rule.nodes, self.scale, STIFFNESS, float(least), self.room)
             self._steer = function("core_cycle_steer", NOTHING, *[POINTER] * 4)
 
     def steer(self, u: np.ndarray, tangent: np.ndarray, row: np.ndarray | None = None) -> None:
@@ -65,6 +69,8 @@ class MovingMesh:
             return
         n, widths = self.states, u[self.states + self.free :]
         x = u[:n].reshape(self.count, self.rule.degree, -1) / self.scale
+        if not np.ptp(x.reshape(-1, x.shape[2]), axis=0).max() > self.least:
+            return
         dx, slopes = tangent[:n].reshape(x.shape) / self.scale, self._slopes(x, widths)
         xi = self._displacements(x, dx, slopes, widths)
         dw = np.roll(xi, -1) - xi

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import contvines as cv
@@ -121,3 +122,36 @@ def test_an_oregonator_from_one_hopf_point_to_the_other():
     )
     assert not graph.of_kind("homoclinic") and len(graph.branches) == 2
     assert all(gap.high - gap.low < 1e-9 for gap in graph.unresolved)
+
+
+def test_rest_has_no_fast_parts_and_doubles_at_the_edges_of_mathieus_tongue():
+    """Edges of the first tongue: det(M + 1) = 0, with M integrated by scipy, or, to first order in the excitation e, near 2 -+ e / 2."""
+    damping, excitation = 0.05, 0.5
+
+    def variations(t, y, w):
+        stiffness = 1.0 + excitation * np.cos(w * t)
+        return [
+            y[2],
+            y[3],
+            -2 * damping * y[2] - stiffness * y[0],
+            -2 * damping * y[3] - stiffness * y[1],
+        ]
+
+    def doubles(w):
+        end = solve_ivp(variations, (0.0, 2 * np.pi / w), [1, 0, 0, 1], args=(w,), rtol=1e-11, atol=1e-12)
+        return np.linalg.det(end.y[:, -1].reshape(2, 2) + np.eye(2))
+
+    flow = cv.FlowProblem(
+        lambda x, p, t: [
+            x[1],
+            -2 * damping * x[1] - (1.0 + excitation * np.cos(p.w * t)) * x[0] - x[0] ** 3,
+        ],
+        [0.0, 0.0],
+        {"w": 2.6},
+        period=lambda p: 2 * np.pi / p.w,
+        mirror=lambda x: -x,
+    )
+    graph = cv.diagram(flow, over="w", within=(1.5, 2.6), depth=0, progress=False)
+    found = sorted(point.value for point in graph.of_kind("period-doubling"))
+    assert found == pytest.approx([brentq(doubles, 1.6, 1.9), brentq(doubles, 2.1, 2.4)], abs=1e-8)
+    assert graph["B1"].values.min() == 1.5 and graph["B1"].values.max() == 2.6
