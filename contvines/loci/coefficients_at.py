@@ -12,6 +12,9 @@ from .linear import Linearisation
 from .plane_point import PlanePoint
 from .settings import VANISHING
 
+FREQUENCY_KNOWN = ("bogdanov-takens", "resonance-1-1", "resonance-1-2", "resonance-1-3", "resonance-1-4")
+"""Kinds that say themselves where the critical pair is; at a double zero rounding may make one of it."""
+
 
 def coefficients(point: PlanePoint) -> dict[str, float]:
     """Normal-form coefficients at a point, by name; none where the derivatives cannot be obtained.
@@ -28,7 +31,7 @@ def coefficients(point: PlanePoint) -> dict[str, float]:
         found = normal_form(kind, forms, pairs)
     except (ValueError, np.linalg.LinAlgError, IndexError):
         return {}
-    if pairs and kind not in ("resonance-1-1", "resonance-1-2", "resonance-1-3", "resonance-1-4"):
+    if pairs and kind not in FREQUENCY_KNOWN:
         found |= {"omega": pairs[0].imag} if forms.flow else {"angle": float(np.angle(pairs[0]))}
     return {name: float(value) for name, value in found.items() if np.isfinite(value)}
 

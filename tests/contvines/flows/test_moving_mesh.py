@@ -86,7 +86,7 @@ def test_a_canard_is_passed_from_one_hopf_point_to_the_growing_relaxation_oscill
     graph = cv.diagram(flow, over="a", within=(0.0, 1.2), progress=False)
     (hopf,) = graph.of_kind("hopf")
     assert hopf.value == pytest.approx(1.0, abs=1e-9)
-    cycles = graph["B2"]
+    cycles = graph.branches["B2"]
     where = np.interp(1.0, cycles.measure("max x0") - 1.0, cycles.values)
     assert where == pytest.approx(1.0 - 0.01 / 8.0 - 3.0 / 32.0 * 1e-4, abs=2e-6)
     assert cycles.values.min() == 0.0 and len(cycles) < 400
@@ -154,4 +154,4 @@ def test_rest_has_no_fast_parts_and_doubles_at_the_edges_of_mathieus_tongue():
     graph = cv.diagram(flow, over="w", within=(1.5, 2.6), depth=0, progress=False)
     found = sorted(point.value for point in graph.of_kind("period-doubling"))
     assert found == pytest.approx([brentq(doubles, 1.6, 1.9), brentq(doubles, 2.1, 2.4)], abs=1e-8)
-    assert graph["B1"].values.min() == 1.5 and graph["B1"].values.max() == 2.6
+    assert graph.branches["B1"].values.min() == 1.5 and graph.branches["B1"].values.max() == 2.6

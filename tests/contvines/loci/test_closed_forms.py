@@ -91,6 +91,26 @@ def test_fitzhugh_nagumo():
     these(chart, {"cusp": [(0.7, 1.0)], "bogdanov-takens": [(current(v, 2.0), 2.0), (current(-v, 2.0), 2.0)]})
 
 
+def test_an_oscillator_that_is_locked_to_a_drive():
+    """z' = z (1 - |z|^2) + i d z + K, s = |z|^2: s ((1 - s)^2 + d^2) = K^2; trace 2 - 4 s, determinant (1 - s) (1 - 3 s) + d^2.
+
+    The determinant has a double zero in s at s = 2/3, d^2 = 1/3 (cusp), and vanishes with the trace at s = 1/2, d^2 = 1/4 (a double zero has no frequency).
+    """
+
+    def rates(x, p):
+        growth = 1 - x[0] ** 2 - x[1] ** 2
+        return np.array([growth * x[0] - p.d * x[1] + p.K, growth * x[1] + p.d * x[0]])
+
+    problem = cv.AlgebraicProblem(rates, [1.2, 0.0], {"d": 0.0, "K": 0.52}, parameter="d", spectrum="flow")
+    graph = cv.diagram(problem, within=(-0.6, 0.6), depth=0)
+    points = list(cv.locus(graph.special["LP1"], over="K", within=(0.3, 1.0)).points.values())
+    for kind, (d, K) in {"cusp": (np.sqrt(1 / 3), np.sqrt(8 / 27)), "bogdanov-takens": (0.5, 0.5)}.items():
+        found = sorted(point.value for point in points if point.kind == kind)
+        assert [abs(x) for pair in found for x in pair] == pytest.approx([d, K, d, K], abs=1e-9)
+    for point in points:
+        assert "omega" not in coefficients(point)
+
+
 def test_generalized_period_doubling_at_a_known_place():
     """w -> -(1 + p + q^2) w + (q - p) w^3 + 0.7 w^5 in x = 1 + sinh w: c and the flip vanish together at p = q = 0."""
 
@@ -100,7 +120,7 @@ def test_generalized_period_doubling_at_a_known_place():
 
     problem = cv.MapProblem(f, [1.0], {"p": -0.2, "q": 0.3}, parameter="p")
     graph = cv.diagram(problem, over="p", within=(-0.5, 0.3), depth=0)
-    locus = cv.locus(graph["PD1"], over="q", within=(-0.4, 0.5), bounds=(-0.6, 0.4))
+    locus = cv.locus(graph.special["PD1"], over="q", within=(-0.4, 0.5), bounds=(-0.6, 0.4))
     for p, q in locus.values:
         assert p == pytest.approx(-q * q, abs=1e-12)
     found = [(point.kind, *point.value, coefficients(point)) for _, point in find(locus)]
@@ -123,7 +143,7 @@ def test_chenciner_at_a_known_place():
 
     problem = cv.MapProblem(f, [0.0, 0.0], {"p": -0.2, "q": 0.3}, parameter="p")
     graph = cv.diagram(problem, over="p", within=(-0.4, 0.3), depth=0)
-    locus = cv.locus(graph["NS1"], over="q", within=(-0.5, 0.6), bounds=(-0.5, 0.4))
+    locus = cv.locus(graph.special["NS1"], over="q", within=(-0.5, 0.6), bounds=(-0.5, 0.4))
     for p, q in locus.values:
         assert p == pytest.approx(-q / 3, abs=1e-11)
     found = [(point.kind, *point.value, coefficients(point)) for _, point in find(locus)]
