@@ -61,7 +61,7 @@ class MeshMotion:
         return None if along else self.moving.carried(u, other)
 
     def adapted(self, history: list[Solved], still: bool = False) -> list[Solved]:
-        """The last points of a branch; where the mesh, or the phase that is kept, no longer suits the last one, that one alone, solved again.
+        """The last points of a branch; where the mesh, or the phase that is kept, no longer suits the last one, that one alone, on a mesh that does.
 
         So it is, too, where the mesh is to stand still.
         """
@@ -73,18 +73,16 @@ class MeshMotion:
             return history
         problem.anchor(last.u, last.p)
         last = self.standing(last)
-        while True:
-            u, direction = last.u, last.tangent[:-1]
-            if image is not None:
-                u, direction = image(u), image(direction, True)
+        if image is not None:
+            u, direction = image(last.u), image(last.tangent[:-1], True)
             problem.anchor(u, last.p)
             found = engine.across(u, last.p, engine.unit(engine.join(direction, float(last.tangent[-1]))))
-            if image is not None and found is not None and self._past_a_border(history[-1], found):
-                found = None  # on the mesh on which it is not there yet it is met with the next steps
-            if image is None or found is not None:
-                found = found or last
-                return [found if still else self.steered(found)]
-            image = None
+            if found is None or self._past_a_border(last, found):
+                # a border is met with the next steps on the mesh on which it is not there yet
+                problem.anchor(last.u, last.p)
+            else:
+                last = found
+        return [last if still else self.steered(last)]
 
     def _past_a_border(self, before: Solved, after: Solved) -> bool:
         margin = self.engine.smallest_margin

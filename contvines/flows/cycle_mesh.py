@@ -37,7 +37,7 @@ class CycleMesh(CycleUnknowns):
 
     def carried(self, u: np.ndarray, other: np.ndarray) -> np.ndarray:
         """Unknowns as they read on the mesh of others."""
-        return self._onto(u, self._curve(u)[1], self._curve(other)[1], False)
+        return self._onto(self._curve(u)[1], self._curve(other)[1])(u)
 
     @property
     def _phase_row(self) -> np.ndarray | None:
@@ -49,7 +49,7 @@ class CycleMesh(CycleUnknowns):
 
     def _at_gauss_points(self, matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Values, or derivatives, at the Gauss points of all intervals, shape (N m, d), from those at the nodes, (N, m, d)."""
-        return np.einsum("cj,ijk->ick", matrix, mesh.closed(x)).reshape(-1, self.node)
+        return np.matmul(matrix, mesh.closed(x)).reshape(-1, self.node)
 
     def _sizes(self, x: np.ndarray) -> np.ndarray:
         ranges, s = np.ptp(x.reshape(-1, self.node), axis=0), self.flow.settings
@@ -60,20 +60,22 @@ class CycleMesh(CycleUnknowns):
     def adapted(self, u: np.ndarray) -> Callable[..., np.ndarray] | None:
         """How unknowns, and directions of unknowns, read on a mesh with equal shares of the error; None where the mesh is good."""
         x, widths = self._curve(u)
-        if np.ptp(x.reshape(-1, self.node) / self.node_scale, axis=0).max() < self.flow.settings.same:
+        sizes = self._sizes(x)
+        if (sizes / self.node_scale).max() < self.flow.settings.same:
             return None
-        new = mesh.equidistributed(self.rule, widths, x, self._sizes(x), self.copies)
-        if new is None:
-            return None
+        new = mesh.equidistributed(self.rule, widths, x, sizes, self.copies)
+        return None if new is None else self._onto(widths, new)
 
-        return lambda v, direction=False: self._onto(v, widths, new, direction)
+    def _onto(self, widths: np.ndarray, new: np.ndarray) -> Callable[..., np.ndarray]:
+        """How unknowns, and directions of unknowns, read on another mesh."""
+        read = mesh.reading(self.rule, widths, mesh.node_places(self.rule, new))
 
-    def _onto(self, v: np.ndarray, widths: np.ndarray, new: np.ndarray, direction: bool) -> np.ndarray:
-        """Unknowns, or a direction of unknowns, on another mesh."""
-        y = v[: self.states].reshape(self.intervals, self.rule.degree, self.node)
-        moved = mesh.onto(self.rule, widths, y, new)
-        rest = v[self.states : self.states + self.free_period]
-        return np.concatenate([moved.reshape(-1), rest, np.zeros_like(new) if direction else new])
+        def image(v: np.ndarray, direction: bool = False) -> np.ndarray:
+            rest = v[self.states : self.states + self.free_period]
+            moved = read(self._curve(v)[0]).reshape(-1)
+            return np.concatenate([moved, rest, np.zeros_like(new) if direction else new])
+
+        return image
 
     def lags(self, u: np.ndarray) -> bool:
         """Whether the error of a cycle is too large on its own mesh."""
@@ -139,7 +141,7 @@ class CycleMesh(CycleUnknowns):
         """
         if self.parts_of_refined == 2:
             own = self._curve(self.u0 if direction else u)[1]
-            return self._onto(u, own, mesh.with_equal_halves(own), direction)
+            return self._onto(own, mesh.with_equal_halves(own))(u, direction)
         end = self.states + self.free_period
         x = u[..., : self.states].reshape(*u.shape[:-1], self.intervals, self.rule.degree, self.node)
         finer = mesh.halved(self.rule, x).reshape(*u.shape[:-1], 2 * self.states)

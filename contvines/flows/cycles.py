@@ -128,13 +128,18 @@ class CycleProblem(CycleRelatives):
         work.derivative[: self.states] = -(steps * slope).reshape(-1)
         direction = (f / self.node_scale).reshape(count, m, d)
         work.by_period[:] = -(widths[:, None, None] * direction * self.clock).reshape(count, m * d)
-        row = np.matmul(r.values.T, (widths[:, None] * r.weights)[:, :, None] * direction)
-        phase = row[:, :-1].copy()
-        phase[1:, 0] += row[:-1, -1]
-        phase[0, 0] += row[-1, -1]
-        size = float(np.sqrt((phase**2).sum()))
-        work.phase[:] = (phase / (size or 1.0)).reshape(count, m * d)
+        work.phase[:], size = self._phase(widths, direction)
         return size
+
+    def _phase(self, widths: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, float]:
+        """Row of the phase condition, shape (N, m d), from rates at the Gauss points in units of the scale, and the length that it had."""
+        r = self.rule
+        row = np.matmul(r.values.T, (widths[:, None] * r.weights)[:, :, None] * direction)
+        row[1:, 0] += row[:-1, -1]
+        row[0, 0] += row[-1, -1]
+        phase = row[:, :-1].reshape(self.intervals, -1)
+        size = math.sqrt(np.vdot(phase, phase))
+        return phase / (size or 1.0), size
 
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
         """Keep the phase of a cycle for those that follow; None: corrections alone are orthogonal to the motion.
@@ -144,9 +149,9 @@ class CycleProblem(CycleRelatives):
         self.reference = None
         if u is None or not self.free_period:
             return
-        work = self.workspace()
-        self.evaluate(u, p, work)
-        self.reference = work.phase.copy(), self._curve(u)[0] / self.node_scale
+        x, _, widths = self.parts(u, p)
+        rates = self.field(self._at_gauss_points(self.rule.values, x), p) / self.node_scale
+        self.reference = self._phase(widths, rates.reshape(x.shape))[0], x / self.node_scale
 
     def in_phase(self, u: np.ndarray) -> bool:
         """Whether a cycle is enough like the one whose phase is kept."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .collocation import Rule
@@ -12,9 +14,7 @@ SLACK = 1.1  # largest over mean share of the error at which a mesh stays as it 
 
 def closed(x: np.ndarray, sign: float = 1.0) -> np.ndarray:
     """Values at all nodes of each interval, shape (..., N, m + 1, d), from those without the last one, (..., N, m, d)."""
-    after = np.concatenate([x[..., 1:, :1, :], x[..., :1, :1, :]], axis=-3)
-    if sign != 1.0:
-        after[..., -1, :, :] *= sign
+    after = np.concatenate([x[..., 1:, :1, :], sign * x[..., :1, :1, :]], axis=-3)
     return np.concatenate([x, after], axis=-2)
 
 
@@ -30,12 +30,17 @@ def halved(rule: Rule, x: np.ndarray) -> np.ndarray:
 
 def evaluate(rule: Rule, widths: np.ndarray, x: np.ndarray, places: np.ndarray) -> np.ndarray:
     """A periodic piecewise polynomial at places in units of the period, shape (len(places), d)."""
+    return reading(rule, widths, places)(x)
+
+
+def reading(rule: Rule, widths: np.ndarray, places: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """What evaluates all periodic piecewise polynomials of one mesh at the same places."""
     edges = np.append(0.0, np.cumsum(widths))
     edges /= edges[-1]
     places = np.mod(places, 1.0)
     i = np.clip(np.searchsorted(edges, places, side="right") - 1, 0, len(widths) - 1)
-    local = (places - edges[i]) / (edges[i + 1] - edges[i])
-    return np.einsum("ij,ijk->ik", rule.interpolation(local), closed(x)[i])
+    weights = rule.interpolation((places - edges[i]) / (edges[i + 1] - edges[i]))
+    return lambda x: np.einsum("ij,ijk->ik", weights, closed(x)[i])
 
 
 def places(widths: np.ndarray, inside: np.ndarray) -> np.ndarray:
@@ -51,16 +56,9 @@ def node_places(rule: Rule, widths: np.ndarray) -> np.ndarray:
 
 def alike(rule: Rule, widths: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
     """Cosine of the angle between the directions of motion along two curves on one mesh, in the mean over the period."""
-    a, b = (np.einsum("cj,ijk->ick", rule.slopes, closed(z)) for z in (x, y))
-    aa, ab, bb = (
-        np.einsum("i,c,ick,ick->", 1.0 / widths, rule.weights, *pair) for pair in ((a, a), (a, b), (b, b))
-    )
-    return float(ab / np.sqrt(aa * bb))
-
-
-def onto(rule: Rule, widths: np.ndarray, x: np.ndarray, new: np.ndarray) -> np.ndarray:
-    """The same curve on another mesh, shape (len(new), m, d)."""
-    return evaluate(rule, widths, x, node_places(rule, new)).reshape(len(new), rule.degree, -1)
+    roots = np.sqrt(rule.weights / widths[:, None])[:, :, None]
+    a, b = (roots * np.matmul(rule.slopes, closed(z)) for z in (x, y))
+    return float(np.vdot(a, b) / np.sqrt(np.vdot(a, a) * np.vdot(b, b)))
 
 
 def along_data(times: np.ndarray, states: np.ndarray, count: int, copies: int) -> np.ndarray:
@@ -87,10 +85,11 @@ def with_equal_halves(widths: np.ndarray) -> np.ndarray:
 def density(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """|x^(m + 1)|^(1 / (m + 1)) on each interval, in units of the period and the scale, from jumps of the m-th derivative."""
     m = rule.degree
-    top = np.einsum("j,ijk->ik", rule.top, closed(x) / scale) / widths[:, None] ** m
-    jumps = np.abs(np.roll(top, -1, axis=0) - top) / (0.5 * (widths + np.roll(widths, -1)))[:, None]
-    here = 0.5 * (jumps + np.roll(jumps, 1, axis=0)).max(axis=1)
-    return here ** (1.0 / (m + 1))
+    ring = np.arange(-1, len(widths) + 1) % len(widths)  # each interval with its neighbours
+    w = widths[ring, None]
+    top = np.matmul(rule.top, closed(x) / scale)[ring] / w**m
+    jumps = np.abs(top[1:] - top[:-1]) / (w[1:] + w[:-1])
+    return (jumps[1:] + jumps[:-1]).max(axis=1) ** (1.0 / (m + 1))
 
 
 def error(rule: Rule, widths: np.ndarray, x: np.ndarray, scale: np.ndarray) -> float:

@@ -52,6 +52,7 @@ def in_c(folder):
     if shutil.which("cc") is None:
         return None
     spec = importlib.util.spec_from_file_location("lorenz", EXAMPLE)
+    assert spec is not None and spec.loader is not None
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)
     return example.flow(example.compiled(folder))
@@ -65,7 +66,8 @@ class Ours:
         problem = orbit._problem
         x, period, widths = problem.parts(orbit.u, START)
         even = np.full(intervals, 1.0 / intervals)
-        u = np.concatenate([mesh.onto(problem.rule, widths, x, even).ravel(), [period], even])
+        at_nodes = mesh.evaluate(problem.rule, widths, x, mesh.node_places(problem.rule, even))
+        u = np.concatenate([at_nodes.ravel(), [period], even])
         self.problem = problem.against("r", {"r": START}).with_unknowns(u, START, intervals, 1)
         self.problem.u0 = solved(self.problem, u, START)
 
