@@ -263,7 +263,7 @@ def reduced(
                 error, best = change, own
                 if error < NORMAL_FORMS.enough:
                     break
-            elif change > 100.0 * error:
+            elif error < NORMAL_FORMS.digits and change > 100.0 * error:  # rounding takes over
                 break
         before = now
     if not error < NORMAL_FORMS.digits:

@@ -6,6 +6,7 @@ import pytest
 import contvines as cv
 from contvines.bifurcation.normal_forms.coefficients import Forms
 from contvines.bifurcation.normal_forms.critical import normal_form
+from contvines.bifurcation.normal_forms.returned import forms_at
 
 
 class Bend:
@@ -85,6 +86,26 @@ def test_double_multipliers():
     assert normal_form("resonance-1-2", two, []) == pytest.approx({"c": 0.7, "d": -1.3}, abs=1e-9)
     flow = bent_flow(lambda w: [w[1], 0.7 * w[0] ** 2 - 1.3 * w[0] * w[1]], 2, 5)
     assert normal_form("bogdanov-takens", flow, []) == pytest.approx({"a": 0.7, "b": -1.3}, abs=1e-9)
+
+
+def test_a_double_zero_beside_a_pole():
+    """Bazykin's predator and prey, whose rates have a pole at x = -1 / al: wide samples lie on both sides of it.
+
+    Where F, trace and determinant vanish, and a and b there by Kuznetsov's formulas (Elements, 8.54): mpmath and SymPy, thirty digits. With the length of
+    the critical vector both change alike.
+    """
+    units = np.array([50.0, 5.0])
+
+    def rates(u, p):
+        x, y = units * u
+        eaten = x * y / (1 + p.al * x)
+        return np.array([x - eaten - x**2 / 100, -y + eaten - p.de * y**2]) / units
+
+    place = np.array([6.26576552895236307, 3.60155393683666477]) / units
+    values = {"al": 0.45362432777812945521, "de": 0.17512759295021742421}
+    problem = cv.AlgebraicProblem(rates, place, values, parameter="al", spectrum="flow")
+    found = normal_form("bogdanov-takens", forms_at(problem, place, values["al"]), [])
+    assert found["b"] / found["a"] == pytest.approx(-0.05253877649285624 / 0.039453091123676357, rel=1e-9)
 
 
 def test_strong_resonances_three_and_four():
