@@ -108,16 +108,27 @@ class KnownMotions:
             if reached is None:
                 continue
             engine, solved = reached
-            problem, u, p = engine.problem, solved.u, solved.p
-            if not bool(engine.stable(solved.row)) or not float(engine.smallest_margin(solved.row)) > MARGIN:
+            if not _counts(engine, solved):
                 return None
+            problem, u, p = engine.problem, solved.u, solved.p
             deviation = problem.replay(u, p)
             if deviation is not None and not deviation < Settings.same:
                 return None
             while (smaller := problem.root(u, p)) is not None:
                 problem, u = smaller
+            if problem is not engine.problem and not self._holds(problem, u, p):
+                return None
             return problem.attractor(u, p) if isinstance(problem, Attracting) else None
         return None
+
+    def _holds(self, problem: Problem, u: np.ndarray, p: float) -> bool:
+        """Whether what a motion only repeats is one: a cycle whose period has gone to zero stays at a state where nothing need rest."""
+        engine = Engine(problem, self.within[0], Settings())
+        solved = engine.at_value(u, p)
+        if solved is None or not _counts(engine, solved):
+            return False
+        far = np.abs(solved.u - u)
+        return bool((far <= VANISHING.loose * np.maximum(np.abs(u), engine.scale[:-1])).all())
 
     def _followed(self, start: Start, place: tuple[float, float], steps: int) -> tuple[Engine, Solved] | None:
         """The motion of a start carried in so many equal steps to a place."""
@@ -132,6 +143,10 @@ class KnownMotions:
                 return None
             reached, u = (engine, solved), solved.u
         return reached
+
+
+def _counts(engine: Engine, solved: Solved) -> bool:
+    return bool(engine.stable(solved.row)) and float(engine.smallest_margin(solved.row)) > MARGIN
 
 
 def _can_be_listed(problem: Problem) -> bool:
