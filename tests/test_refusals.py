@@ -286,6 +286,9 @@ REFUSED = {
     "Absorber.symmetric_orbit has no argument 'amplitde' (did you mean": lambda: PAPER.symmetric_orbit(
         amplitde=0.5
     ),
+    "events are of built-in machines; 'box' is declared: its orbits have nodes": lambda: (
+        box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0).events
+    ),
     "Machine has no argument 'state' (did you mean 'states'?); it has name": lambda: Machine(
         name="stop", state=("x", "v")
     ),

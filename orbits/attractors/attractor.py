@@ -97,6 +97,8 @@ class Attractor:
     seen: Observation | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
+        if not self.recurrent and not self.letters:
+            return f"Attractor({self.kind}, impacts_per_period={self.impacts_per_period:.4g})"
         return f"Attractor({self.kind}, word={self.text!r}, periods={self.periods}, impacts={self.impacts})"
 
     @property

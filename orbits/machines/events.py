@@ -80,8 +80,17 @@ class Placed(Protocol):
 
 
 def events_of(motion: Placed) -> EventTable:
-    """What happens at the events of one motion (its model, word, nodes and params); arrays of shape (L,)."""
+    """What happens at the events of one motion (its model, word, nodes and params); arrays of shape (L,).
+
+    Raises
+    ------
+    AttributeError
+        If it is one of a declared machine.
+    """
     model = motion.model
-    assert isinstance(model, Model)
+    if not isinstance(model, Model):
+        raise AttributeError(
+            f"events are of built-in machines; {model.name!r} is declared: its orbits have nodes, a row per event with the states after it, and a word"
+        )
     table = event_table(model, motion.word, motion.nodes[None], motion.params[None])
     return EventTable(**{name: values[0] for name, values in vars(table).items()})
