@@ -5,6 +5,7 @@ from pathlib import Path
 from contvines.command.compose import machine
 from contvines.command.study_data import Sort, Study
 from contvines.shared.near_names import did_you_mean
+from orbits.flows.catalogue import flow_of
 from orbits.machines.measures import way_out
 
 WITH_Y = ("diagram", "atlas", "trace", "plot")  # commands with axes
@@ -69,8 +70,6 @@ def measures_of(study: Study) -> list[str]:
     """Names of all measures of a study's motions."""
     if study.sort is Sort.FLOW:
         return ["norm", "period", *study.flow.of_states]
-    from orbits.flows.catalogue import flow_of
-
     model = machine(study)
     return list(flow_of(model).measure_names(model))
 
@@ -102,8 +101,4 @@ def _default(path: Path) -> str:
     study = read_study(path)
     if study.sort is Sort.FLOW:
         return next(iter(study.flow.of_states))
-    if study.sort is Sort.PAGE:
-        from orbits.flows.page.measures import shown_first
-
-        return shown_first(study.model)
-    return study.model.default_measure
+    return flow_of(study.model).default_measure(study.model)

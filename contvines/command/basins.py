@@ -1,14 +1,11 @@
 """`contvines basins`: which start reaches which motion."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from contvines.command.amounts import inside
 from contvines.command.frame import draw, load_file, tell
 from contvines.command.options import JsonOption, PlotOption, SizeOption, StudyArgument, option
-
-if TYPE_CHECKING:
-    pass
 
 
 def basins(

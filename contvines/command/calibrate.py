@@ -11,7 +11,7 @@ import typer
 from contvines.command.amounts import amount
 from contvines.command.compose import check_shaken, machine
 from contvines.command.frame import draw, tell
-from contvines.command.measured import Column, Scales, length_on_line, measured
+from contvines.command.measured import Column, Scales, measured
 from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
 from contvines.command.physical_study import number_of
 from contvines.command.study import read_study
@@ -20,6 +20,7 @@ from contvines.graph.table import with_unit
 from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 from orbits.machines.physical.machine import Physical
+from orbits.machines.physical.units import counted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -241,7 +242,7 @@ def _from_impacts(
     (times,) = measured(path, (Column("time", second),))
     start = study.named_state
     if release is not None:
-        displacement = length_on_line(release, "--release", unit) / scales.factor("length")
+        displacement = counted("--release", release, unit) / scales.factor("length")
         if "damping" not in model.parameter_names:
             raise ValueError(
                 f"--release {release}: the machine {model.name!r} has no oscillator to be let go."

@@ -104,7 +104,12 @@ def _lines(
     model = problem.model
     values = np.linspace(graph.within[0], graph.within[1], POINTS)
     params = np.atleast_2d(problem.values(values))
-    return {kind: (values, reference(kind, model, params) * model.gauge("length", params)) for kind in kinds}
+    return {kind: (values, response_of(kind, model, params)) for kind in kinds}
+
+
+def response_of(kind: str, model: Model, params: np.ndarray) -> np.ndarray:
+    """The response of a kind at some parameters (m, P), in the machine's unit, shape (m,)."""
+    return reference(kind, model, params) * model.gauge("length", params)
 
 
 def peaks_compared(
@@ -129,7 +134,7 @@ def peaks_compared(
     for kind in kinds:
         values, params = whole
         for narrower in (True, True, False):  # between the neighbours of the largest
-            response = reference(kind, model, params) * model.gauge("length", params)
+            response = response_of(kind, model, params)
             place = int(response.argmax())
             found[kind] = float(response[place]), float(values[place])
             if narrower:

@@ -1,4 +1,4 @@
-"""What was measured: columns of a CSV in the units that their heads name, and quantities on the line, in the units of a study."""
+"""What was measured: columns of a CSV in the units that their heads name, in the units of a study."""
 
 from __future__ import annotations
 
@@ -55,7 +55,6 @@ def measured(path: Path, wanted: Sequence[Column]) -> list[np.ndarray]:
 
 
 def _factor(path: Path, number: int, head: str, column: Column) -> float:
-
     match = _UNIT.search(head)
     said = next((part.strip() for part in match.groups() if part), "") if match else ""
     if not said or said in ("-", "1"):
@@ -74,36 +73,6 @@ def _factor(path: Path, number: int, head: str, column: Column) -> float:
             f"{place} says {said!r}, which is no unit of this {column.what}; expected {column.unit}."
         )
     return factor
-
-
-def length_on_line(text: str, option: str, unit: str) -> float:
-    """A length or time that was given as an option: with its unit where the study has units, else a number.
-
-    Parameters
-    ----------
-    text, option : str
-    unit : str
-        In which it is returned; "" where the study has none.
-    """
-    what = {"s": "time", "": "number"}.get(unit, "length")
-    example = {"s": "2 s", "": "5"}.get(unit, "5 mm")
-    match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", text)
-    if match is None or match[2].startswith(","):
-        comma = " (decimals stand behind a point)" if match else ""
-        raise ValueError(f'{option} {text!r}: this is no {what}{comma}; for example "{example}".')
-    number, said = float(match[1]), match[2]
-    if not unit:
-        if said:
-            raise ValueError(
-                f'{option} {text!r}: the study has no units; expected a plain number, or give the study units = "si".'
-            )
-        return number
-    if not said:
-        raise ValueError(f'{option} {text!r} has no unit; for example "{example}".')
-    factor = units.size(said, unit)
-    if factor is None:
-        raise ValueError(f'{option} {text!r}: {said!r} is no unit of a {what}; for example "{example}".')
-    return number * factor
 
 
 Rows = list[tuple[str, float, str, str]]
@@ -155,6 +124,5 @@ class Scales:
     @property
     def metre(self) -> float:
         """Metres in one dimensionless length; 1 where there are no units."""
-
         unit = self.unit("length")
         return self.factor("length") * ((units.size(unit, "m") or 1.0) if unit else 1.0)

@@ -124,6 +124,6 @@ YOption = Annotated[
     str | None,
     option(
         "-y",
-        "Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem (--help behind STUDY.toml names it).",
+        "Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem (--help behind the file names it).",
     ),
 ]

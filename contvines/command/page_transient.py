@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from contvines.command.measured import Rows, length_on_line
+from contvines.command.measured import Rows
 from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import Told, loads_rows
 from contvines.shared.number_text import figures
-from orbits.machines.physical import units
+from orbits.machines.physical.units import counted
 
 
 def frequency_on_line(study: Study, text: str) -> float:
@@ -19,11 +19,7 @@ def frequency_on_line(study: Study, text: str) -> float:
         raise ValueError(
             f"{study.path}: --from {text}: the machine is self-excited, it has no frequency that could run up."
         )
-    own = study.model.units.get(name, "")
-    try:
-        value = units.counted("--from", text, own)
-    except ValueError as error:
-        raise ValueError(f"{error}.") from None
+    value = counted("--from", text, study.model.units.get(name, ""))
     if value < 0.0:
         raise ValueError(f"--from {text}: give a frequency of 0 or above.")
     return value
@@ -31,7 +27,7 @@ def frequency_on_line(study: Study, text: str) -> float:
 
 def time_on_line(text: str, second: str) -> float:
     """`--over`, in the study's unit of time."""
-    time = length_on_line(text, "--over", second)
+    time = counted("--over", text, second)
     if not time > 0.0:
         raise ValueError(f"--over {text}: give a time above 0.")
     return time
@@ -52,7 +48,7 @@ def of_page(
         "run_up_from": frequency_on_line(study, begin), "run_up_time": time_on_line(over, second)
     }  # fmt: skip
     with refused(str(study.path)):
-        lasts = None if within is None else length_on_line(within, "--time", second)
+        lasts = None if within is None else counted("--time", within, second)
         seen = page_transient(machine, params, start, time=lasts, **rising)
     rows: Rows = []
     for name, values in seen.states.items():
@@ -103,5 +99,5 @@ def _states(study: Study, text: str) -> dict[str, float]:
                 f'"{example}", and the states are {known}.'
             )
         with refused(f"--release {text!r}"):
-            found[name] = units.counted(name, value, machine.units.get(name, ""))
+            found[name] = counted(name, value, machine.units.get(name, ""))
     return found

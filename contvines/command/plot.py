@@ -14,6 +14,8 @@ from contvines.command.options import (
     FileArgument,
     SizeOption,
     TrustOption,
+    XOption,
+    YOption,
     given,
     option,
     picture,
@@ -42,15 +44,8 @@ class Colors(StrEnum):
 def plot(
     context: typer.Context,
     file: FileArgument,
-    x: Annotated[str | None, option("-x", "Measure on the x axis; by default the parameter.")] = None,
-    y: Annotated[
-        str | None,
-        option(
-            "-y",
-            "Measure on the y axis; by default B (velocity at the first impact) "
-            "of the absorber, max_abs_q1 of the coupled machine, else the first measure of the problem.",
-        ),
-    ] = None,
+    x: XOption = None,
+    y: YOption = None,
     output: Annotated[Path | None, option("-o, --output FILE.png", "Picture: png, pdf or svg.")] = None,
     kind: Annotated[Picture, option("--kind", "What to draw.")] = Picture.diagram,
     compare: CompareOption = None,

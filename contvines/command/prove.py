@@ -9,7 +9,7 @@ import typer
 from contvines.command.amounts import interval
 from contvines.command.frame import held, interruptible, load_file
 from contvines.command.options import JsonOption, TrustOption, argument, option
-from contvines.shared.extras import pip_install
+from contvines.shared.extras import needed
 from contvines.text_table import fitted
 
 MANY = 2000  # boxes: checking more of them is announced
@@ -152,13 +152,9 @@ def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
 
 
 def _check(file: Path, labels: list[str], json: bool) -> None:
-    try:
-        from orbits.proofs.checker import Refused
-        from orbits.proofs.checker import check as verify
-    except ImportError:
-        raise ValueError(
-            f"--check needs the package mpmath, which is not installed: {pip_install('proofs')}"
-        ) from None
+    needed("mpmath", "proofs")
+    from orbits.proofs.checker import Refused
+    from orbits.proofs.checker import check as verify
 
     verdicts: dict[str, dict[str, Any]] = {}
     for label, certificate in _certificates(file, labels).items():

@@ -612,18 +612,14 @@ class _Work:
 
     def _lines(self, model: Varying) -> list[Curve]:
         """Responses of the machines to compare with; declared machines have none."""
-        from contvines.command.compare import POINTS
-        from orbits.design.references import reference
+        from contvines.command.compare import POINTS, response_of
         from orbits.machines.base import Model
 
         if not isinstance(model, Model):
             return []
         values = np.linspace(*self.study.within, POINTS)
         params = np.array([model.vector_at(self.study.parameter, float(x), self.study.loose) for x in values])
-        length = model.gauge("length", params)
-        return [
-            Curve(kind, values.tolist(), (reference(kind, model, params) * length).tolist()) for kind in KINDS
-        ]
+        return [Curve(kind, values.tolist(), response_of(kind, model, params).tolist()) for kind in KINDS]
 
     def _start_up(self, model: Varying, at: float) -> Start:
         from contvines.command.measured import Scales

@@ -311,12 +311,10 @@ def _add_simulated(axes: "Axes", graph: "Graph", study: "Study") -> None:
     from contvines.survey.simulated import simulated
 
     met = simulated(graph, population(study))
-    plain = [(one.value, one.high) for one in met if one.low == one.high]
+    plain = [(value, high) for value, low, _, high in met if low == high]
     if plain:
         axes.plot(*zip(*plain), ".", color=SIMULATED, zorder=1.6, label="simulated")
-    draw_bands(
-        axes, [(one.value, one.low, one.mean, one.high) for one in met if one.low < one.high], SIMULATED
-    )
+    draw_bands(axes, [band for band in met if band[1] < band[3]], SIMULATED)
     if met and axes.get_legend() is not None:
         with styled():
             draw_legend(axes, Key(), "best", False, np.empty((0, 2)))

@@ -8,6 +8,7 @@ from contvines.command.frame import load_file
 from contvines.command.study_data import Sort, Study
 from contvines.continuation.settings import Settings
 from contvines.shared.floating_point import TINY
+from orbits.flows.catalogue import flow_of
 from orbits.words import Word
 
 if TYPE_CHECKING:
@@ -90,12 +91,7 @@ def picture(
     }
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
     steady = [row for row in rows if row.recurrent]
-    if page:
-        from orbits.flows.page.measures import shown_first
-
-        measure = shown_first(model)
-    else:
-        measure = model.swept_measure
+    measure = flow_of(model).default_measure(model)
     if measure != "B":  # one number for the whole motion
         points = [(row.value, dot) for row in steady for dot in row.dots]
         # bands are of displacements

@@ -9,12 +9,13 @@ import numpy as np
 import typer
 
 from contvines.command.frame import draw, say, tell
-from contvines.command.measured import Column, Rows, Scales, Series, length_on_line, measured
+from contvines.command.measured import Column, Rows, Scales, Series, measured
 from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
 from contvines.command.page_transient import frequency_on_line, of_page, time_on_line
 from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import Told, loads_rows, written
+from orbits.machines.physical.units import counted
 
 if TYPE_CHECKING:
     from orbits.design.record import Response
@@ -123,7 +124,7 @@ def _released(study: Study, text: str, within: str | None) -> Told:
 
     model, params = study.model, study.model.vector(study.loose)
     scales = Scales(model, params)
-    displacement = length_on_line(text, "--release", scales.unit("length")) / scales.factor("length")
+    displacement = counted("--release", text, scales.unit("length")) / scales.factor("length")
     if scales.unit("length") and abs(displacement * scales.metre) > FARTHEST and not model.unusual:
         raise ValueError(
             f"--release {text} is implausible for an oscillator: expected at most {FARTHEST:g} m; if it is meant, say unusual = true in "
@@ -133,7 +134,7 @@ def _released(study: Study, text: str, within: str | None) -> Told:
         decay = free_decay(model, params, displacement)
     more: Rows = []
     if within is not None:
-        lasts = length_on_line(within, "--time", scales.unit("time")) / scales.factor("time")
+        lasts = counted("--time", within, scales.unit("time")) / scales.factor("time")
         with refused(f"{study.path}: --time {within}"):
             share = taken_share(model, params, displacement, lasts)
         words = f"of the initial energy: taken by impacts and friction in {within}"
@@ -196,7 +197,7 @@ def _recorded(study: Study, path: Path, tail: str | None) -> Told:
     second, seconds = scales.unit("time"), scales.factor("time")
     rate = "m/s^2" if scales.unit("length") else ""
     times, acceleration = measured(path, (Column("time", second), Column("acceleration", rate)))
-    after = 0.0 if tail is None else length_on_line(tail, "--tail", second) / seconds
+    after = 0.0 if tail is None else counted("--tail", tail, second) / seconds
     if after < 0.0:
         raise ValueError(f"--tail {tail}: give a time of 0 or above.")
     if after > LONGEST:

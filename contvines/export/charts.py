@@ -6,7 +6,9 @@ import csv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..graph.table import with_unit
 from ..provenance import carried
+from .columns import chart_rows
 from .files import check_target
 from .standard_json import json_text
 
@@ -37,12 +39,10 @@ def export_chart(chart: Chart, form: str, path: Path) -> Path:
     if form == "json":
         path.write_text(json_text({**chart.to_dict(), **carried(chart)}) + "\n", encoding="utf-8")
         return path
-    names = [name + (f" [{chart.units[name]}]" if chart.units.get(name) else "") for name in chart.parameters]
+    names = [with_unit(name, chart.units.get(name)) for name in chart.parameters]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["locus", "kind", "word", *names, "real"])
-        for locus in chart.loci.values():
-            word = locus.branch.description.get("word") or ""
-            for (p, q), real in zip(locus.values, locus.real):
-                writer.writerow([locus.label, locus.kind, word, repr(float(p)), repr(float(q)), int(real)])
+        for label, _, kind, word, p, q, real in chart_rows(chart):
+            writer.writerow([label, kind, word, repr(p), repr(q), int(real)])
     return path

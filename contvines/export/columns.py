@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from ..graph.table import with_unit
 if TYPE_CHECKING:
     from ..branches.branch import Branch
     from ..graph.graph import Graph
+    from ..loci.chart import Chart
 
 
 def graph_columns(graph: Graph) -> dict[str, list[Any]]:
@@ -28,9 +29,9 @@ def graph_columns(graph: Graph) -> dict[str, list[Any]]:
     heads: list[dict[str, None]] = [{}, {}, {}, {}]  # facts, unknowns, multipliers, word and measures
     for columns in parts:
         for name in columns:
-            group = 1 if _numbered(name, "u") else 2 if name.startswith("multiplier") else 3
+            group = 1 if _unknown(name) is not None else 2 if name.startswith("multiplier") else 3
             heads[group if name not in FACTS and name != parameter_head(graph) else 0].setdefault(name, None)
-    order = [*heads[0], *sorted(heads[1], key=_number), *heads[2], *heads[3]]
+    order = [*heads[0], *sorted(heads[1], key=_unknown), *heads[2], *heads[3]]
     result: dict[str, list[Any]] = {name: [] for name in order}
     for branch, columns in zip(branches, parts, strict=True):
         nothing = [float("nan")] * len(branch)
@@ -47,9 +48,8 @@ def parameter_head(graph: Graph) -> str:
     return with_unit(graph.parameter, graph.units.get(graph.parameter))
 
 
-def branch_columns(branch: Branch, units: dict[str, str] | None = None) -> dict[str, list[Any]]:
+def branch_columns(branch: Branch, units: Mapping[str, str]) -> dict[str, list[Any]]:
     """The columns of one branch, a row per point; see :func:`graph_columns`."""
-    units = units or {}
     marks = dict(branch.marks)
     n, undefined = len(branch), float("nan")
     columns: dict[str, list[Any]] = {
@@ -75,6 +75,14 @@ def branch_columns(branch: Branch, units: dict[str, str] | None = None) -> dict[
     return columns
 
 
+def chart_rows(chart: Chart) -> Iterator[tuple[str, int, str, str, float, float, bool]]:
+    """A row per point of every locus: label, index, kind, word, both parameters, and whether the motion is real."""
+    for locus in chart.loci.values():
+        word = str(locus.branch.description.get("word") or "")
+        for i, ((p, q), real) in enumerate(zip(locus.values.tolist(), locus.real, strict=True)):
+            yield locus.label, i, locus.kind, word, p, q, bool(real)
+
+
 def measures_of(branch: Branch) -> dict[str, np.ndarray]:
     """All measures of a branch that can be evaluated, each of shape (n,)."""
     found = {}
@@ -86,9 +94,6 @@ def measures_of(branch: Branch) -> dict[str, np.ndarray]:
     return found
 
 
-def _numbered(name: str, prefix: str) -> bool:
-    return name.startswith(prefix) and name[len(prefix) :].isdigit()
-
-
-def _number(name: str) -> int:
-    return int(name.lstrip("u"))
+def _unknown(name: str) -> int | None:
+    """The number of an unknown, u0, u1 ...; None for any other column."""
+    return int(name[1:]) if name.startswith("u") and name[1:].isdigit() else None

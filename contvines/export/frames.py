@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..shared.extras import needed
-from .columns import branch_columns, graph_columns, measures_of, parameter_head
+from .columns import branch_columns, chart_rows, graph_columns, measures_of, parameter_head
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -76,22 +76,9 @@ def chart_frame(chart: Chart) -> DataFrame:
     ValueError
         If pandas is not installed.
     """
-    p, q = chart.parameters
-    parts = [
-        {
-            "locus": locus.label,
-            "index": i,
-            "kind": locus.kind,
-            "word": str(locus.branch.description.get("word") or ""),
-            p: float(value[0]),
-            q: float(value[1]),
-            "real": bool(real),
-        }
-        for locus in chart.loci.values()
-        for i, (value, real) in enumerate(zip(locus.values, locus.real, strict=True))
-    ]
-    names = ["locus", "index", "kind", "word", p, q, "real"]
-    return needed("pandas", "tables").DataFrame(parts, columns=names).set_index(["locus", "index"])
+    names = ["locus", "index", "kind", "word", *chart.parameters, "real"]
+    rows = chart_rows(chart)
+    return needed("pandas", "tables").DataFrame(rows, columns=names).set_index(["locus", "index"])
 
 
 def chart_dataset(chart: Chart) -> Dataset:

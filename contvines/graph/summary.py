@@ -13,7 +13,7 @@ from ..text_table import Table, fitted, terminal_width
 from .graph import Graph
 from .measures import default_measure
 from .shortening import told_apart
-from .stretches import at_points, gaps, stretches
+from .stretches import at_points, gaps, stretches, united
 from .table import attractors_table, simulated, with_unit
 
 MOST = 8  # motions that are listed
@@ -102,13 +102,7 @@ def _kind(about: Mapping[str, Any]) -> str:
 
 def _united(parts: list[Any]) -> list[tuple[float, float]]:
     """Intervals of the stretches, those that meet joined."""
-    found: list[tuple[float, float]] = []
-    for low, high in sorted((float(part.values.min()), float(part.values.max())) for part in parts):
-        if found and low <= found[-1][1]:
-            found[-1] = (found[-1][0], max(found[-1][1], high))
-        else:
-            found.append((low, high))
-    return found
+    return united((float(part.values.min()), float(part.values.max())) for part in parts)
 
 
 def _length(parts: list[Any]) -> float:

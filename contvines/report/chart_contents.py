@@ -8,9 +8,8 @@ import numpy as np
 
 from ..graph.shortening import short_word
 from ..plots.chart import COLORS
-from ..plots.style import axis_label, mark_of_locus
-from ..problems.abilities import Animated
-from .numbers import plain_label, readable_model, rounded, shortened
+from ..plots.style import mark_of_locus
+from .numbers import heading, scene, shortened
 
 if TYPE_CHECKING:
     from ..loci.chart import Chart
@@ -38,21 +37,9 @@ def chart_contents(chart: Chart, source: str) -> dict[str, Any]:
     dict
         Plain numbers, text and lists.
     """
-    from .. import __version__
-
-    names = {
-        name: plain_label(axis_label(name, unit=chart.units.get(name), notation=chart.notation))
-        for name in chart.parameters
-    }
     return {
-        "version": __version__,
-        "source": source,
-        "model": readable_model(chart.model),
-        "settings": {str(k): v for k, v in chart.settings.items()},
-        "finished": chart.finished,
-        "message": chart.message,
+        **heading(chart, source, chart.parameters),
         "parameters": list(chart.parameters),
-        "names": names,
         "within": [list(map(float, interval)) for interval in chart.within],
         "loci": [_locus(locus) for locus in chart.loci.values()],
         "points": [_point(point) for point in chart.points.values()],
@@ -84,7 +71,7 @@ def _point(point: PlanePoint) -> dict[str, Any]:
         "name": point.kind.replace("-", " "),
         "coefficients": {k: v if np.isfinite(v) else None for k, v in told["coefficients"].items()},
         "multipliers": [],
-        "scene": None if point.problem is None else _scene(point.orbit),
+        "scene": None if point.problem is None else scene(point.orbit, SAMPLES),
         **{k: told[k] if np.isfinite(told[k]) else None for k in ("error", "residual")},
     }
 
@@ -125,16 +112,8 @@ def _motions(locus: Locus) -> dict[str, Any]:
     places = np.unique(np.linspace(0, len(locus) - 1, min(MOTIONS, len(locus))).round().astype(int))
     found = {}
     for i in places:
-        scene = _scene(locus.orbit(int(i)))
-        if scene is None:
+        shown = scene(locus.orbit(int(i)), SAMPLES)
+        if shown is None:
             return {}
-        found[str(int(i))] = scene
+        found[str(int(i))] = shown
     return found
-
-
-def _scene(orbit: object) -> dict[str, Any] | None:
-    return (
-        {name: rounded(part) for name, part in orbit.scene(SAMPLES).items()}
-        if isinstance(orbit, Animated)
-        else None
-    )

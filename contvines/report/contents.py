@@ -11,10 +11,9 @@ from ..continuation.settings import Settings
 from ..graph.measures import default_measure
 from ..graph.proving import mark, proof_text
 from ..graph.shortening import motion_name, short_word
-from ..plots.style import axis_label, mark_of
-from ..problems.abilities import Animated
+from ..plots.style import mark_of
 from ..shared.stability import attracts, onto_axis, onto_circle
-from .numbers import plain_label, readable_model, rounded, shortened
+from .numbers import heading, scene, shortened
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -42,23 +41,12 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
     dict
         Plain numbers, text and lists.
     """
-    from .. import __version__
-
     y = default_measure(graph)
     return {
-        "version": __version__,
-        "source": source,
+        **heading(graph, source, _measures(graph, y)),
         "parameter": graph.parameter,
         "within": [float(v) for v in graph.within],
-        "model": readable_model(graph.model),
-        "settings": {str(k): v for k, v in graph.settings.items()},
-        "finished": graph.finished,
-        "message": graph.message,
         "axes": {"x": graph.parameter, "y": y},
-        "names": {
-            name: plain_label(axis_label(name, unit=graph.units.get(name), notation=graph.notation))
-            for name in _measures(graph, y)
-        },
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
         "special": [_point(graph, point, mark(graph, point.label)) for point in graph.special.values()],
         "switches": [switch.to_dict() for switch in graph.switches],
@@ -146,21 +134,13 @@ def _orbits(graph: Graph) -> dict[str, Any]:
         for i in range(len(branch)):
             if i % step and i not in marked:
                 continue
-            scene = _scene(branch.orbit(i), samples)
-            if scene is None:
+            shown = scene(branch.orbit(i), samples)
+            if shown is None:
                 break  # a problem whose solutions have no motion
-            scenes[str(i)] = scene
+            scenes[str(i)] = shown
         if scenes:
             found[branch.label] = scenes
     return found
-
-
-def _scene(orbit: object, samples: int) -> dict[str, Any] | None:
-    return (
-        {name: rounded(part) for name, part in orbit.scene(samples).items()}
-        if isinstance(orbit, Animated)
-        else None
-    )
 
 
 def _pairs(values: np.ndarray) -> list[list[float]]:

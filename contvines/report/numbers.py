@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..problems.abilities import Animated
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from ..graph.graph import Graph
+    from ..loci.chart import Chart
 
 
 def shortened(values: ArrayLike, digits: int = 9) -> list[float | None]:
@@ -31,6 +37,32 @@ def readable_model(model: dict[str, Any]) -> dict[str, Any]:
     """What a page says of a machine: its plain entries; of files only their names, not where they lay."""
     plain = {str(k): v for k, v in model.items() if not isinstance(v, dict | list)}
     return {k: PurePath(v).name if k == "page" else v for k, v in plain.items()}
+
+
+def heading(result: Graph | Chart, source: str, names: Iterable[str]) -> dict[str, Any]:
+    """What every page of a graph or chart says: versions, model, settings, state, and these names as labels of axes."""
+    from .. import __version__
+    from ..plots.style import axis_label
+
+    return {
+        "version": __version__,
+        "source": source,
+        "model": readable_model(result.model),
+        "settings": {str(k): v for k, v in result.settings.items()},
+        "finished": result.finished,
+        "message": result.message,
+        "names": {
+            name: plain_label(axis_label(name, unit=result.units.get(name), notation=result.notation))
+            for name in names
+        },
+    }
+
+
+def scene(orbit: object, samples: int) -> dict[str, Any] | None:
+    """Curves of a motion for the page; None of a solution that has none."""
+    if not isinstance(orbit, Animated):
+        return None
+    return {name: rounded(part) for name, part in orbit.scene(samples).items()}
 
 
 def plain_label(label: str) -> str:

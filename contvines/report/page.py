@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import html
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from contvines.file_names import refuse_place
 
 from ..export import json_text
-from ..shared.extras import pip_install
+from ..shared.extras import needed
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
@@ -83,7 +84,7 @@ def page(data: dict[str, Any], kind: str = "graph") -> str:
     """The HTML text of a page of this kind (`PROGRAMS`) that shows `data`."""
     here = files("contvines.report")
     parts = {
-        "TITLE": _escaped(f"{data['source']}: {kind}"),
+        "TITLE": html.escape(f"{data['source']}: {kind}", quote=False),
         "STYLE": here.joinpath("page.css").read_text(encoding="utf-8"),
         "BODY": here.joinpath(f"{kind}.html").read_text(encoding="utf-8"),
         "MOTION": here.joinpath("motion.html").read_text(encoding="utf-8"),  # a part of some bodies
@@ -113,16 +114,8 @@ def check_page(place: Path, plotly: bool = True) -> None:
 
 
 def _plotly() -> str:
-    try:
-        from plotly.offline import get_plotlyjs
-    except ImportError:
-        raise ValueError(f"a report needs plotly: {pip_install('report')}") from None
-    return get_plotlyjs()
+    return needed("plotly.offline", "report").get_plotlyjs()
 
 
 def _packed(text: str) -> str:
     return base64.b64encode(gzip.compress(text.encode("utf-8"), 9, mtime=0)).decode("ascii")
-
-
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -17,7 +17,7 @@ from contvines.shared.modulation import BAND, is_strong
 from ..coexistence.places import UNBRANCHED
 from ..graph.measures import default_measure
 from ..graph.settings import COVERAGE
-from ..graph.stretches import gaps, highest, stretches, unseen
+from ..graph.stretches import gaps, highest, stretches, united, unseen
 from ..shared.number_text import figures_in
 from .family import Simulated
 
@@ -209,7 +209,7 @@ def stable_range(found: Findings, word: str) -> dict[str, float]:
         for interval in branch.stable_intervals()
     ]
     ends = (min(a for a, _ in parts), max(b for _, b in parts)) if parts else (np.nan, np.nan)
-    length = sum(b - a for a, b in _united(parts))
+    length = sum(b - a for a, b in united(parts))
     return {f"stable_{word}": length, f"stable_{word}_from": ends[0], f"stable_{word}_to": ends[1]}
 
 
@@ -217,17 +217,6 @@ def first_point(found: Findings, kind: str) -> dict[str, float]:
     """The least value with a special point of this kind on a branch that is no virtual one."""
     values = [float(point.value) for point in found.graph.of_kind(kind) if point.real]
     return {f"first_{kind}": min(values, default=np.nan)}
-
-
-def _united(parts: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Overlapping intervals joined."""
-    joined: list[tuple[float, float]] = []
-    for low, high in sorted(parts):
-        if joined and low <= joined[-1][1]:
-            joined[-1] = (joined[-1][0], max(joined[-1][1], high))
-        else:
-            joined.append((low, high))
-    return joined
 
 
 def _compared(graph: Graph) -> tuple[np.ndarray, np.ndarray]:

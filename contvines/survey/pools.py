@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from contvines.shared.processes import ATTEMPTS, may_be_copied, spread
 
-from ..shared.extras import pip_install
 from .plan import PlanError
 from .work import Job, Row, work
 
@@ -91,18 +90,3 @@ def cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-def need_dask() -> None:
-    """Refuse a cluster where dask.distributed is not installed.
-
-    Raises
-    ------
-    PlanError
-    """
-    try:
-        import distributed  # noqa: F401
-    except ImportError:
-        raise PlanError(
-            f"--cluster needs dask.distributed, which is not installed: {pip_install('surveys')}"
-        ) from None

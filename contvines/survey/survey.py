@@ -18,6 +18,7 @@ from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of
 from ..progress import counted
 from ..shared import digests
+from ..shared.extras import needed
 from ..shared.row_journal import Rows
 from . import pools
 from .family import Carrying, Family
@@ -143,7 +144,7 @@ def survey(
     description = _description(plan, over, job.within, about)
     digest = digest_of(plan, over, job.within, about)
     if cluster is not None:
-        pools.need_dask()
+        needed("distributed", "surveys")
     kept = (
         journal
         if isinstance(journal, Rows)

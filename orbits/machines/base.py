@@ -37,9 +37,8 @@ class Model(Mechanics):
     in_cavity: ClassVar[bool] = True
     table: ClassVar[tuple[Parameter, ...]]
     default_measure: ClassVar[str] = "B"
+    """What pictures show where no measure is named: ``B`` (in a sweep at every impact), or a measure of the whole motion."""
     own_measures: ClassVar[tuple[str, ...]] = ()
-    swept_measure: ClassVar[str] = "B"
-    """What the picture of a sweep shows: ``B`` at every impact, or a measure of the whole motion."""
     patience: int = 0
     """How often a start that is looked for by simulation may be simulated four times longer."""
     closed_words: ClassVar[tuple[str, ...]] = ()

@@ -90,7 +90,6 @@ class Coupled(Model):
     default_measure: ClassVar[str] = "max_abs_q1"
     default_parameter = "frequency"
     driven_by: ClassVar[str] = "forcing"
-    swept_measure: ClassVar[str] = "max_abs_q1"  # what a frequency response shows
     patience = 2  # a light absorber's oscillator settles over thousands of periods
     closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt")
     younger: ClassVar[tuple[str, ...]] = ("slope",)

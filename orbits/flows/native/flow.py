@@ -69,7 +69,7 @@ class NativeFlow:
 
     def swept(self, model: Model) -> tuple[str, ...]:
         """As the machine says."""
-        return (model.swept_measure,)
+        return (model.default_measure,)
 
     def described(self, motion: Motion[Model]) -> dict[str, Any]:
         """Velocities and positions at the events, in the units that are shown."""

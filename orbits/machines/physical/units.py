@@ -121,9 +121,8 @@ def read(quantity: Quantity, value: object) -> tuple[float, str]:
         return _finite(quantity, float(value), shown, would), unit_of(quantity)
     match = _NUMBER.fullmatch(value)
     if match is None:
-        comma = " (decimals stand behind a point)" if _COMMA.match(value) else ""
-        what = "a number with a unit" if quantity.unit else "a number"
-        raise QuantityError(f"{shown} is not {what}{comma}; {would}{_many(quantity, value)}")
+        what = f"{_a_number(quantity.unit)}{_comma(value)}"
+        raise QuantityError(f"{shown} is not {what}; {would}{_many(quantity, value)}")
     number, unit = float(match[1]), match[2]
     if not quantity.unit:
         factor = size(unit, "") if unit else 1.0
@@ -161,12 +160,12 @@ def number_and_unit(value: str) -> tuple[float, str]:
 
 
 def counted(name: str, value: str, own: str) -> float:
-    """A measure given as text, ``"15 mm"``, counted in the unit in which it is shown.
+    """A measure, or what an option says, given as text, ``"15 mm"``, counted in the unit in which it is shown.
 
     Parameters
     ----------
     name : str
-        Of the measure.
+        Of the measure or the option.
     value : str
     own : str
         Its unit; "" for a plain number.
@@ -179,7 +178,7 @@ def counted(name: str, value: str, own: str) -> float:
     would = f'for example "1 {own}"' if own else "expected a plain number"
     match = _NUMBER.fullmatch(value)
     if match is None:
-        raise QuantityError(f"{name} = {value!r} is not a number with a unit; {would}")
+        raise QuantityError(f"{name} = {value!r} is not {_a_number(own)}{_comma(value)}; {would}")
     if own and not match[2]:
         raise QuantityError(f"{name} = {value!r} has no unit; {would}")
     factor = size(match[2], own) if match[2] else 1.0
@@ -187,6 +186,14 @@ def counted(name: str, value: str, own: str) -> float:
         what = f"shown in {own}" if own else "a plain number"
         raise QuantityError(f"{name} = {value!r}: {name} is {what}; {would}")
     return float(match[1]) * factor
+
+
+def _a_number(unit: str) -> str:
+    return "a number with a unit" if unit else "a number"
+
+
+def _comma(value: str) -> str:
+    return " (decimals stand behind a point)" if _COMMA.match(value) else ""
 
 
 def _many(quantity: Quantity, value: object) -> str:

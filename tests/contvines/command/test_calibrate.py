@@ -49,7 +49,7 @@ def test_restitution_and_friction_of_a_free_decay(run, study, tmp_path):
         ("0\n1\n2\n", ["--limits", "friction=0,1"], "friction is not estimated"),
         ("0\n1\n2\n", ["--confidence", "95"], "give a number between 0 and 1"),
         ("0\n1\n2\n", ["--release", "12"], "has no unit"),
-        ("0\n1\n2\n", ["--release", "12 kg"], "'kg' is no unit of a length"),
+        ("0\n1\n2\n", ["--release", "12 kg"], "--release is shown in mm"),
         ("0\n1\n2\n", ["--measure", "max_abs_q1"], "this goes with --sweep"),
         ("0\n0.1\n7\n7.1\n15\n", ["--release", "12 mm"], "the model follow these impacts"),
     ],

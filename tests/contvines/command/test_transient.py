@@ -56,7 +56,7 @@ def test_a_free_decay(run, study, tmp_path):
         ([], None, "none is given"),
         (["--release", "0 mm"], None, "give a number other than 0"),
         (["--release", "12"], None, "has no unit"),
-        (["--release", "fast"], None, "this is no length"),
+        (["--release", "fast"], None, "--release = 'fast' is not a number with a unit"),
         (["--release", "12 mm", "--tail", "1 s"], None, "this goes with --record"),
         (["--tail", "1"], "0,1\n1,2\n", "has no unit"),
         ([], "time [s],acceleration [mm]\n0,1\n1,2\n", "no unit of this acceleration; expected m/s^2"),
