@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
+from orbits.integrators.expressions import Values, derivatives, replaced, variables_of
 from orbits.machines.page.formulas import PageError
 from orbits.machines.page.patterns import Equations
 from orbits.settings import FORMULAS
@@ -50,29 +49,26 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     """Walls, frictions and switches against the motion; returns what impacts do to frictions and switches (`Alphabet.flips`)."""
     e, draws = equations, Draws(equations, params)
     flips: dict[tuple[int, int], int | None] = {}
-    frictions = [j for j, c in enumerate(e.contacts) if isinstance(c, DryFriction)]
-    force = {j: variable(f"force_{e.contacts[j].name}") for j in frictions}
-    rates = e.motion_with(force)
-    zero = {f"force_{e.contacts[j].name}": 0.0 for j in frictions}
-    _check_periods(draws, rates)
-    _check_surfaces(draws, rates)
-    for j in frictions:
+    zero = {name: 0.0 for force in e.force.values() for name in variables_of(force)}
+    _check_periods(draws, zero)
+    _check_surfaces(draws)
+    for j, force in e.force.items():
         what = e.contacts[j].described
         limit = draws.of([e.limit[j]])[:, 0]
         if np.all(limit < 0.0):
             raise PageError(f"{what}: the limit is {limit[0]:.4g}; give the largest force, 0 or above")
-        name = f"force_{e.contacts[j].name}"
-        (effect,) = derivatives([e.along(e.velocity[j], rates)], [force[j]])
-        others = {n for n in zero if n != name}
-        if not any(name in variables_of(rate) for rate in rates):
+        (effect,) = derivatives([e.along(e.velocity[j], e.rates)], [force])
+        (name,) = variables_of(force)
+        if not any(name in variables_of(rate) for rate in e.rates):
             raise PageError(
                 f"{what}: motion ignores contact.{e.contacts[j].name}; add the force to the rate of a velocity it acts on"
             )
-        if name in variables_of(effect[0]) | _inside(rates, name):
+        slopes = [row[0] for row in derivatives(e.rates, [force])]
+        if any(name in variables_of(slope) for slope in (effect[0], *slopes)):
             raise PageError(
                 f"{what}: motion must be affine in contact.{e.contacts[j].name} (force times a mass factor)"
             )
-        sizes = draws.of([replaced(effect[0], dict.fromkeys(others | {name}, 0.0))])[:, 0]
+        sizes = draws.of([replaced(effect[0], zero)])[:, 0]
         if not np.all(sizes[np.isfinite(sizes)] > FORMULAS.zero):
             raise PageError(
                 f"{what}: a positive contact.{e.contacts[j].name} must speed its velocity up; here it gives the acceleration "
@@ -82,17 +78,13 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
         if not isinstance(contact, Wall):
             continue
         what = contact.described
-        rate = e.along(e.gap[j], rates)
+        rate = e.along(e.gap[j], e.rates)
         if any(name in variables_of(rate) for name in zero):
             raise PageError(
                 f"{what}: the rate of its gap contains a friction force; a gap is a distance, not a velocity"
             )
         after = e.impact(j)
-        (effects,) = derivatives([rate], e.x)
-        moved: Symbol | float = 0.0
-        for effect, push in zip(effects, e.push[j]):
-            moved = effect * push + moved
-        sizes = draws.of([moved])[:, 0]
+        sizes = draws.of([e.toward(rate, e.push[j])])[:, 0]
         if not np.all(np.abs(sizes[np.isfinite(sizes)]) > FORMULAS.zero):
             raise PageError(
                 f"{what}: an impulse along push = {dict(contact.push)!r} does not change the rate of its gap; "
@@ -113,13 +105,12 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     return flips
 
 
-def _check_periods(draws: Draws, rates: Sequence[Any]) -> None:
+def _check_periods(draws: Draws, zero: Mapping[str, float]) -> None:
     """Whether everything on the page has the period 2 pi in the phase."""
     e = draws.equations
     if e.phase_rate is None:
         return
-    forces = {name: 0.0 for j in e.velocity for name in (f"force_{e.contacts[j].name}",)}
-    told = [(f"motion's rate of {n}", replaced(r, forces)) for n, r in zip(e.states, rates)]
+    told = [(f"motion's rate of {n}", replaced(r, zero)) for n, r in zip(e.states, e.rates)]
     for table, what in ((e.gap, "gap"), (e.velocity, "velocity"), (e.limit, "limit"), (e.surface, "surface")):
         told += [(f"the {what} of {e.contacts[j].described}", value) for j, value in table.items()]
     values = [value for _, value in told]
@@ -135,7 +126,7 @@ def _check_periods(draws: Draws, rates: Sequence[Any]) -> None:
             )
 
 
-def _check_surfaces(draws: Draws, rates: Sequence[Any]) -> None:
+def _check_surfaces(draws: Draws) -> None:
     """Whether switches switch something, and whether contacts that would always act at once are declared apart."""
     e = draws.equations
     for j, surface in e.surface.items():
@@ -144,7 +135,7 @@ def _check_surfaces(draws: Draws, rates: Sequence[Any]) -> None:
             raise PageError(
                 f"{what}: its surface is a constant; give a function of the states that changes sign"
             )
-        known = set().union(*(variables_of(v) for v in (*rates, *e.limit.values())))
+        known = set().union(*(variables_of(v) for v in (*e.rates, *e.limit.values())))
         if not variables_of(e.sign[j]) & known:
             raise PageError(
                 f"{what}: motion ignores contact.{name}; use it where the law changes, or leave the switch out"
@@ -178,23 +169,16 @@ def _proportional(draws: Draws, one: Symbol, other: Symbol) -> bool:
 def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
     """Switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
     e, draws = equations, Draws(equations, params)
-    force = {j: variable(f"force_{e.contacts[j].name}") for j in e.velocity}
-    rates = e.motion_with(force)
+    forces = set().union(*map(variables_of, e.force.values()))
     found = set()
     for j, surface in e.surface.items():
-        rate = e.along(surface, rates)
-        if any(name in variables_of(rate) for f in force.values() for name in variables_of(f)):
+        rate = e.along(surface, e.rates)
+        if forces & variables_of(rate):
             continue
         for k, velocity in e.velocity.items():
             if _proportional(draws, rate, velocity):
                 found.add((j, k))
     return frozenset(found)
-
-
-def _inside(rates: Sequence[Any], name: str) -> set[str]:
-    """The name, if the rates are not affine in it."""
-    slopes = derivatives(list(rates), [variable(name)])
-    return {name} & set().union(*(variables_of(row[0]) for row in slopes))
 
 
 def _flip(draws: Draws, value: Symbol, table: np.ndarray) -> int | None:

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from orbits.contacts.dry_friction import DryFriction
-from orbits.integrators.expressions import constant, derivatives, variable, variables_of
+from orbits.integrators.expressions import constant, derivatives, variables_of
 from orbits.machines.page.formulas import PageError
 from orbits.symbols import Symbol
 
@@ -22,24 +21,15 @@ if TYPE_CHECKING:
     from orbits.machines.page.patterns import Equations, Pattern
 
 
-def _along(e: Equations, value: Symbol, direction: list[Symbol]) -> Symbol:
-    """Derivative of a quantity in a direction of the states."""
-    (slopes,) = derivatives([value], e.x)
-    total = constant(0.0)
-    for slope, part in zip(slopes, direction):
-        total = total + slope * part
-    return total
-
-
 def _curvature(e: Equations, direction: list[Symbol]) -> Symbol:
     assert e.energy is not None
-    return _along(e, _along(e, e.energy, direction), direction)
+    return e.toward(e.toward(e.energy, direction), direction)
 
 
 def impact_mass(e: Equations, wall: int) -> Symbol:
     """Mass of the relative motion at a wall."""
     push = e.push[wall]
-    turned = _along(e, e.gap_rate(wall), push)
+    turned = e.toward(e.gap_rate(wall), push)
     return _curvature(e, push) / (turned * turned)
 
 
@@ -47,12 +37,8 @@ def body_masses(e: Equations) -> list[tuple[str, Symbol]]:
     """Speeds that a wall or a friction changes, by name, and the mass that moves with each; none without an energy."""
     if e.energy is None:
         return []
-    frictions = [j for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction)]
-    force = {j: variable(f"force_{e.contacts[j].name}") for j in frictions}
-    moved = [
-        bool(set().union(*map(variables_of, force.values())) & variables_of(rate)) if force else False
-        for rate in e.motion_with(force)
-    ]
+    forces = set().union(*map(variables_of, e.force.values()))
+    moved = [bool(forces & variables_of(rate)) for rate in e.rates]
     found = []
     for k, name in enumerate(e.states):
         if moved[k] or any(push[k].number != 0.0 for push in e.push.values()):
@@ -64,21 +50,17 @@ def body_masses(e: Equations) -> list[tuple[str, Symbol]]:
 def friction_power(pattern: Pattern) -> Symbol:
     """Power that the frictions take in a pattern."""
     e, total = pattern.equations, constant(0.0)
-    frictions = [j for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction)]
-    force = {j: variable(f"force_{e.contacts[j].name}") for j in frictions}
-    rates = e.motion_with(force)
-    for j in frictions:
+    for j, force in e.force.items():
         if j in pattern.stuck or j in pattern.absent:
             continue
-        push = [row[0] for row in derivatives(rates, [force[j]])]
-        newtons = _curvature(e, push) / _along(e, e.velocity[j], push)
+        push = [row[0] for row in derivatives(e.rates, [force])]
+        newtons = _curvature(e, push) / e.toward(e.velocity[j], push)
         total = total - newtons * pattern.forces[j] * e.velocity[j]
     return total
 
 
 def load_names(e: Equations, parameters: Collection[str]) -> tuple[str, ...]:
     """Measures of the contacts that a page has: those of forces and energies need its energy, a peak force the duration of an impact."""
-    frictions = any(isinstance(contact, DryFriction) for contact in e.contacts)
     if e.energy is None:
         return ("impact_rate",) if e.gap else ()
     found: list[str] = []
@@ -87,7 +69,7 @@ def load_names(e: Equations, parameters: Collection[str]) -> tuple[str, ...]:
         found += ["impact_rate", "impulse", *(f"impulse_{letter}" for letter in letters if len(letters) > 1)]
         found += ["impact_energy", "impact_loss", "mean_force"]
         found += ["peak_force"] if CONTACT in parameters else []
-    return (*found, *(["friction_loss"] if frictions else []), *(["work_rate"] if found or frictions else []))
+    return (*found, *(["friction_loss"] if e.force else []), *(["work_rate"] if found or e.force else []))
 
 
 UNITS = {

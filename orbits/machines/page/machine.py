@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from contvines.shared.near_names import hinting, no_parameter
-from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.dry_friction import ABSENT, STUCK
 from orbits.contacts.letters import HIT
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
@@ -127,7 +127,6 @@ class Machine(Varying):
                 j,
             )
         self.alphabet = Alphabet(self.contacts, images, turned, flips, rides)
-        self.equations.motion_with(dict.fromkeys(self._frictions, self.equations.x[0]))
         self._units.check(self.equations)
         self._possible = Possible(self.equations, self.units)
         if wrong := self._possible.wrong(params):
@@ -174,10 +173,6 @@ class Machine(Varying):
     def load_names(self) -> tuple[str, ...]:
         """Measures of its contacts' forces and energies."""
         return load_names(self.equations, self.parameters)
-
-    @cached_property
-    def _frictions(self) -> list[int]:
-        return [j for j, contact in enumerate(self.contacts) if isinstance(contact, DryFriction)]
 
     @cached_property
     def compiled(self) -> Compiled:
@@ -248,12 +243,13 @@ class Machine(Varying):
 
     def absent(self, params: np.ndarray) -> frozenset[int]:
         """Frictions whose limit is zero at these parameters, at random states: they have no events."""
-        if not self._frictions:
+        frictions = tuple(self.equations.force)
+        if not frictions:
             return frozenset()
         draws = checks.Draws(self.equations, params)
         numbers = np.hstack([draws.params, draws.signs])
-        values = self.compiled.limits(tuple(self._frictions))(draws.states, draws.clock, numbers)
-        return frozenset(j for j, column in zip(self._frictions, values.T) if np.all(column == 0.0))
+        values = self.compiled.limits(frictions)(draws.states, draws.clock, numbers)
+        return frozenset(j for j, column in zip(frictions, values.T) if np.all(column == 0.0))
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """What a file keeps of the machine, ready for JSON: where its page is, the page's text and digest, and parameters."""

@@ -64,9 +64,7 @@ class Pattern:
         self.equations, self.stuck, self.held, self.absent = equations, stuck, held, absent
         e = equations
         unknown = {j: variable(f"force_{e.contacts[j].name}") for j in (*stuck, *held)}
-        sliding = [
-            j for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction) and j not in stuck
-        ]
+        sliding = [j for j in e.velocity if j not in stuck]
         known = {j: constant(0.0) if j in absent else -e.limit[j] * e.sign[j] for j in sliding}
         base = e.motion_with({**known, **{j: unknown[j] for j in stuck}})
         for j in held:
@@ -130,6 +128,8 @@ class Equations:
         What one of a parameter or state is in SI units: the formulas of a declared machine see SI units, all else the units that are shown.
     energy : Symbol or None
         Of all bodies, in joules.
+    force : dict of int to Symbol
+        Of each friction, as an unknown.
     flips : dict of (wall, contact) to int or None
         What impacts do to the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
     """
@@ -181,6 +181,17 @@ class Equations:
             else:
                 self.surface[j] = self.value(contact.surface, f"the surface of switch {contact.name!r}")
         self.energy: Symbol | None = None if energy is None else self.value(energy, "energy")
+        self.force = {j: variable(f"force_{contacts[j].name}") for j in self.velocity}
+
+    @cached_property
+    def rates(self) -> list[Symbol]:
+        """Rates of the states, the friction forces unknown."""
+        return self.motion_with(self.force)
+
+    @cached_property
+    def still(self) -> list[Symbol]:
+        """Rates of the states without friction forces."""
+        return self.motion_with(dict.fromkeys(self.velocity, constant(0.0)))
 
     # ------------------------------------------------------------------ reading the page
     def value(self, function: object, what: str) -> Symbol:
@@ -241,10 +252,17 @@ class Equations:
             total = total + slope * rate
         return total if self.phase_rate is None else total + slopes[-1] * self.phase_rate
 
+    def toward(self, value: Symbol, direction: Sequence[Symbol]) -> Symbol:
+        """Derivative of a quantity in a direction of the states."""
+        (slopes,) = derivatives([value], self.x)
+        total = constant(0.0)
+        for slope, part in zip(slopes, direction):
+            total = total + slope * part
+        return total
+
     def gap_rate(self, j: int) -> Symbol:
         """Rate of a wall's gap: contact forces do not enter it (`checks` sees to that)."""
-        frictions = {k: constant(0.0) for k, c in enumerate(self.contacts) if isinstance(c, DryFriction)}
-        return self.along(self.gap[j], self.motion_with(frictions))
+        return self.along(self.gap[j], self.still)
 
     def impact(self, j: int, rest: bool = False) -> list[Symbol]:
         """The states after an impact on wall j: x + I d, with the impulse I that turns the gap's rate g into -e g (`rest`: into 0)."""
@@ -261,10 +279,7 @@ class Equations:
     def _impulse(self, j: int, rest: bool) -> Symbol:
         """g(x + I d) = g(x) + I (dg/dx . d), so I = -(1 + e) g / (dg/dx . d)."""
         rate = self.gap_rate(j)
-        (slopes,) = derivatives([rate], self.x)
-        effect: Symbol | float = 0.0
-        for slope, push in zip(slopes, self.push[j]):
-            effect = slope * push + effect
+        effect = self.toward(rate, self.push[j])
         return -rate / effect if rest else -(1.0 + self.restitution[j]) * rate / effect
 
     def pattern(self, key: PatternKey) -> Pattern:
@@ -276,7 +291,7 @@ class Equations:
     def pattern_key(self, modes: Sequence[int]) -> PatternKey:
         """Which frictions stick, which walls hold, which frictions are absent in a mode (one entry per contact)."""
         kinds = list(enumerate(zip(self.contacts, modes)))
-        friction = [(j, m) for j, (c, m) in kinds if isinstance(c, DryFriction)]
+        friction = [(j, modes[j]) for j in self.velocity]
         return (
             tuple(j for j, m in friction if m == STUCK),
             tuple(j for j, (c, m) in kinds if isinstance(c, Wall) and m == HELD),

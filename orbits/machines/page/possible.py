@@ -11,8 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from orbits.contacts.dry_friction import DryFriction
-from orbits.integrators.expressions import Values, constant, derivatives, replaced, variable, variables_of
+from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.machines.page.checks import Draws
 from orbits.machines.page.energies import CONTACT, body_masses
 from orbits.machines.page.patterns import Equations
@@ -152,26 +151,21 @@ def _contacts(e: Equations) -> list[Demand]:
     for j, value in e.restitution.items():
         rule = f"the restitution of {e.contacts[j].described} is above 0 and at most 1"
         found.append(Demand(value, lambda r: (r > 0.0) & (r <= 1.0), rule))
-        effect = constant(0.0)
-        for slope, push in zip(derivatives([e.gap_rate(j)], e.x)[0], e.push[j]):
-            effect = effect + slope * push
+        effect = e.toward(e.gap_rate(j), e.push[j])
         rule = f"an impulse at {e.contacts[j].described} changes the rate of its gap by a number"
         found.append(Demand(effect, np.isfinite, rule))
-    force = {j: variable(f"force_{c.name}") for j, c in enumerate(e.contacts) if isinstance(c, DryFriction)}
-    rates = e.motion_with(force)
-    for j, unit in force.items():
+    for j, unit in e.force.items():
         what = e.contacts[j].described
         found.append(Demand(e.limit[j], lambda x: x >= 0.0, f"the limit of {what} is 0 or above"))
-        (effect,) = derivatives([e.along(e.velocity[j], rates)], [unit])
-        alone = replaced(effect[0], {name: 0.0 for one in force.values() for name in variables_of(one)})
+        (effect,) = derivatives([e.along(e.velocity[j], e.rates)], [unit])
+        alone = replaced(effect[0], {name: 0.0 for one in e.force.values() for name in variables_of(one)})
         found.append(Demand(alone, _open, f"a force along the velocity of {what} makes it faster"))
     return found
 
 
 def _rates(e: Equations) -> list[Demand]:
-    still = {j: constant(0.0) for j, contact in enumerate(e.contacts) if isinstance(contact, DryFriction)}
-    named = zip(e.states, e.motion_with(still))
-    return [Demand(rate, np.isfinite, f"motion's rate of {name} is a number") for name, rate in named]
+    rule = "motion's rate of {} is a number"
+    return [Demand(rate, np.isfinite, rule.format(name)) for name, rate in zip(e.states, e.still)]
 
 
 def _open(values: np.ndarray) -> np.ndarray:

@@ -10,7 +10,6 @@ import numpy as np
 
 from contvines.shared.modulation import BAND
 from contvines.shared.near_names import did_you_mean
-from orbits.integrators.expressions import constant
 from orbits.machines.page.formulas import PageError
 from orbits.machines.physical.quantities import QuantityError
 from orbits.machines.physical.units import counted, in_si, size
@@ -101,8 +100,7 @@ class Units:
                             f"units: the {what} of {e.contacts[j].described} adds {one} in {self.said[one]!r} to {other} in "
                             f"{self.said[other]!r}; give units of one kind"
                         )
-        still = dict.fromkeys(e.velocity, constant(0.0))
-        for name, rate in zip(e.states, e.motion_with(still)):
+        for name, rate in zip(e.states, e.still):
             (term, *more) = _terms(rate)
             if not more and name in self.said and kinds.get(term) in self.said and term.startswith("x_"):
                 unit, wanted = self.said[kinds[term]], f"{self.said[name]}/s"
