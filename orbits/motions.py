@@ -47,7 +47,7 @@ class Simulated:
         from orbits.attractors.search import find_attractor
 
         params, generator = self.values(p), np.random.default_rng(7)
-        named: dict[str, Any] = dict(zip(self.model.parameter_names, map(float, params)))
+        named: dict[str, Any] = self.model.named(params)
         found: dict[tuple[str, int, str], dict[str, Any]] = {}
         met = 0
         for i in range(starts):

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from contvines.shared.near_names import hinting
+from contvines.shared.number_text import pairs
 from contvines.shared.stability import attracts, onto_circle
 from orbits.cycles.cycle import Cycle
 from orbits.cycles.deviation import deviation
@@ -282,7 +283,7 @@ class Orbit(Cycle):
             "symmetric": self.symmetric,
             **self.model.described(self.params),
             **self.flow.described(self),
-            "multipliers": [[float(value.real), float(value.imag)] for value in self.multipliers],
+            "multipliers": pairs(self.multipliers),
             "stable": self.stable,
             "margins": [{"kind": m.kind, "segment": m.segment, "value": m.value} for m in self.margins],
             "real": self.real,

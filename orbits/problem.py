@@ -299,7 +299,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
     def population(self, over: str | None = None, **parameters: float):
         """Starts of this machine and what they settle on; see `orbits.population.Population`."""
         over = over or self.parameter
-        numbers = dict(zip(self.model.parameter_names, map(float, self.params), strict=True))
+        numbers = self.model.named(self.params)
         values = {**numbers, **parameters}
         return self.model.population(over, **{name: v for name, v in values.items() if name != over})
 

@@ -13,6 +13,7 @@ from ..bifurcation.kinds import BORDERS
 from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
+from ..shared.number_text import pairs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -153,12 +154,12 @@ class SpecialPoint:
     def frequency(self) -> float | None:
         """Angular frequency of the pair on the stability boundary: omega at a Hopf point, the angle per period at a
         Neimark-Sacker point; None at other points."""
-        pairs = self.multipliers[np.imag(self.multipliers) > 0.0]
-        if self.kind not in ("hopf", "neimark-sacker") or not len(pairs):
+        upper = self.multipliers[np.imag(self.multipliers) > 0.0]
+        if self.kind not in ("hopf", "neimark-sacker") or not len(upper):
             return None
         if self.kind == "hopf":
-            return float(np.imag(pairs[np.argmin(np.abs(np.real(pairs)))]))
-        return float(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))]))
+            return float(np.imag(upper[np.argmin(np.abs(np.real(upper)))]))
+        return float(np.angle(upper[np.argmin(np.abs(np.abs(upper) - 1.0))]))
 
     @property
     def eigenvectors(self) -> np.ndarray:
@@ -250,7 +251,7 @@ class SpecialPoint:
             "kind": self.kind,
             "branch": self.branch,
             "value": {self.parameter: float(self.value)},
-            "multipliers": [[float(m.real), float(m.imag)] for m in self.multipliers],
+            "multipliers": pairs(self.multipliers),
             "real": bool(self.real),
             "criticality": self.criticality,
             "residual": float(self.residual),
@@ -258,9 +259,7 @@ class SpecialPoint:
             "coefficient": None if self.coefficient is None else float(self.coefficient),
             "location_error": float(self.location_error),
             "bracket": [float(self.bracket[0]), float(self.bracket[1])],
-            "multipliers_beyond": None
-            if self.multipliers_beyond is None
-            else [[float(m.real), float(m.imag)] for m in self.multipliers_beyond],
+            "multipliers_beyond": None if self.multipliers_beyond is None else pairs(self.multipliers_beyond),
             "mirror": bool(self.mirror),
             "note": self.note,
         }

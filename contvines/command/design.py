@@ -67,7 +67,7 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
                 f"--{name} = {value!r} is out of range; expected a number from {SCALE[0]:g} to {SCALE[1]:g} {unit}, "
                 f"for example {usual}."
             )
-    numbers = dict(zip(model.parameter_names, params.tolist())) if physical else study.parameters
+    numbers = model.named(params) if physical else study.parameters
     fields: dict[str, Any] = {name: numbers[name] for name in ("restitution", "friction", "mass_ratio")}
     fields["damping"], gravity = numbers.get("damping", DAMPING), numbers["gravity"]
     if physical:

@@ -62,20 +62,17 @@ def self_test() -> dict[str, Any]:
 
     Notes
     -----
-    With beta = (B - pi a/2) and H = pi a/2 at frequency 1, C^2 = (1 - pi beta/2)^2 + (R beta + H)^2 and the fold is at
-    beta = (2 pi - 4 R H)/(pi^2 + 4 R^2), R = (1 - r)/(1 + r) (Youssef, Karoui, Leine, symmetric periodic motions).
+    The fold is the lowest point of the slow invariant manifold (Youssef, Karoui, Leine, symmetric periodic motions).
     """
     import contvines
     from orbits import Absorber
+    from orbits.theory.manifolds import activation, friction_level, impact_loss
 
     absorber = Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006)
     graph = contvines.diagram(
         absorber.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.2, 0.6), depth=0
     )
-    ratio = (1.0 - 0.76) / (1.0 + 0.76)
-    friction = 0.5 * math.pi * 1.006 * 0.5 * 0.211
-    beta = (2.0 * math.pi - 4.0 * ratio * friction) / (math.pi**2 + 4.0 * ratio**2)
-    expected = math.hypot(1.0 - 0.5 * math.pi * beta, ratio * beta + friction)
+    expected = float(activation(impact_loss(0.76), friction_level(0.5, 0.211, 0.006)).amplitude)
     folds = [point.value for point in graph.special.values() if point.kind == "fold"]
     found = min(folds, key=lambda value: abs(value - expected), default=math.nan)
     return {

@@ -1,12 +1,12 @@
 """Python files that a study names: they are run, so only those count that have come with it."""
 
 import hashlib
-import sys
 from collections.abc import Sequence
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
-from types import ModuleType
 from typing import Any
+
+from contvines.command.sentences import refused
+from contvines.shared.python_files import module_of, names_of
 
 
 def own_code(study: Path, file: str, place: str) -> Path:
@@ -35,29 +35,6 @@ def own_code(study: Path, file: str, place: str) -> Path:
     return study.parent / name
 
 
-def run_file(path: Path, place: str) -> ModuleType:
-    """The module that a Python file makes; the same text is run once.
-
-    Raises
-    ------
-    ValueError
-        If it is no Python file, or does not run; the sentence begins with `place`.
-    """
-    digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-    name = f"_own_{path.stem}_{digest}"
-    if name not in sys.modules:
-        spec = spec_from_file_location(name, path)
-        if spec is None or spec.loader is None:
-            raise ValueError(f"{place}: {path} is no Python file")
-        module = sys.modules[name] = module_from_spec(spec)
-        try:
-            spec.loader.exec_module(module)
-        except Exception as error:
-            del sys.modules[name]
-            raise ValueError(f"{place}: {path} does not run: {type(error).__name__}: {error}") from error
-    return sys.modules[name]
-
-
 def load_kinds(study: Path, said: str) -> tuple[Sequence[Any], str]:
     """The built-in kinds with those of a file beside the study, and a digest of the file; the file is run.
 
@@ -82,12 +59,13 @@ def load_kinds(study: Path, said: str) -> tuple[Sequence[Any], str]:
         raise ValueError(
             f'{place}: name a file beside the study and a kind in it, for example kinds = "saddles.py:neutral"'
         )
-    module = run_file(path, place)
+    with refused(place):
+        module = module_of(path)
     found = getattr(module, name, None)
     own = [found] if isinstance(found, Kind) else list(found) if isinstance(found, list | tuple) else []
     if not own:
-        known = [key for key, value in vars(module).items() if isinstance(value, Kind)]
-        raise ValueError(f"{place}: {path} has no kind {name!r}; it has {', '.join(known) or 'none'}")
+        known = ", ".join(names_of(module, Kind)) or "none"
+        raise ValueError(f"{place}: {path} has no kind {name!r}; it has {known}")
     try:
         digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
         return checked([*(kind for kind in KINDS if kind not in own), *own]), digest

@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contvines.command.conditions import check_range
-from contvines.command.own_code import own_code, run_file
+from contvines.command.own_code import own_code
 from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
 from contvines.flows.family import FlowFamily
 from contvines.flows.problem import FlowProblem
 from contvines.shared.near_names import did_you_mean
+from contvines.shared.python_files import module_of
 from orbits.design import Family
 from orbits.machines.varying import Varying
 from orbits.words import Word
@@ -238,7 +239,8 @@ class UserOutcome:
     @property
     def loaded(self) -> Callable[[Findings], Mapping[str, float] | float] | None:
         """The function itself."""
-        return getattr(run_file(Path(self.path), "[survey] outcomes"), self.function, None)
+        with refused("[survey] outcomes"):
+            return getattr(module_of(self.path), self.function, None)
 
     def __call__(self, found: Findings) -> Mapping[str, float]:
         assert self.loaded is not None

@@ -62,9 +62,9 @@ def _graph_machine(graph: "Graph") -> dict[str, Any]:
 def _study_machine(study: Study) -> dict[str, Any]:
     model = study.model
     if study.sort is Sort.PHYSICAL:
-        return {"name": study.name, **dict(zip(model.parameter_names, model.vector().tolist()))}
+        return {"name": study.name, **model.named(model.vector())}
     vector = model.vector({**study.loose, study.parameter: study.parameters[study.parameter]})
-    return {"name": model.name, **dict(zip(model.parameter_names, vector.tolist()))}
+    return {"name": model.name, **model.named(vector)}
 
 
 def _same(a: float | str, b: float | str) -> bool:

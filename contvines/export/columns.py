@@ -31,7 +31,7 @@ def graph_columns(graph: Graph) -> dict[str, list[Any]]:
         for name in columns:
             group = 1 if _unknown(name) is not None else 2 if name.startswith("multiplier") else 3
             heads[group if name not in FACTS and name != parameter_head(graph) else 0].setdefault(name, None)
-    order = [*heads[0], *sorted(heads[1], key=_unknown), *heads[2], *heads[3]]
+    order = [*heads[0], *sorted(heads[1], key=lambda name: int(name[1:])), *heads[2], *heads[3]]
     result: dict[str, list[Any]] = {name: [] for name in order}
     for branch, columns in zip(branches, parts, strict=True):
         nothing = [float("nan")] * len(branch)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines.shared.number_text import complex_figures, figures
+from contvines.shared.number_text import complex_figures, figures, pairs
 
 from ..problems.protocol import Solution
 from ..shared.stability import attracts, marginal_text, onto_axis
@@ -58,7 +58,7 @@ class Equilibrium(Solution):
             "equilibrium": dict(self.states),
             "stable": self.stable,
             "parameters": dict(self.parameters),
-            "eigenvalues": [[float(m.real), float(m.imag)] for m in self.eigenvalues],
+            "eigenvalues": pairs(self.eigenvalues),
         }
 
     def __str__(self) -> str:

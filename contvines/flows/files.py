@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-import sys
 from collections.abc import Mapping
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
 from ..problems.registry import find_callables
+from ..shared.python_files import module_of, names_of
 from .expressions import read_text
 from .problem import FlowProblem, NamedOptions
 
@@ -125,30 +124,13 @@ def load_flow(path: str | Path, name: str) -> FlowProblem | None:
     ValueError
         If the file does not run, or has other flows but nothing of that name.
     """
-    file = Path(path).resolve()
-    text = file.read_bytes()
-    digest = hashlib.blake2b(text, digest_size=8).hexdigest()
-    known = _loaded.get((str(file), name))
-    if known is not None and known.origin is not None and known.origin[2] == digest:
-        return known
-    module_name = f"_flow_{file.stem}_{digest}"
-    spec = spec_from_file_location(module_name, file)
-    if spec is None or spec.loader is None:
-        return None
-    module = module_from_spec(spec)
-    sys.modules[module_name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[module_name]
-        raise ValueError(f"{path}: the file does not run: {type(error).__name__}: {error}") from error
+    module = module_of(path)
     flow = getattr(module, name, None)
-    if flow is None:
-        others = [key for key, value in vars(module).items() if isinstance(value, FlowProblem)]
-        if others:
-            raise ValueError(f"{path}: it has no flow {name!r}; it has {', '.join(others)}")
+    if flow is None and (others := names_of(module, FlowProblem)):
+        raise ValueError(f"{path}: it has no flow {name!r}; it has {', '.join(others)}")
     if not isinstance(flow, FlowProblem):
         return None
-    flow.origin = str(file), name, digest
+    file = Path(path).resolve()
+    flow.origin = str(file), name, hashlib.blake2b(file.read_bytes(), digest_size=8).hexdigest()
     _loaded[str(file), name] = flow
     return flow

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 import numpy as np
 
+from ..shared.number_text import pairs
 from ..shared.stability import attracts, onto_circle
 from . import mesh
 from .elimination import multipliers_of
@@ -99,7 +100,7 @@ class CycleOrbit:
             "period": self.period,
             "stable": self.stable,
             "parameters": dict(self.parameters),
-            "multipliers": [[float(m.real), float(m.imag)] for m in self.multipliers],
+            "multipliers": pairs(self.multipliers),
             "times": self.times.tolist(),
             "states": self.states.tolist(),
         }

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..bifurcation.critical import critical
+from ..shared.number_text import pairs
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
@@ -82,7 +83,7 @@ class PlanePoint:
             "on": list(self.on),
             "coefficients": {name: float(value) for name, value in self.coefficients.items()},
             "real": bool(self.real),
-            "multipliers": [[float(m.real), float(m.imag)] for m in self.multipliers],
+            "multipliers": pairs(self.multipliers),
             "error": float(self.error),
             "residual": float(self.residual),
             "note": self.note,

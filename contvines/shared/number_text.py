@@ -53,6 +53,11 @@ def complex_figures(values: Iterable[complex]) -> str:
     return ", ".join(text(value) for value in values)
 
 
+def pairs(values: Iterable[complex]) -> list[list[float]]:
+    """Complex numbers as JSON has them: real and imaginary part."""
+    return [[float(value.real), float(value.imag)] for value in values]
+
+
 def figures_in(
     within: tuple[float, float], others: Sequence[float] = (), same: float = 0.0
 ) -> Callable[[float], str]:

@@ -8,17 +8,17 @@ import itertools
 import numpy as np
 
 from orbits import Absorber, Orbit
-from orbits.machines.closed_forms.absorber import friction_number, restitution_ratio, symmetry_breaking_square
 from orbits.starts.find import polish
+from orbits.theory.manifolds import activation, symmetry_limit
+from orbits.theory.manifolds import friction_level as friction_number
+from orbits.theory.manifolds import impact_loss as restitution_ratio
 
 
 def limits(machine: Absorber) -> tuple[float, float]:
     """C^2 at the fold and at the symmetry breaking."""
-    from orbits.machines.closed_forms.absorber import fold_square
-
     R = restitution_ratio(machine.restitution)
-    H = friction_number(machine.friction, machine.gravity, machine.mass_ratio, machine.frequency)
-    return float(fold_square(R, H)), float(symmetry_breaking_square(R, H))
+    H = friction_number(machine.friction, machine.gravity, machine.mass_ratio) / machine.frequency**2
+    return float(activation(R, H).amplitude ** 2), float(symmetry_limit(R, H).amplitude ** 2)
 
 
 def symmetric(machine: Absorber, squares: np.ndarray, stable: bool = True) -> list[Orbit]:

@@ -25,9 +25,7 @@ def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
             q = p + side * distance * parameter_unit(problem, p)
             if Orbit.at_rest(problem.model, problem.values(q)).real:
                 continue
-            values = dict(
-                zip(problem.model.parameter_names, (float(x) for x in problem.values(q)), strict=True)
-            )
+            values = problem.model.named(problem.values(q))
             try:
                 orbit = find(problem.model, "ss", 1, None, values)
             except (StartError, ValueError):

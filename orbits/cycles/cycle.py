@@ -76,7 +76,7 @@ class Cycle:
     @property
     def parameters(self) -> dict[str, float]:
         """All parameters by name."""
-        return dict(zip(self.model.parameter_names, (float(value) for value in self.params), strict=True))
+        return self.model.named(self.params)
 
     @property
     def impacts(self) -> int:

@@ -77,7 +77,7 @@ def from_impacts(
 
     def residuals(values: np.ndarray, used: int = count) -> np.ndarray:
         params = _vector(model, dict(zip(unknown, values)), fixed)
-        numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
+        numbers: dict[str, Any] = model.named(params)
         instants = np.empty(0)
         for events in (3 * used + 20, 40 * used + 400):  # most motions have few turns between impacts
             if instants.size < used:
@@ -192,7 +192,7 @@ def from_sweep(
 
     def residuals(guess: np.ndarray, start: Start = None) -> np.ndarray:
         params = _vector(model, dict(zip(unknown, guess)), fixed)
-        numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
+        numbers: dict[str, Any] = model.named(params)
         rows = sweep(model, over, places, start=start, transient=transient, nudge=0.0, **numbers)
         return np.array([row.measures[measure] for row in rows]) - heights
 

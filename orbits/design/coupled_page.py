@@ -49,7 +49,7 @@ def coupled_page() -> Machine:
     return Machine(
         name="coupled_and_bare",
         states=("q1", "q2", "v1", "v2", "bare", "bare_rate"),
-        parameters=dict(zip(model.parameter_names, model.vector(given).tolist())),
+        parameters=model.named(model.vector(given)),
         phase_rate="frequency",
         motion=_motion,
         contacts=[_wall("L", 1), _wall("R", -1), floor],

@@ -34,7 +34,7 @@ Near = tuple[np.ndarray, np.ndarray, tuple[str, ...], tuple[Mode, ...], int]
 
 def settled(model: Varying, params: np.ndarray, state: Start = None) -> Orbit | None:
     """The orbit to which the machine settles from rest, or from a state; None where nothing recurs."""
-    values: dict[str, Any] = dict(zip(model.parameter_names, (float(value) for value in params)))
+    values: dict[str, Any] = model.named(params)
     found = find_attractor(model, state, max_period=8, **values)
     if found.kind == "stuck":
         return Orbit.at_rest(model, params)
@@ -166,7 +166,7 @@ class Family:
         found = []
         for value in at:
             params = model.vector_at(over, value, loose)
-            numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params)))
+            numbers: dict[str, Any] = model.named(params)
             generator = np.random.default_rng(20)
             for trial in range(starts):
                 start = self.state if trial == 0 else model.random_start(params, generator)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from orbits.theory.multiple_scales import manifolds
+from orbits.theory import manifolds
 
 if TYPE_CHECKING:
     from orbits.numbers import Reals

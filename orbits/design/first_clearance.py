@@ -53,7 +53,7 @@ def first_clearance(model: Model, params: np.ndarray) -> FirstClearance | None:
     model : Model
     params : float array (P,)
     """
-    numbers = dict(zip(model.parameter_names, map(float, params)))
+    numbers = model.named(params)
     damping, forcing = numbers.get("damping", 0.0), numbers.get("forcing", 0.0)
     if numbers.get("slope", 0.0) != 0.0 or not (
         damping > 0.0 and forcing > 0.0 and 0.0 < numbers["restitution"] < 1.0

@@ -151,7 +151,7 @@ def random_base(
     ParameterError
         If the machine has no oscillator, or the numbers cannot be.
     """
-    numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
+    numbers = model.named(params)
     if "damping" not in numbers:
         raise ParameterError(f"the machine {model.name!r} has no oscillator on a base")
     eps, rate = numbers["mass_ratio"], numbers["mass_ratio"] * numbers["damping"]

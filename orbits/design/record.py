@@ -109,7 +109,7 @@ def recorded(
     if np.any(np.diff(times) <= 0.0):
         at = int(np.flatnonzero(np.diff(times) <= 0.0)[0]) + 1
         raise ParameterError(f"the record's times do not grow at row {at}: sort them, one row per instant")
-    numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
+    numbers = model.named(params)
     if "damping" not in numbers:
         raise ParameterError(f"the machine {model.name!r} has no oscillator")
     if numbers.get("slope", 0.0) != 0.0:

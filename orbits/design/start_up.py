@@ -72,7 +72,7 @@ def start_up(
     ParameterError
         If the machine has no oscillator, or the number of periods will not do.
     """
-    numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
+    numbers = model.named(params)
     if "damping" not in numbers:
         raise ParameterError(f"the machine {model.name!r} has no oscillator that could start up")
     omega = float(model.phase_speed(params))

@@ -67,7 +67,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
     ParameterError
         If the machine has no oscillator, or nothing moves.
     """
-    numbers = dict(zip(model.parameter_names, (float(x) for x in params)))
+    numbers = model.named(params)
     if "damping" not in numbers:
         raise ParameterError(f"the machine {model.name!r} has no oscillator whose motion could decay")
     if not (math.isfinite(displacement) and displacement != 0.0):
@@ -111,7 +111,7 @@ def taken_share(model: Model, params: np.ndarray, displacement: float, time: flo
         raise ParameterError(
             f"time = {time:g} is out of range; give a time above 0, of at most {LONGEST:g} periods"
         )
-    numbers: dict[str, Any] = dict(zip(model.parameter_names, (float(x) for x in params))) | {
+    numbers: dict[str, Any] = model.named(params) | {
         "forcing": 0.0,
         "frequency": 1.0,
     }

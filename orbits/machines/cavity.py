@@ -108,4 +108,4 @@ class Cavity(Sided):
     )
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        return closed_forms.start_nodes(word, periods, dict(zip(self.parameter_names, map(float, params))))
+        return closed_forms.start_nodes(word, periods, self.named(params))

@@ -80,6 +80,10 @@ class Varying:
             raise ValueError(f"{params.size} parameters are described, the machine has {len(names)}")
         return params
 
+    def named(self, params: np.ndarray) -> dict[str, float]:
+        """The numbers of a parameter vector by name."""
+        return dict(zip(self.parameter_names, params.tolist(), strict=True))
+
     @property
     def amount_names(self) -> tuple[str, ...]:
         """Names of all parameters that may vary, in the order of `amounts`; here the numbers themselves."""
@@ -128,7 +132,7 @@ class Varying:
 
     def described(self, params: np.ndarray) -> dict[str, Any]:
         """A parameter vector by name, ready for JSON."""
-        return {"parameters": dict(zip(self.parameter_names, (float(v) for v in params), strict=True))}
+        return {"parameters": self.named(params)}
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
         """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""

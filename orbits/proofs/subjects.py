@@ -260,7 +260,7 @@ def _margin(word: Word, index: int) -> str:
 
 def _numbers(orbit: Cycle) -> dict[str, float]:
     """The machine's own numbers; of a machine in physical units those behind its quantities."""
-    return dict(zip(orbit.model.parameter_names, (float(value) for value in orbit.params)))
+    return orbit.model.named(orbit.params)
 
 
 def _mirrored(orbit: Cycle, given: Mapping[str, Given]) -> bool:

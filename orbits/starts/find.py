@@ -254,7 +254,7 @@ def _simulated(model: Varying, word: Word, periods: int, params: np.ndarray) -> 
     from orbits.attractors.search import find_attractor
 
     target = word.canonical(mirrored)
-    values: dict[str, Any] = dict(zip(model.parameter_names, (float(v) for v in params), strict=True))
+    values: dict[str, Any] = model.named(params)
     nearest, distance = "", np.inf
     generator = np.random.default_rng(20)
     for trial in range(TRIALS):

@@ -8,14 +8,8 @@ from hypothesis import strategies as st
 import contvines as cv
 from orbits import Absorber
 from orbits.attractors import find_attractors, sweep
-from orbits.machines.closed_forms.absorber import (
-    fold_square,
-    friction_number,
-    restitution_ratio,
-    sliding_squares,
-    symmetry_breaking_square,
-)
 from orbits.starts.find import StartError
+from orbits.theory.manifolds import activation, friction_level, impact_loss, sliding_bounds, symmetry_limit
 from tests.machines import ABSORBER
 
 machines = st.builds(
@@ -29,17 +23,17 @@ machines = st.builds(
 
 
 def numbers(machine):
-    R = restitution_ratio(machine.restitution)
-    H = friction_number(machine.friction, machine.gravity, machine.mass_ratio, machine.frequency)
+    R = impact_loss(machine.restitution)
+    H = friction_level(machine.friction, machine.gravity, machine.mass_ratio) / machine.frequency**2
     return float(R), float(H)
 
 
 def test_published_bounds():
     """C^2 at fold and symmetry breaking: Youssef, Karoui, Leine, for both of their parameter sets (six digits)."""
     for mu, g, fold, breaking in ((0.5, 0.211, 0.0637942, 0.5282903), (0.1, 0.422, 0.0233851, 0.4961028)):
-        R, H = restitution_ratio(0.76), friction_number(mu, g, 0.006)
-        assert float(fold_square(R, H)) == pytest.approx(fold, abs=6e-8)
-        assert float(symmetry_breaking_square(R, H)) == pytest.approx(breaking, abs=6e-8)
+        R, H = impact_loss(0.76), friction_level(mu, g, 0.006)
+        assert float(activation(R, H).amplitude ** 2) == pytest.approx(fold, abs=6e-8)
+        assert float(symmetry_limit(R, H).amplitude ** 2) == pytest.approx(breaking, abs=6e-8)
 
 
 @settings(max_examples=60, deadline=None)
@@ -47,7 +41,7 @@ def test_published_bounds():
 def test_closed_form_solves_the_maps(machine, above):
     R, H = numbers(machine)
     assume(H * R < 1.2)
-    orbit = machine.symmetric_orbit(np.sqrt(float(fold_square(R, H)) + above))
+    orbit = machine.symmetric_orbit(np.sqrt(float(activation(R, H).amplitude) ** 2 + above))
     assert orbit.residual < 1e-12 * (1.0 + orbit.nodes.max())
     assert orbit.symmetric
 
@@ -107,7 +101,7 @@ def test_losses_balance_the_work_of_the_cavity():
 
 
 def test_sliding_and_stick_slip_closed_forms_are_real_orbits():
-    low, high = (float(x) for x in sliding_squares(friction_number(0.5, 0.211, 0.006)))
+    low, high = (float(x) ** 2 for x in sliding_bounds(friction_level(0.5, 0.211, 0.006)))
     for square, word in (
         (0.5 * (low + high), "tt"),
         (1.01 * low, "tt"),
@@ -157,7 +151,7 @@ def test_diagrams_sweeps_and_attractors_spell_a_motion_alike():
     graph = cv.diagram(orbit, over="amplitude", within=(1.19, 1.21), depth=0)
     found = find_attractors(ABSORBER, [{"w_rate": 1.0}, {"w_rate": -1.0}, None], amplitude=1.2)
     rows = sweep(ABSORBER, "amplitude", [1.2, 1.201])
-    spellings = {graph["B1"].description["word"], orbit.to_dict()["word"], orbit.spelling}
+    spellings = {graph.branches["B1"].description["word"], orbit.to_dict()["word"], orbit.spelling}
     spellings |= {attractor.text for attractor in found} | {row.word for row in rows}
     assert spellings == {"LRLt"}
     assert all("word='LRLt'" in repr(attractor) for attractor in found)

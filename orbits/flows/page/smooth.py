@@ -305,7 +305,7 @@ def cycle_near(machine: Machine, word: Word, params: np.ndarray, state: np.ndarr
     """The node of the cycle without events on which a motion settles, shape (n + 1,); None where it does not."""
     try:
         flow = smooth(machine, word.entries(0), params, state)
-        orbit = flow.attractor_at(dict(zip(machine.parameter_names, map(float, params), strict=True)), state)
+        orbit = flow.attractor_at(machine.named(params), state)
     except ValueError:  # it comes to rest, goes on to an event, or does not recur
         return None
     return extreme_of(machine, word, orbit(np.linspace(0.0, orbit.period, SAMPLES)), orbit.period)
@@ -333,7 +333,7 @@ def rest_near(machine: Machine, mode: tuple[int, ...], params: np.ndarray, state
         flow = smooth(machine, mode, params, state)
     except ValueError:
         return None
-    values = dict(zip(machine.parameter_names, map(float, params), strict=True))
+    values = machine.named(params)
     field = flow.field.against(flow.values.against(flow.values.varying, values))
     x, p = np.array(state, dtype=float), values[flow.values.varying]
     for _ in range(SWEEPS):

@@ -1,12 +1,11 @@
-"""Exact orbits of the reduced absorber, and the amplitudes at which they begin and end.
+"""Exact orbits of the reduced absorber.
 
 With a = (1 + eps) mu g, R = (1 - r)/(1 + r), H = (pi/2) a / Omega^2 and the absorber's mean velocity
 B = Omega beta + pi a / (2 Omega) after an impact, the symmetric orbit with two impacts per period obeys
 
     C sin Psi = 1 - (pi/2) beta,    C cos Psi = R beta + H,    C^2 = (1 - pi beta/2)^2 + (R beta + H)^2.
 
-At Omega = 1 this is the slow invariant manifold of Youssef, Karoui, Leine; the other forms follow from the maps.
-All functions broadcast over their arguments.
+This is the slow invariant manifold of Youssef, Karoui, Leine (`orbits.theory.manifolds`), exact at any Omega with beta for B and H for h.
 """
 
 from __future__ import annotations
@@ -14,66 +13,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from contvines.shared.floating_point import ROUNDED
 from orbits.machines.parameters import ParameterError
 from orbits.settings import FORMULAS
+from orbits.theory import manifolds
 from orbits.words import Word
 
 
-def restitution_ratio(restitution: ArrayLike) -> np.ndarray:
-    """R = (1 - r)/(1 + r)."""
-    r = np.asarray(restitution, dtype=float)
-    return (1.0 - r) / (1.0 + r)
-
-
-def friction_number(
-    friction: ArrayLike, gravity: ArrayLike, mass_ratio: ArrayLike, frequency: ArrayLike = 1.0
-) -> np.ndarray:
-    """H = (pi/2) (1 + eps) mu g / Omega^2; at Omega = 1 the h~ of the literature."""
-    eps, omega = np.asarray(mass_ratio, dtype=float), np.asarray(frequency, dtype=float)
-    return (
-        0.5
-        * np.pi
-        * (1.0 + eps)
-        * np.asarray(friction, dtype=float)
-        * np.asarray(gravity, dtype=float)
-        / omega**2
-    )
-
-
-def symmetric_square(beta: ArrayLike, R: ArrayLike, H: ArrayLike) -> np.ndarray:
-    """C^2 of the symmetric orbit with reduced mean velocity beta."""
-    beta, R, H = np.asarray(beta, dtype=float), np.asarray(R, dtype=float), np.asarray(H, dtype=float)
-    return (1.0 - 0.5 * np.pi * beta) ** 2 + (R * beta + H) ** 2
-
-
-def fold_beta(R: ArrayLike, H: ArrayLike) -> np.ndarray:
-    """Reduced mean velocity at the fold of the symmetric orbits: (2 pi - 4 R H)/(pi^2 + 4 R^2)."""
-    R, H = np.asarray(R, dtype=float), np.asarray(H, dtype=float)
-    return (2.0 * np.pi - 4.0 * R * H) / (np.pi**2 + 4.0 * R**2)
-
-
-def symmetry_breaking_beta(R: ArrayLike, H: ArrayLike) -> np.ndarray:
-    """Reduced mean velocity at the symmetry breaking: (2 pi - 4 R H)/(pi^2 - 4)."""
-    R, H = np.asarray(R, dtype=float), np.asarray(H, dtype=float)
-    return (2.0 * np.pi - 4.0 * R * H) / (np.pi**2 - 4.0)
-
-
-def fold_square(R: ArrayLike, H: ArrayLike) -> np.ndarray:
-    """C^2 at the fold: the least amplitude with symmetric orbits."""
-    return symmetric_square(fold_beta(R, H), R, H)
-
-
-def symmetry_breaking_square(R: ArrayLike, H: ArrayLike) -> np.ndarray:
-    """C^2 at the symmetry breaking of the symmetric orbits."""
-    return symmetric_square(symmetry_breaking_beta(R, H), R, H)
-
-
-def sliding_squares(H: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """C^2 between which pure sliding `tt` lasts: H^2 (1 + 4/pi^2), where it begins to stick, and 1 + H^2, where it grazes."""
-    H = np.asarray(H, dtype=float)
-    return H**2 * (1.0 + 4.0 / np.pi**2), 1.0 + H**2
+def _loss_and_level(params: np.ndarray) -> tuple[float, float]:
+    """R and H, of whose manifold the orbits are points: B of the literature is beta here."""
+    _, r, mu, g, eps, omega = (float(value) for value in params[:6])
+    return float(manifolds.impact_loss(r)), float(manifolds.friction_level(mu, g, eps)) / omega**2
 
 
 def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
@@ -91,18 +42,14 @@ def symmetric_nodes(params: np.ndarray, stable: bool = True) -> np.ndarray:
     ParameterError
         If the amplitude is below the fold.
     """
-    C, r, mu, g, eps, omega = (float(value) for value in params[:6])
-    R = float(restitution_ratio(r))
-    H = float(friction_number(mu, g, eps, omega))
-    curvature = 0.25 * np.pi**2 + R**2
-    least = float(fold_square(R, H))
-    middle = float(fold_beta(R, H))
-    if least * (1.0 - FORMULAS.zero) > C**2:
+    C, omega = float(params[0]), float(params[5])
+    R, H = _loss_and_level(params)
+    least = float(manifolds.activation(R, H).amplitude)
+    if least * (1.0 - FORMULAS.zero) > C:
         raise ParameterError(
-            f"amplitude = {C:g} has no symmetric orbit with two impacts per period: it begins at {np.sqrt(least):.10g}"
+            f"amplitude = {C:g} has no symmetric orbit with two impacts per period: it begins at {least:.10g}"
         )
-    root = np.sqrt(max(C**2 - least, 0.0) / curvature)
-    beta = middle + root if stable else middle - root
+    beta = float(manifolds.velocity_at(max(C, least), R, H, 1 if stable else -1))
     psi = float(np.arctan2(1.0 - 0.5 * np.pi * beta, R * beta + H)) % (2.0 * np.pi)
     speed = omega * (beta + H)  # B+ = Omega beta + pi a/(2 Omega)
     # contact on the left: C sin Psi and C cos Psi with the signs of w = +1 and of a motion to the right
@@ -125,8 +72,7 @@ def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
     ParameterError
         If the shaking is too weak to slide.
     """
-    C, _, mu, g, eps, omega = (float(value) for value in params[:6])
-    H = float(friction_number(mu, g, eps, omega))
+    C, H = float(params[0]), _loss_and_level(params)[1]
     if C <= H:
         raise ParameterError(f"amplitude = {C:g} is too small for pure sliding: it needs more than {H:.10g}")
     psi = float(np.arctan2(-mode * np.sqrt(C**2 - H**2), -mode * H)) % (2.0 * np.pi)
@@ -137,7 +83,7 @@ def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
 def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
     """Nodes (Psi, w) of the symmetric stick-slip motion `ss` (events s, u, s, u) about the middle, shape (4, 2).
 
-    A slip starts where C Omega^2 sin Psi = -m a; the slide after it ends at the next zero of w' (bisection).
+    A slip starts where C Omega^2 sin Psi = -m a; the slide after it ends at the next zero of w'.
 
     Parameters
     ----------
@@ -150,17 +96,17 @@ def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
     ParameterError
         If the absorber never slips, or slides without sticking.
     """
+    from scipy.optimize import root_scalar
+
     C, _, mu, g, eps, omega = (float(value) for value in params[:6])
     a = (1.0 + eps) * mu * g
     if C * omega**2 <= a:
         raise ParameterError(
             f"amplitude = {C:g} never beats friction: stick-slip needs more than {a / omega**2:.10g}"
         )
-    low, high = sliding_squares(friction_number(mu, g, eps, omega))
-    if float(low) < C**2:
-        raise ParameterError(
-            f"amplitude = {C:g} slides without sticking: stick-slip ends at {np.sqrt(low):.10g}"
-        )
+    low = float(manifolds.sliding_bounds(_loss_and_level(params)[1])[0])
+    if low < C:
+        raise ParameterError(f"amplitude = {C:g} slides without sticking: stick-slip ends at {low:.10g}")
     slip = (np.pi if mode > 0 else 0.0) + float(np.arcsin(a / (C * omega**2)))
 
     def rate(psi: float) -> float:
@@ -171,13 +117,7 @@ def stick_slip_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray:
         2.0 * np.pi * (mode > 0) + (np.pi if mode < 0 else 0.0) - float(np.arcsin(a / (C * omega**2))),
         slip + np.pi,
     )
-    for _ in range(200):
-        middle = 0.5 * (left + right)
-        if rate(middle) > 0.0:
-            left = middle
-        else:
-            right = middle
-    stick = 0.5 * (left + right)
+    stick = root_scalar(rate, bracket=(left, right), xtol=ROUNDED).root
     d = (stick - slip) / omega
     path = C * (np.sin(stick) - np.sin(slip)) - C * omega * np.cos(slip) * d - mode * 0.5 * a * d**2
     return np.array(

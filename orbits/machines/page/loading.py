@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from contvines.shared.python_files import module_of, names_of
 from orbits.machines.page.machine import Machine
-from orbits.machines.page.page import module_at
 
 
 def load_page(path: str | Path, name: str) -> Machine:
@@ -18,7 +18,12 @@ def load_page(path: str | Path, name: str) -> Machine:
     FileNotFoundError, ValueError
         If there is no such file, it does not run, or has no machine of that name.
     """
-    module = module_at(path)
+    try:
+        module = module_of(path)
+    except FileNotFoundError:
+        raise FileNotFoundError(
+            f"{path}: there is no such file; name the file that declares the machine"
+        ) from None
     machine = getattr(module, name, None)
     if not isinstance(machine, Machine):
         if machine is not None:
@@ -26,6 +31,6 @@ def load_page(path: str | Path, name: str) -> Machine:
             raise ValueError(
                 f"{path}: {name} is a {kind}; an orbits.Machine or a contvines.FlowProblem is expected"
             )
-        known = [key for key, value in vars(module).items() if isinstance(value, Machine)]
-        raise ValueError(f"{path}: it has no machine {name!r}; it declares {', '.join(known) or 'none'}")
+        known = ", ".join(names_of(module, Machine)) or "none"
+        raise ValueError(f"{path}: it has no machine {name!r}; it declares {known}")
     return machine

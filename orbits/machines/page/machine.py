@@ -220,7 +220,7 @@ class Machine(Varying):
         """Typical sizes of a node's entries, shape (n,), of a forced machine: in small units lengths, and speeds even more, are large numbers."""
         if not self.forced:
             return None
-        named = dict(zip(self.parameter_names, params.tolist(), strict=True))
+        named = self.named(params)
         found = self._units.sizes(self.states, named, float(self.phase_speed(params)))
         return None if np.all(found == 1.0) else np.append(1.0, found)
 
@@ -253,8 +253,8 @@ class Machine(Varying):
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """What a file keeps of the machine, ready for JSON: where its page is, the page's text and digest, and parameters."""
-        values = self.parameters.values() if params is None else map(float, params)
-        return {"name": self.name, **self.page.describe(self), **dict(zip(self.parameter_names, values))}
+        values = self.parameters if params is None else self.named(params)
+        return {"name": self.name, **self.page.describe(self), **values}
 
     # ------------------------------------------------------------------ motions
     def word(self, text: str | Word, params: np.ndarray | None = None) -> Word:

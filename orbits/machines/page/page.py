@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.util
 import inspect
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import Any, Protocol
+
+from contvines.shared.python_files import module_of
 
 
 class FromPage(Protocol):
@@ -46,39 +46,9 @@ class Page:
         return {"page": self.path, "object": object_name(machine), "source": self.text, "digest": self.digest}
 
 
-def module_at(path: str | Path) -> ModuleType:
-    """The module that a page makes when it is run, once in a process.
-
-    Raises
-    ------
-    FileNotFoundError, ValueError
-        If there is no such file, or it does not run.
-    """
-    file = Path(path).resolve()
-    if not file.is_file():
-        raise FileNotFoundError(f"{path}: there is no such file; name the file that declares the machine")
-    text = file.read_text(encoding="utf-8")
-    module_name = f"_page_{file.stem}_{digest_of(str(file) + text)}"
-    module = sys.modules.get(module_name)
-    if module is None:
-        spec = importlib.util.spec_from_file_location(module_name, file)
-        if spec is None or spec.loader is None:
-            raise ValueError(f"{path} is no Python file")
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[module_name] = module
-        try:
-            spec.loader.exec_module(module)
-        except Exception as error:
-            del sys.modules[module_name]
-            raise ValueError(
-                f"{path}: the machine file does not run: {type(error).__name__}: {error}"
-            ) from error
-    return module
-
-
 def again(path: str, name: str) -> object:
     """A machine in another process, which runs the page itself."""
-    return getattr(module_at(path), name)
+    return getattr(module_of(path), name)
 
 
 def digest_of(text: str) -> str:

@@ -68,7 +68,7 @@ def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> M
     return Machine(
         name=f"{machine.name}_running_up",
         states=(*machine.states, CLOCK),
-        parameters=dict(zip(machine.parameter_names, (float(x) for x in params))),
+        parameters=machine.named(params),
         motion=lambda state, phase, p, contact: (*motion(state, phase, p, contact), 1.0),
         contacts=[_contact(contact, wrapped) for contact in machine.contacts],
         units=machine.given_units,

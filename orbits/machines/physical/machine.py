@@ -223,7 +223,7 @@ class Physical(Model):
     def described(self, params: np.ndarray) -> dict[str, Any]:
         """The quantities with their units, and the numbers behind them."""
         amounts = dict(zip(self.amount_names, (float(v) for v in self.amounts(params))))
-        numbers = dict(zip(self.parameter_names, (float(v) for v in params)))
+        numbers = self.named(params)
         return {"parameters": amounts, "units": self.units, "numbers": numbers}
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
@@ -263,7 +263,7 @@ class Physical(Model):
         """`vector` with quantity `name` at `value`, counted in `units`."""
         params = self.vector(values)
         moved = along(self.path(name, params), params, value)
-        return super().vector({**self.loose, **dict(zip(self.parameter_names, (float(v) for v in moved)))})
+        return super().vector({**self.loose, **self.named(moved)})
 
     def check_at(self, name: str, value: float) -> None:
         """Refuse a value of quantity `name`, counted in `units`, that does not go with the others.
@@ -275,7 +275,7 @@ class Physical(Model):
         if self.unusual:
             return
         told = {**self._texts, name: units.text(value, self.units.get(name, ""))}
-        numbers = dict(zip(self.parameter_names, (float(number) for number in self.vector_at(name, value))))
+        numbers = self.named(self.vector_at(name, value))
         check_ratios(numbers, {key: str(text) for key, text in told.items()}, wide=True)
 
     def shakes(self, name: str) -> bool:
@@ -337,7 +337,7 @@ class Physical(Model):
 
     def changed(self, **values: object) -> Physical:
         """The same machine with other values of its own numbers."""
-        numbers = dict(zip(self.parameter_names, (float(value) for value in self.vector(values))))
+        numbers = self.named(self.vector(values))
         counts = self.basis.amounts_of(np.array([*numbers.values()]))
         return _made(self.base, numbers, self.basis, counts, self.said, self.unusual, self.contact_time)
 

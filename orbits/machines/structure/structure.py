@@ -71,8 +71,8 @@ class Structure(Machine):
             "highest": r.highest,
             "elements": self.elements,
         }
-        values = self.parameters.values() if params is None else map(float, params)
-        return {"name": self.name, "structure": made, **dict(zip(self.parameter_names, values))}
+        values = self.parameters if params is None else self.named(params)
+        return {"name": self.name, "structure": made, **values}
 
     def __reduce__(self) -> tuple[Any, ...]:
         return structure_again, (self.settings(),)

@@ -3,6 +3,18 @@
 First order in the mass ratio. `SlowFlow` holds the parameters; the other functions take one.
 """
 
+from ..manifolds import (
+    ManifoldPoint,
+    activation,
+    friction_level,
+    impact_loss,
+    reversal_bound,
+    sliding_bounds,
+    squared_amplitude,
+    symmetry_limit,
+    turning_point,
+    velocity_at,
+)
 from .backbone import Backbone, Coefficients, backbone, coefficients, resonance_detuning, resonance_frequency
 from .clearance import BestClearance, TunedBackbone, best_clearance, tuned_backbone
 from .continuation import SlowResponse
@@ -17,18 +29,6 @@ from .equilibria import (
     sliding_turning_points,
 )
 from .flow import CLOSURES, SlowFlow
-from .manifolds import (
-    ManifoldPoint,
-    activation,
-    friction_level,
-    impact_loss,
-    reversal_bound,
-    sliding_bounds,
-    squared_amplitude,
-    symmetry_limit,
-    turning_point,
-    velocity_at,
-)
 from .response import ResponseCurve, ResponsePoint, frequency_response, hopf_velocity, special_points
 from .trajectory import SlowTrajectory, integrate
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from orbits.numbers import Reals
 
-from . import manifolds
+from .. import manifolds
 from .flow import Manifold, SlowFlow
 from .polynomials import real_roots, root_bound
 

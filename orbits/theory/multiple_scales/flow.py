@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from orbits.numbers import Reals
 
-from . import manifolds
+from .. import manifolds
 
 Closure = Literal["exact", "paper"]
 Manifold = Literal["impacting", "sliding"]

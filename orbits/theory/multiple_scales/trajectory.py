@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from orbits.settings import THEORY
 
-from . import manifolds
+from .. import manifolds
 from .flow import Manifold, SlowFlow
 
 ENDS = {

@@ -1,5 +1,7 @@
 """Responses by simulation where a diagram has no stable branch: of a machine file, at fewer values, against the closed form."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -28,7 +30,8 @@ def test_a_linear_answer_beside_a_branch_that_ends():
     graph = cv.diagram(machine.orbit("", frequency=1.5), over="frequency", within=(1.4, 1.6), depth=0)
     graph.within = (1.4, 2.4)
     assert _shows_response(graph, None) and not _shows_response(graph, "max_v")
-    met = simulated(graph, machine.population("frequency"))
+    starts: Any = machine.population("frequency")
+    met = simulated(graph, starts)
     values = sorted({value for value, *_ in met})
     assert 5 <= len(values) <= 15 and values[0] > 1.6 and values[-1] < 2.4
     for value, low, mean, high in met:

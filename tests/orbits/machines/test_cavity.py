@@ -10,13 +10,9 @@ from scipy.optimize import brentq
 
 import contvines as cv
 from orbits import Absorber, Cavity
-from orbits.machines.closed_forms.absorber import (
-    friction_number,
-    restitution_ratio,
-    symmetry_breaking_square,
-)
 from orbits.simulation import simulate
 from orbits.starts.find import StartError
+from orbits.theory.manifolds import friction_level, impact_loss, symmetry_limit
 
 LEVEL = {"gravity": 0.211, "mass_ratio": 0.006}
 
@@ -56,7 +52,7 @@ def test_level_with_unlike_distances_its_graph_is_the_absorbers_in_other_units()
         for machine, unit in ((absorber, 1.0), (cavity, b))
     ]
     listed = [
-        [(branch.description["word"], branch.real, branch.problem.symmetric) for branch in graph]
+        [(branch.description["word"], branch.real, branch.description["symmetric"]) for branch in graph]
         for graph in graphs
     ]
     assert listed[0] == listed[1] and len({word for word, *_ in listed[0]}) > 4
@@ -65,7 +61,7 @@ def test_level_with_unlike_distances_its_graph_is_the_absorbers_in_other_units()
     ]
     for one, other in zip(graphs[0].special.values(), graphs[1].special.values()):
         assert other.value == pytest.approx(b * one.value, abs=1e-9), one.label
-    asymmetric = next(branch for branch in graphs[1] if not branch.problem.symmetric and branch.real)
+    asymmetric = next(branch for branch in graphs[1] if not branch.description["symmetric"] and branch.real)
     orbit, image = asymmetric.orbit(3), asymmetric.orbit(3).mirror()
     assert (
         image.residual < 1e-10
@@ -78,18 +74,18 @@ def test_level_with_unlike_distances_its_graph_is_the_absorbers_in_other_units()
 
 def test_symmetry_breaks_where_one_distance_varies():
     """The middle between the walls moves along the branch: its pitchforks are those of the absorber with half the way from wall to wall."""
-    right, amplitude, H0 = 1.2, 0.7, friction_number(0.5, LEVEL["gravity"], LEVEL["mass_ratio"])
-    R = restitution_ratio(0.76)
+    right, amplitude, H0 = 1.2, 0.7, friction_level(0.5, LEVEL["gravity"], LEVEL["mass_ratio"])
+    R = impact_loss(0.76)
 
     def away(left: float) -> float:
         b = 0.5 * (left + right)
-        return float(b * np.sqrt(symmetry_breaking_square(R, H0 / b))) - amplitude
+        return float(b * symmetry_limit(R, H0 / b).amplitude) - amplitude
 
     expected = brentq(away, 0.2, 1.5)
     machine = Cavity(restitution=0.76, friction=0.5, distance_left=1.0, distance_right=right, **LEVEL)
     orbit = machine.orbit("LR", amplitude=amplitude)
     graph = cv.diagram(orbit, over="distance_left", within=(0.4, 1.4), depth=1)
-    assert graph["SB1"].value == pytest.approx(expected, abs=1e-11)
+    assert graph.special["SB1"].value == pytest.approx(expected, abs=1e-11)
 
 
 # ---------------------------------------------------------------------------------------------- a ball on a table
