@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from .segment import Segment
 from .settings import LOCATING
 
 NODES = 8
+NARROWER, WIDER = 0.5 ** np.arange(7), 2.0 ** np.arange(1, 6)  # windows
 
 
 class Root(NamedTuple):
@@ -111,29 +113,39 @@ def locate_singular(
     width : float
         Half of the window, relative to the segment.
     """
-    roots: list[tuple[float, Root]] = []
-    for _ in range(7):
-        found = _interpolated(segment, test, rough, width)
-        if found is not None:
-            root, residual = found
-            score = max(root.error, residual / segment.engine.size(root.point.u))
-            if score < ROUNDED:
-                return root
-            worse = any(score > best for best, _ in roots)
-            roots.append((score, root))
-            if worse:  # rounding, which a narrower window magnifies
-                break
-            rough = root.position
-        width *= 0.5
-    roots.sort(key=lambda pair: pair[0])
+    engine = segment.engine
+    roots = _in_windows(segment, test, rough, width * NARROWER)
     if not roots:
         return None
+    best = min(roots, key=itemgetter(0))[1]
+    if best.error > engine.settings.located * engine.parameter_unit(best.point.p):
+        # the segment is so short that rounding rules all over it, and less so on either side
+        roots += _in_windows(segment, test, best.position, width * WIDER)
+    roots.sort(key=itemgetter(0))
     best = roots[0][1]
-    if len(roots) > 1 and segment.engine.problem.scales is not None:
+    if len(roots) > 1 and engine.problem.scales is not None:
         # rounding rules in all windows, and the smallest of their estimates is small by chance
         apart = abs(roots[1][1].point.p - best.point.p)
         return best._replace(error=2.0 * max(best.error, roots[1][1].error, apart))
     return best
+
+
+def _in_windows(
+    segment: Segment, test: Callable[[Solved], float], rough: float, widths: np.ndarray
+) -> list[tuple[float, Root]]:
+    """Roots with what they are wrong by, from windows of such widths, until rounding makes them worse."""
+    roots: list[tuple[float, Root]] = []
+    for width in widths.tolist():
+        found = _interpolated(segment, test, rough, width)
+        if found is None:
+            continue
+        root, residual = found
+        roots.append((max(root.error, residual / segment.engine.size(root.point.u)), root))
+        score, best = roots[-1][0], min(score for score, _ in roots)
+        if score > best or score < ROUNDED:
+            break
+        rough = root.position
+    return roots
 
 
 def _interpolated(

@@ -83,8 +83,8 @@ class CycleProblem(CycleRelatives):
         """Residual and derivatives by functions in Python: the length of the row of the phase condition, f and df/dx at the Gauss points."""
         r, core, field = self.rule, work.core, self.field
         points = self._at_gauss_points(r.values, x) if core is None else core.at_gauss_points(x)
-        places = mesh.places(widths, r.points) if field.forced else None
-        times = None if places is None else period * places
+        places = mesh.phases(widths, r.points, self.copies, self.rounds) if field.forced else None
+        times = None if places is None else period / self.rounds * places
         f, slope = field.with_slope(points, p) if times is None else (field(points, p, times), None)
         f = np.ascontiguousarray(f, dtype=float)
         derivative = field.jacobian if work.sparse is None else field.jacobian_entries
@@ -165,9 +165,9 @@ class CycleProblem(CycleRelatives):
 
     def _moved(self, points: np.ndarray, p: complex, places: np.ndarray, widths: np.ndarray) -> np.ndarray:
         """Period times width times f, of forced flows, as a function of the parameter alone."""
-        period = self.rounds * self.field.length_of_period(p)
-        f = self.field(points, p, period * places).reshape(self.intervals, self.rule.degree, self.node)
-        return period * widths[:, None, None] * f
+        forcing = self.field.length_of_period(p)
+        f = self.field(points, p, forcing * places).reshape(self.intervals, self.rule.degree, self.node)
+        return self.rounds * forcing * widths[:, None, None] * f
 
     # ------------------------------------------------------------------ what is known of a cycle
     def accuracy(self, u: np.ndarray, p: float) -> float:

@@ -49,6 +49,15 @@ def places(widths: np.ndarray, inside: np.ndarray) -> np.ndarray:
     return (begins[:, None] + widths[:, None] * inside).reshape(-1)
 
 
+def phases(widths: np.ndarray, inside: np.ndarray, copies: int, rounds: int) -> np.ndarray:
+    """Places at these parts of each interval of a mesh of equal copies, as times in one period of a forcing that goes round so often, shape (N len(inside),).
+
+    They are the same to the last bit in all copies, so that a cycle which repeats a shorter one solves the equations exactly as that does.
+    """
+    parts = copies if rounds % copies == 0 else 1
+    return np.tile(np.mod(rounds * places(widths[: len(widths) // parts], inside), 1.0), parts)
+
+
 def node_places(rule: Rule, widths: np.ndarray) -> np.ndarray:
     """Places of the nodes, the last one of each interval left out, in units of the period, shape (N m,)."""
     return places(widths, rule.nodes[:-1])
