@@ -6,9 +6,10 @@ which was small enough where they are; special points are located again.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import replace
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,6 +22,8 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from .half_branch import HalfBranch, Piece
 
+Start = TypeVar("Start")
+
 FAR = 1e-3  # of a typical size: from the same point on the mesh before
 
 
@@ -31,19 +34,84 @@ class Meshes:
     ----------
     engine_of : callable
         Engine and detector of a problem.
-    engine : Engine
+    engine, detector : Engine, Detector
         Of the first mesh.
+    vanishes : callable, optional
+        Whether the solutions of a half shrink to nothing at its end, where equations are singular on every mesh: it ends there.
     """
 
-    def __init__(self, engine_of: Callable[[Problem], tuple[Engine, Detector]], engine: Engine) -> None:
-        self.engine_of, self.engines = engine_of, [engine]
+    def __init__(
+        self,
+        engine_of: Callable[[Problem], tuple[Engine, Detector]],
+        engine: Engine,
+        detector: Detector,
+        vanishes: Callable[[HalfBranch], bool] = lambda half: False,
+    ) -> None:
+        self.engine_of, self.vanishes = engine_of, vanishes
+        self.detectors = {engine: detector}  # in order of the meshes
 
     def finer(self, engine: Engine) -> Engine:
         """The engine of the next mesh."""
-        place = self.engines.index(engine) + 1
-        if place == len(self.engines):
-            self.engines.append(self.engine_of(_adaptive(engine).refined())[0])
-        return self.engines[place]
+        engines = list(self.detectors)
+        if engine is engines[-1]:
+            finer, self.detectors[finer] = self.engine_of(_adaptive(engine).refined())
+            return finer
+        return engines[engines.index(engine) + 1]
+
+    def followed(
+        self,
+        engine: Engine,
+        start: Start,
+        halves: Callable[[Engine, Start, Container[str]], dict[str, HalfBranch]],
+        again: Callable[[Engine, Engine, Start], Start | None],
+        real: bool,
+    ) -> tuple[dict[str, HalfBranch], Engine, Start]:
+        """The halves of a branch, by the names of its sides, on one mesh, with the engine and the start of those that were followed last.
+
+        Parameters
+        ----------
+        engine, start
+            To begin with.
+        halves : callable
+            Follows the branch with an engine from a start, but for some of its sides.
+        again : callable
+            A side that cannot be read on the finer mesh of the other one, or comes to a mesh that is too coarse, is followed again: from an
+            engine, that of the finer mesh and a start to the start there; None where there is none.
+        real : bool
+            Whether the branch has positive margins.
+        """
+        known: dict[str, HalfBranch] = {}
+        while True:
+            found = {**known, **halves(engine, start, known)}
+            coarse = [half.engine for half in found.values() if half.status == Status.COARSE]
+            meshes = [half.engine for half in found.values()] + [self.finer(each) for each in coarse]
+            wanted = max(meshes, key=list(self.detectors).index)
+            level = {side: self._level(half, wanted, real) for side, half in found.items()}
+            known = {side: half for side, half in level.items() if half is not None}
+            begin = None if len(known) == len(found) else again(engine, wanted, start)
+            if begin is None:
+                whole = {side: known.get(side) or self.read(half, wanted) for side, half in found.items()}
+                return whole, engine, start
+            engine, start = wanted, begin
+
+    def _level(self, half: HalfBranch, wanted: Engine, real: bool) -> HalfBranch | None:
+        """A half on a finer mesh; None where it is to be followed on that, or has other special points there."""
+        if half.status == Status.COARSE:
+            return None
+        while half.engine is not wanted:
+            onward = self.onward(half, real)
+            if onward is None:
+                return None
+            half = onward[0]
+        return half
+
+    def moved(
+        self, engine: Engine, wanted: Engine, point: Solved | None, solve: bool = True
+    ) -> Solved | None:
+        """How a point of a mesh reads on one of the finer ones; None where it cannot be solved there."""
+        while point is not None and engine is not wanted:
+            point, engine = self.image(point, engine, solve), self.finer(engine)
+        return point
 
     def image(self, point: Solved, engine: Engine, solve: bool = True) -> Solved | None:
         """How a point of a mesh reads on the next one; None where it cannot be solved there."""
@@ -70,10 +138,10 @@ class Meshes:
             return None  # a mesh with other intervals altogether
         finer = self.finer(engine)
         found = self.read(half, finer)
-        detector = self.engine_of(finer.problem)[1]
+        detector = self.detectors[finer]
         ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
         same = ended and _goes_on(found, real) and _located_again(found, detector, real)
-        detector.parts = self.engine_of(engine.problem)[1].parts
+        detector.parts = self.detectors[engine].parts
 
         def image(point: Solved) -> Solved:
             return self.image(point, engine) or _read(point, engine, finer)

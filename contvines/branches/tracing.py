@@ -81,9 +81,12 @@ def trace_half(
         if _too_coarse(engine, chunk) or (
             lag is not None and lag.longest < SHORTEST * engine.settings.first_step
         ):
+            whole = _ended(half, chunk)
+            if meshes is not None and meshes.vanishes(whole):
+                return replace(whole, status=Status.STEP_TOO_SMALL)
             onward = None if meshes is None else meshes.onward(half, real)
             if onward is None:
-                return _ended(half, chunk)
+                return whole
             half, detector, image = onward
             engine, wish = half.engine, Finer(half.engine, image)
             continue
@@ -143,10 +146,10 @@ def trace_half(
 
 def _ended(half: HalfBranch, chunk: Chunk) -> HalfBranch:
     """A half that ends where its mesh is too coarse."""
-    engine, half.status = half.engine, Status.COARSE
+    engine = half.engine
     spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
-    half.pieces.append(Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins))
-    return half
+    last = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins)
+    return replace(half, pieces=[*half.pieces, last], status=Status.COARSE)
 
 
 def _repeats(engine: Engine, event: Located) -> bool:

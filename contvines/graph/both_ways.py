@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import replace
 
 from ..branches.ending import Ending, Reason
@@ -21,30 +22,37 @@ def followed(
 ) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
     """The whole branch in order, why it ends at either side, and whether it is closed.
 
-    Where what was found on a coarse mesh cannot be read on a finer one, the branch is followed again from its start. What is known of the
-    pending branch is on the mesh of the result then.
+    Where what was found on a coarse mesh cannot be read on a finer one, that side of the branch is followed again from its start. What is known
+    of the pending branch is on the mesh of the result then.
     """
-    engine, _ = run.engine(pending.problem)
-    meshes = Meshes(run.engine, engine)
-    while True:
-        halves = _halves(run, meshes, engine, pending, first, real, label)
-        finest = max((half.engine for half in halves.values()), key=meshes.engines.index)
-        coarse = [half.engine for half in halves.values() if half.status == Status.COARSE]
-        wanted = max(map(meshes.finer, coarse), key=meshes.engines.index) if coarse else finest
-        level = None if coarse else _level(meshes, halves, finest, real)
-        begin = None if level is not None else _moved(meshes, engine, wanted, pending, first)
-        if begin is None:
-            level = level or {side: meshes.read(half, finest) for side, half in halves.items()}
-            first = _moved(meshes, engine, finest, pending, first, solve=False) or first
-            return _in_order(pending, level, first)
-        run.serial += 1
-        engine, first = wanted, begin
+    engine, detector = run.engine(pending.problem)
+    meshes = Meshes(run.engine, engine, detector)
+
+    def halves(engine: Engine, first: Solved, known: Container[str]) -> dict[str, HalfBranch]:
+        return _halves(run, meshes, engine, pending, first, real, label, known)
+
+    def again(engine: Engine, wanted: Engine, first: Solved) -> Solved | None:
+        begin = _moved(meshes, engine, wanted, pending, first)
+        run.serial += begin is not None
+        return begin
+
+    found, engine, first = meshes.followed(engine, first, halves, again, real)
+    finest = next(iter(found.values())).engine
+    first = _moved(meshes, engine, finest, pending, first, solve=False) or first
+    return _in_order(pending, found, first)
 
 
 def _halves(
-    run: Run, meshes: Meshes, engine: Engine, pending: Pending, first: Solved, real: bool, label: str
+    run: Run,
+    meshes: Meshes,
+    engine: Engine,
+    pending: Pending,
+    first: Solved,
+    real: bool,
+    label: str,
+    known: Container[str],
 ) -> dict[str, HalfBranch]:
-    """The parts of a branch on both sides of its first point, or on one of them; the first alone where that closes."""
+    """The parts of a branch on both sides of its first point, or on one of them, but for those that are known; the first alone where that closes."""
 
     def notice(points: int, value: float) -> None:
         run.tell(f"{label}: {points} points", value)
@@ -64,7 +72,9 @@ def _halves(
         }
     halves: dict[str, HalfBranch] = {}
     for side, start in starts.items():
-        detector, place = run.engine(engine.problem)[1], f"{run.serial}/{side}"
+        if side in known:
+            continue
+        detector, place = meshes.detectors[engine], f"{run.serial}/{side}"
         half = halves[side] = trace_half(
             engine, start, detector, run.journal, place, real, pending.first_step, notice, origin, meshes
         )
@@ -77,44 +87,19 @@ def _turned(point: Solved) -> Solved:
     return point._replace(tangent=-point.tangent, sign=-point.sign)
 
 
-def _level(
-    meshes: Meshes, halves: dict[str, HalfBranch], finest: Engine, real: bool
-) -> dict[str, HalfBranch] | None:
-    """All halves on the finest mesh; None where one has other special points there."""
-    found = {}
-    for side, half in halves.items():
-        while half.engine is not finest:
-            onward = meshes.onward(half, real)
-            if onward is None:
-                return None
-            half = onward[0]
-        found[side] = half
-    return found
-
-
 def _moved(
     meshes: Meshes, engine: Engine, wanted: Engine, pending: Pending, first: Solved, solve: bool = True
 ) -> Solved | None:
     """The first point on a finer mesh, and the pending branch, too; None, and all as it was, where the point cannot be solved there."""
-    known: dict[str, Solved | None] = {
-        "first": first,
-        "origin": pending.origin,
-        "ahead": pending.ahead,
-        "back": pending.back,
-    }
-    while engine is not wanted:
-        for name, point in known.items():
-            if point is not None:
-                known[name] = meshes.image(point, engine, solve and name != "origin")
-        if known["first"] is None:
-            return None
-        engine = meshes.finer(engine)
-    first_again = known.pop("first")
-    assert first_again is not None
-    pending.problem, pending.u = engine.problem, first_again.u
-    pending.tangent = first_again.tangent if pending.tangent is not None else None
-    pending.origin, pending.ahead, pending.back = known["origin"], known["ahead"], known["back"]
-    return first_again
+    begin = meshes.moved(engine, wanted, first, solve)
+    if begin is None:
+        return None
+    pending.problem, pending.u = wanted.problem, begin.u
+    pending.tangent = begin.tangent if pending.tangent is not None else None
+    pending.origin = meshes.moved(engine, wanted, pending.origin, solve=False)
+    pending.ahead = meshes.moved(engine, wanted, pending.ahead, solve)
+    pending.back = meshes.moved(engine, wanted, pending.back, solve)
+    return begin
 
 
 def _in_order(

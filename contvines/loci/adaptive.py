@@ -134,6 +134,7 @@ class AdaptiveLocus(LocusProblem):
     def refined(self) -> AdaptiveLocus:
         """The same locus with twice as many intervals."""
         finer = self.mesh.refined()
+        position = float(self.works[0].reference[0]) if self.works else self.reference
         return AdaptiveLocus(
             finer,
             self.kind,
@@ -141,7 +142,7 @@ class AdaptiveLocus(LocusProblem):
             finer.period_place if self.condition == PERIOD else self.index,
             self.bounds,
             None,
-            self.reference,
+            position,
             self.masked,
             self.unit,
         )

@@ -8,18 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..bifurcation.detect import Detector
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME, checked
-from ..bifurcation.located import Located, Role
 from ..branches.assembly import make_branch
 from ..branches.branch import Branch
 from ..branches.ending import Ending
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
-from ..branches.tracing import trace_half
 from ..continuation.chunk import Status
-from ..continuation.engine import Solved
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
 from ..interrupts import listening
@@ -27,9 +23,8 @@ from ..journal import NullJournal
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
-from ..shared.number_text import number_text
-from .adaptive import AdaptiveLocus
-from .codimension_two import becomes, beginning, vanishing
+from .both_sides import BothSides
+from .ends import becoming, locus_of, sentence
 from .homoclinic import homoclinic_of
 from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
@@ -44,16 +39,6 @@ from .starts import begin, first_point, regular_side
 
 if TYPE_CHECKING:
     from ..journal import Journal
-
-NOTHING = np.zeros(0), 0.0, 0.0, 0.0  # of a point of which no more is known
-#: how a half may end where equations become singular
-SINGULAR = (
-    Status.STEP_TOO_SMALL,
-    Status.NOT_EVALUABLE,
-    Status.CREEPING,
-    Status.BORDER,
-    Status.COARSE,
-)
 
 
 @hinting
@@ -190,10 +175,6 @@ def checked_ends(problem: Problem, over: str, within: tuple[float, float]) -> No
         problem.check_value(over, value)
 
 
-class TooCoarse(Exception):
-    """A locus asks for more intervals."""
-
-
 def trace_locus(
     problem: LocusProblem,
     u: np.ndarray,
@@ -206,66 +187,35 @@ def trace_locus(
     virtual: bool = False,
     journal: Journal | None = None,
     progress: Callable[[str, int, float], None] | None = None,
-    finer: int = 0,
 ) -> Locus | None:
-    """The locus through a special point, both ways; None if its equations do not converge there.
-
-    Where a mesh is too coarse all is done again with twice as many intervals, `finer` times so far.
-    """
-    name = f"locus/{label}/finer {finer}" if finer else f"locus/{label}"
+    """The locus through a special point, both ways; None if its equations do not converge there."""
     engine, start = first_point(problem, u, p, q, within, settings)
     if start is None:
         return None
-    detector = Detector(engine)
     journal = NullJournal() if journal is None else journal
-    own = int(problem.base.n_margins)
     margins = engine.margins(start.row)
-    real = not np.any(margins[:own] < -VANISHING.margin)
+    real = not np.any(margins[: int(problem.base.n_margins)] < -VANISHING.margin)
+    if start.tangent[-1] < 0.0:
+        start = start._replace(tangent=-start.tangent, sign=-start.sign)
 
     def notice(points: int, value: float) -> None:
         if progress is not None:
             progress(label, points, value)
 
-    def go(first: Solved, side: str) -> tuple[HalfBranch, np.ndarray, str, PlanePoint | None]:
-        now, half = real, None
-        flags = np.zeros(0, dtype=bool)
-        for part in range(20):
-            more = trace_half(engine, first, detector, journal, f"{name}/{side}/{part}", now, None, notice)
-            if more.status == Status.COARSE and _becoming(problem, more, within)[1] is None:
-                raise TooCoarse
-            flags = np.append(flags, np.full(len(more) - (0 if half is None else 1), now))
-            half = more if half is None else half.extended(more, skip=1)
-            border = _border(more)
-            if border is None or not virtual or problem.margin_kind(border.index) in ("end", "resonance"):
-                break
-            now, first = not now, border.point
-        assert half is not None
-        became, end = _becoming(problem, half, within)
-        return half, flags, became or _sentence(problem, half), end
-
-    if start.tangent[-1] < 0.0:
-        start = start._replace(tangent=-start.tangent, sign=-start.sign)
-    first = None
-    try:
-        ahead, ahead_real, ahead_ended, last = go(start, "ahead")
-        if ahead.status == Status.CLOSED:
-            whole, flags, ended = ahead, ahead_real, (ahead_ended, ahead_ended)
-        else:
-            turned = start._replace(tangent=-start.tangent, sign=-start.sign)
-            back, back_real, back_ended, first = go(turned, "back")
-            whole = back.reversed().extended(ahead, skip=1)
-            flags = np.append(back_real[::-1], ahead_real[1:])
-            ended = (back_ended, ahead_ended)
-    except TooCoarse:
-        assert isinstance(problem, AdaptiveLocus)
-        u, problem = problem.mesh.halved(u), problem.refined()
-        return trace_locus(
-            problem, u, p, q, within, settings, label, seed, virtual, journal, progress, finer + 1
-        )
-    endings = (Ending.said(ended[0]), Ending.said(ended[1]))
+    sides = BothSides(engine, within, settings, f"locus/{label}", journal, notice, real, virtual)
+    found = sides.followed(start)
+    whole = ahead = found["ahead"]
+    back = ahead if ahead.status == Status.CLOSED else found["back"]
+    flags = sides.real["ahead"]
+    if back is not ahead:
+        whole = back.reversed().extended(ahead, skip=1)
+        flags = np.append(sides.real["back"][::-1], flags[1:])
+    problem = locus_of(whole)
+    first, last = (_end(half, within) for half in (back, ahead))
+    endings = (first[0], last[0])
     branch = make_branch(label, whole, real, endings, ahead.status == Status.CLOSED, seed)
     branch.description["unfolded"] = problem.unfolded
-    for index, end in ((0, first), (-1, last)):
+    for index, (_, end) in ((0, first), (-1, last)):
         if end is not None:
             _put_at_end(problem, branch, index, end)
     if problem.condition == BRANCH and _unfolds(problem, branch.points):
@@ -276,15 +226,20 @@ def trace_locus(
         if e.kind == "fold"
     )
     side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
-    limit = _limit(problem, start) if problem.condition == PERIOD else ""
+    limit = _limit(problem, *ahead.at(0)[:2]) if problem.condition == PERIOD else ""
     about = label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side
     return Locus(*about, limit=limit)
 
 
-def _limit(problem: LocusProblem, start: Solved) -> str:
+def _end(half: HalfBranch, within: tuple[float, float]) -> tuple[Ending, PlanePoint | None]:
+    became, point = becoming(half, within)
+    return Ending.said(became or sentence(half)), point
+
+
+def _limit(problem: LocusProblem, u: np.ndarray, q: float) -> str:
     """What the cycles of a long period stand for where their locus begins."""
-    u, p = problem.split(start.u)
-    found = limit_of(on_mesh(problem.at(start.p)), u, float(p))
+    inner, p = problem.split(u)
+    found = limit_of(on_mesh(problem.at(q)), inner, float(p))
     return "" if found is None else found.limit
 
 
@@ -302,64 +257,3 @@ def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoi
 
 def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:
     return bool((np.abs(points[:, problem.size + 1]) > VANISHING.singular).any())
-
-
-def _border(half: HalfBranch) -> Located | None:
-    if half.status != Status.BORDER or not half.events:
-        return None
-    last = half.events[-1][1]
-    return last if last.role is Role.BORDER else None
-
-
-def _becoming(
-    problem: LocusProblem, half: HalfBranch, within: tuple[float, float]
-) -> tuple[str, PlanePoint | None]:
-    """What the motion becomes where its equations become singular, a shorter one run twice, or a symmetric one, and the point of
-    codimension two at which it does; empty where neither."""
-    if half.status not in SINGULAR:
-        return "", None
-    points = [Solved(*half.at(i), *NOTHING) for i in range(len(half))]
-    (u, p), q = problem.split(points[-1].u), points[-1].p
-    if isinstance(problem.base, Adaptive):
-        end, what = vanishing(problem, points, within), "an equilibrium"
-        if end is None:
-            return "", None
-    else:
-        met = becomes(problem, u, float(p), q)
-        if met is None:
-            return "", None
-        what = "a shorter one, run twice" if met.kind == "period-doubling" else "symmetric"
-        end = beginning(problem, points[-1], within)
-    p, q, digits = (float(p), q, 7) if end is None else (*end.value, 10)
-    return f"the motion becomes {what}, at {_place(problem, half, p, q, digits)}", end
-
-
-def _sentence(problem: LocusProblem, half: HalfBranch) -> str:
-    """Why this side of the locus ends."""
-    border = _border(half)
-    if half.events and half.events[-1][1].role is Role.MEETING:
-        met, at = half.events[-1][1], half.events[-1][1].point
-        what = "an equilibrium" if met.kind == "hopf" else "a cycle of half the period"
-        return f"the cycle becomes {what}, at {_place(problem, half, float(problem.split(at.u)[1]), at.p)}"
-    if border is None:
-        return half.status.sentence(problem.over, half.end)
-    kind, p, q = problem.margin_kind(border.index), float(problem.split(border.point.u)[1]), border.point.p
-    if problem.condition == PERIOD and kind == "homoclinic":
-        return (
-            f"a period of {problem.reference:.6g} is too short at {_place(problem, half, p, q, 6)}: "
-            "the cycle comes no nearer to an equilibrium than 3 % of its size; give a longer period="
-        )
-    place = _place(problem, half, p, q)
-    if kind == "end":
-        return f"reaches the end of the interval of {problem.inner}, {place}"
-    if kind == "resonance":
-        return f"the pair of multipliers becomes real at {place}"
-    return f"reaches a border ({kind}) at {place}"
-
-
-def _place(problem: LocusProblem, half: HalfBranch, p: float, q: float, digits: int = 10) -> str:
-    """Both parameters; what is rounding beside their largest values along the locus is 0."""
-    points = [half.at(i) for i in range(len(half))]
-    largest = np.abs([(float(problem.split(u)[1]), value) for u, value, *_ in points]).max(axis=0)
-    at = [number_text(value, digits, unit) for value, unit in zip((p, q), largest, strict=True)]
-    return f"{problem.inner} = {at[0]}, {problem.over} = {at[1]}"
