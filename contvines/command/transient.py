@@ -190,7 +190,7 @@ def _started(study: Study, begin: str | None, over: str | None) -> Told:
 
 
 def _recorded(study: Study, path: Path, tail: str | None) -> Told:
-    from orbits.design.transients import recorded
+    from orbits.design.record import recorded
 
     model, params = study.model, study.model.vector(study.loose)
     scales = Scales(model, params)

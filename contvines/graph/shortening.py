@@ -43,16 +43,16 @@ def told_apart(words: Iterable[str], limit: int = 24) -> dict[str, str]:
         limits.update((word, 2 * limits[word]) for word in alike)
 
 
-def short_text(text: str, limit: int = 100) -> str:
-    """A text on one line of at most `limit` characters, cut between words."""
-    return textwrap.shorten(text, limit, placeholder=" ...", break_on_hyphens=False)
+def short_text(text: str) -> str:
+    """A text on one line of at most 100 characters, cut between words."""
+    return textwrap.shorten(text, 100, placeholder=" ...", break_on_hyphens=False)
 
 
-def motion_name(description: Mapping[str, Any], limit: int = 24) -> str:
+def motion_name(description: Mapping[str, Any]) -> str:
     """How tables and pictures call a motion: its word, or, where nothing happens on it, what its problem calls that ("stuck", "no events")."""
-    return short_word(str(description.get("word") or description.get("name", "")), limit)
+    return short_word(str(description.get("word") or description.get("name", "")))
 
 
-def short_words(text: str, limit: int = 24) -> str:
+def short_words(text: str) -> str:
     """A sentence with its long words shortened."""
-    return " ".join(short_word(part, limit) for part in text.split(" "))
+    return " ".join(short_word(part) for part in text.split(" "))

@@ -31,6 +31,7 @@ GAP = 3.0  # points between neighbouring texts
 EDGE = 1.5  # points between a text and the frame
 AS_NEAR = 1.25  # times its distance from its own mark: a text that near to another one could be either's
 PLACES = np.linspace(0.0, 1.0, 24)[:, None]  # along a leader, where it may pass through a box
+NEAR = 9.0  # points on the page between points that share a label
 CROWD = 9  # with more than so many further names at one place none of them says anything
 
 
@@ -135,15 +136,15 @@ def place_labels(
     return written
 
 
-def grouped(axes: Axes, labels: Sequence[Label], near: float = 9.0, named: int = 3) -> list[Label]:
-    """One label for those that lie within `near` points of one another on the page.
+def grouped(axes: Axes, labels: Sequence[Label], named: int = 3) -> list[Label]:
+    """One label for those that lie within `NEAR` points of one another on the page.
 
     Above `named` names, "+n" stands for n more; where very many lie together, their number stands for all.
     """
     spots = axes.transData.transform(np.array([[entry.x, entry.y] for entry in labels]).reshape(-1, 2))
     groups: list[list[int]] = []
     for i, point in enumerate(spots / pixels(axes)):
-        beside = (g for g in groups if np.hypot(*(spots[g[0]] / pixels(axes) - point)) < near)
+        beside = (g for g in groups if np.hypot(*(spots[g[0]] / pixels(axes) - point)) < NEAR)
         group = None if labels[i].kept else next(beside, None)
         groups.append([i]) if group is None else group.append(i)
     found = []

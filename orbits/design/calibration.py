@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.design.columns import read_columns
 from orbits.design.estimates import Calibration, fit
 from orbits.machines.base import ParameterError
 from orbits.machines.path import along
@@ -29,9 +28,6 @@ STARTS = 5  # of a sweep, beside rest
 TRIED = 6  # values of the parameters with which they are tried
 ASTRAY = 0.1  # of the mean time between impacts: data that scatter more are not described by the model
 SETTLED = 400  # forcing periods before a steady response is read
-
-
-__all__ = ["Calibration", "fit", "from_impacts", "from_sweep", "read_columns"]
 
 
 def from_impacts(

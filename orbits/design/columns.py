@@ -10,8 +10,8 @@ import numpy as np
 from orbits.machines.base import ParameterError
 
 
-def read_columns(path: str | Path, columns: int) -> np.ndarray:
-    """A CSV of numbers, shape (n, columns); one line of heads at its top, empty lines and lines that begin with # are passed over.
+def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
+    """The heads of a CSV, empty where it has none, and its numbers, shape (n, columns); empty lines and lines that begin with # are passed over.
 
     Cells may be parted by commas, semicolons (then with a decimal comma, too) or tabs.
 
@@ -20,11 +20,6 @@ def read_columns(path: str | Path, columns: int) -> np.ndarray:
     ParameterError
         With the row that cannot be read.
     """
-    return read_table(path, columns)[1]
-
-
-def read_table(path: str | Path, columns: int) -> tuple[list[str], np.ndarray]:
-    """The heads of a CSV, empty where it has none, and its numbers; see `read_columns`."""
     path = Path(path)
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from orbits.contacts.letters import HIT
-from orbits.design.settling import BAND, settled
+from orbits.design.settling import settled
 from orbits.flows.page.loads import Impacts, friction_work
 from orbits.flows.page.stepper import TWO_PI
 from orbits.flows.protocol import SimulationError
@@ -171,6 +171,3 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
         np.cumsum(parts[:, 1]),
         np.cumsum(parts[:, 2]),
     )
-
-
-__all__ = ["BAND", "PageTransient", "page_transient"]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.contacts.letters import HIT
-from orbits.design.record import recorded
+from orbits.design.record import oscillator_numbers, recorded
 from orbits.design.references import compliance, tuning
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.protocol import SimulationError
@@ -151,9 +151,7 @@ def random_base(
     ParameterError
         If the machine has no oscillator, or the numbers cannot be.
     """
-    numbers = model.named(params)
-    if "damping" not in numbers:
-        raise ParameterError(f"the machine {model.name!r} has no oscillator on a base")
+    numbers = oscillator_numbers(model, params)
     eps, rate = numbers["mass_ratio"], numbers["mass_ratio"] * numbers["damping"]
     _check(records, rate)
     count, omega = psd.grid(periods)

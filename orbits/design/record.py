@@ -24,6 +24,7 @@ from orbits.settings import EVENTS, REPLAYING, SIMULATING
 
 if TYPE_CHECKING:
     from orbits.machines.base import Model
+    from orbits.machines.varying import Varying
 
 MOST_EVENTS = 20_000  # in a hundredth of the natural period
 SLICE = 20_000  # rows of one call of the native core
@@ -77,6 +78,14 @@ class Response(Dissipation):
         return float(np.abs(self.bare).max())
 
 
+def oscillator_numbers(model: Varying, params: np.ndarray) -> dict[str, float]:
+    """The parameters of a machine with an oscillator by name; a `ParameterError` for any other machine."""
+    numbers = model.named(params)
+    if "damping" not in numbers:
+        raise ParameterError(f"the machine {model.name!r} has no oscillator on a base")
+    return numbers
+
+
 def recorded(
     model: Model, params: np.ndarray, times: np.ndarray, acceleration: np.ndarray, tail: float = 0.0
 ) -> Response:
@@ -109,9 +118,7 @@ def recorded(
     if np.any(np.diff(times) <= 0.0):
         at = int(np.flatnonzero(np.diff(times) <= 0.0)[0]) + 1
         raise ParameterError(f"the record's times do not grow at row {at}: sort them, one row per instant")
-    numbers = model.named(params)
-    if "damping" not in numbers:
-        raise ParameterError(f"the machine {model.name!r} has no oscillator")
+    numbers = oscillator_numbers(model, params)
     if numbers.get("slope", 0.0) != 0.0:
         raise ParameterError(
             "a recorded motion of the base is followed for level cavities only: use slope = 0"

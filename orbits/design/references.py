@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import root_scalar
 
+from contvines.shared.floating_point import ROUNDED
 from orbits.settings import DESIGNING
 
 if TYPE_CHECKING:
@@ -60,8 +62,14 @@ def bare(
         G, lambda, eps and chi, as in `orbits.Coupled`.
     """
     omega, rate = np.asarray(frequency, dtype=float), mass_ratio * damping
-    force = mass_ratio * forcing * (1.0 + 1j * excitation * rate * omega)
-    return np.abs(force * compliance(omega, rate)[0])
+    return np.abs(_force(omega, forcing, rate, mass_ratio, excitation) * compliance(omega, rate)[0])
+
+
+def _force(
+    omega: np.ndarray, forcing: float, rate: float, mass_ratio: float, excitation: float
+) -> np.ndarray:
+    """e + chi eps lambda e' of `bare`, complex."""
+    return mass_ratio * forcing * (1.0 + 1j * excitation * rate * omega)
 
 
 def tuning(mass_ratio: float) -> tuple[float, float]:
@@ -103,8 +111,8 @@ def tuned(
         Den Hartog's (`tuning`) by default.
     """
     omega, rate = np.asarray(frequency, dtype=float), mass_ratio * damping
-    force = mass_ratio * forcing * (1.0 + 1j * excitation * rate * omega)
-    return np.abs(force * compliance(omega, rate, mass_ratio, tuned_to or tuning(mass_ratio))[0])
+    carrying, _ = compliance(omega, rate, mass_ratio, tuned_to or tuning(mass_ratio))
+    return np.abs(_force(omega, forcing, rate, mass_ratio, excitation) * carrying)
 
 
 def friction_damper(
@@ -123,7 +131,7 @@ def friction_damper(
     in Den Hartog's one-term solution).
     """
     omega = np.atleast_1d(np.asarray(frequency, dtype=float))
-    force = np.abs(mass_ratio * forcing * (1.0 + 1j * excitation * mass_ratio * damping * omega))
+    force = np.abs(_force(omega, forcing, mass_ratio * damping, mass_ratio, excitation))
     drag = mass_ratio * damping * omega
     stuck = force / np.abs(1.0 - (1.0 + mass_ratio) * omega**2 + 1j * drag)
     found = stuck.copy()
@@ -134,7 +142,7 @@ def friction_damper(
 
 
 def _sliding(omega: float, force: float, drag: float, eps: float, own: float) -> float:
-    """The amplitude q that balances `force` while the mass slides: bisection on the largest root."""
+    """The amplitude q that balances `force` while the mass slides."""
 
     def missing(q: float) -> float:
         share = min(own / (q * omega**2), 1.0)
@@ -148,9 +156,7 @@ def _sliding(omega: float, force: float, drag: float, eps: float, own: float) ->
         high *= 2.0
         if high > DESIGNING.endless:
             return math.inf
-    while low < (middle := 0.5 * (low + high)) < high:
-        low, high = (middle, high) if missing(middle) < 0.0 else (low, middle)
-    return high
+    return float(root_scalar(missing, bracket=(low, high), xtol=ROUNDED).root)
 
 
 def reference(kind: str, model: Model, params: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from orbits.design.coupled_page import coupled_page
 from orbits.design.page_transients import page_transient
-from orbits.design.record import Dissipation
+from orbits.design.record import Dissipation, oscillator_numbers
 from orbits.design.settling import settled
 from orbits.machines.base import ParameterError
 from orbits.machines.physical.machine import Physical
@@ -72,9 +72,7 @@ def start_up(
     ParameterError
         If the machine has no oscillator, or the number of periods will not do.
     """
-    numbers = model.named(params)
-    if "damping" not in numbers:
-        raise ParameterError(f"the machine {model.name!r} has no oscillator that could start up")
+    numbers = oscillator_numbers(model, params)
     omega = float(model.phase_speed(params))
     rate = 0.5 * numbers["mass_ratio"] * numbers["damping"]
     if periods is None:

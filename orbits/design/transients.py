@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.design.record import Dissipation, Response, recorded
+from orbits.design.record import Dissipation, oscillator_numbers
 from orbits.machines.base import ParameterError
 from orbits.numbers import SMALLEST
 from orbits.settings import DESIGNING
@@ -67,9 +67,7 @@ def free_decay(model: Model, params: np.ndarray, displacement: float) -> Decay:
     ParameterError
         If the machine has no oscillator, or nothing moves.
     """
-    numbers = model.named(params)
-    if "damping" not in numbers:
-        raise ParameterError(f"the machine {model.name!r} has no oscillator whose motion could decay")
+    numbers = oscillator_numbers(model, params)
     if not (math.isfinite(displacement) and displacement != 0.0):
         raise ParameterError(f"displacement = {displacement!r}: give a number other than 0")
     numbers |= {"forcing": 0.0, "frequency": 1.0}
@@ -140,6 +138,3 @@ def _when(times: np.ndarray, energy: np.ndarray, level: float) -> float:
         return float(times[0])
     share = math.log(energy[i - 1] / level) / math.log(energy[i - 1] / max(energy[i], SMALLEST))
     return float(times[i - 1] + share * (times[i] - times[i - 1]))
-
-
-__all__ = ["Decay", "Response", "free_decay", "recorded", "taken_share"]

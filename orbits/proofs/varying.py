@@ -30,11 +30,6 @@ class Varying:
     name: str
     numbers: Mapping[str, tuple[str, int | float]]
 
-    @classmethod
-    def single(cls, name: str) -> Varying:
-        """A parameter that is one of the machine's numbers itself."""
-        return cls(name, {name: ("1", 1)})
-
     @overload
     def at(self, value: arb) -> dict[str, arb]: ...
     @overload

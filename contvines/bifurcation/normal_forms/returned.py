@@ -11,7 +11,7 @@ from .coefficients import Forms
 from .taylor import Line, along_line
 
 
-def forms_at(problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> Forms:
+def forms_at(problem: Problem, u: np.ndarray, p: float) -> Forms:
     """Normal forms of a problem at a point: of cycles of flows those of the return map.
 
     Raises
@@ -20,8 +20,8 @@ def forms_at(problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> 
         If the equations cannot be evaluated there.
     """
     if isinstance(problem, Returning):
-        return ReturnForms(problem, u, p, rough)
-    return Forms(problem, u, p, rough)
+        return ReturnForms(problem, u, p)
+    return Forms(problem, u, p)
 
 
 class ReturnForms(Forms):
@@ -30,8 +30,8 @@ class ReturnForms(Forms):
     Critical vectors have unit length as states.
     """
 
-    def __init__(self, problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> None:
-        self.problem, self.p, self.rough = problem, float(p), rough
+    def __init__(self, problem: Problem, u: np.ndarray, p: float) -> None:
+        self.problem, self.p, self.rough = problem, float(p), False
         assert isinstance(problem, Returning)
         self.returns = problem.return_map(u, p)
         self.n = self.returns.basis.shape[1]

@@ -8,7 +8,8 @@ from scipy.linalg import expm
 from contvines.core.library import native
 from orbits import Absorber, Coupled
 from orbits.design import record
-from orbits.design.transients import free_decay, recorded, taken_share
+from orbits.design.record import recorded
+from orbits.design.transients import free_decay, taken_share
 from orbits.machines.base import ParameterError
 
 MACHINE = Coupled(restitution=0.6, friction=0.1, gravity=0.25, mass_ratio=0.02, damping=1.5, forcing=0.0)
@@ -48,7 +49,7 @@ def test_a_free_decay_on_a_slope_is_that_of_newton_s_laws():
     def wall(t, y):
         return 1.0 - abs(y[0] - y[1])
 
-    wall.terminal, wall.direction = True, -1
+    wall.terminal, wall.direction = True, -1  # pyright: ignore[reportFunctionMemberAccess]
     y, t, end = np.array([3.0, 3.0, 0.0, 0.0, 0.0]), 0.0, 4.0 * np.pi
     while t < end:
         run = solve_ivp(laws, (t, end), y, method="DOP853", events=wall, rtol=1e-12, atol=1e-13)
@@ -62,7 +63,7 @@ def test_a_free_decay_on_a_slope_is_that_of_newton_s_laws():
         1.0 - left - y[4] / 4.5, abs=1e-9
     )
     with pytest.raises(ParameterError, match="the slow flow is that of level cavities"):
-        machine.orbit_near(None)
+        machine.orbit_near(None)  # pyright: ignore[reportArgumentType]
 
 
 def test_a_recorded_motion_of_the_bare_oscillator():
