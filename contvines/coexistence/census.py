@@ -10,7 +10,8 @@ import numpy as np
 
 from ..graph.attractor import Attractor
 from ..graph.run import Run
-from .population import Motion, Population
+from ..shared.motions import Motion
+from .population import Population
 
 if TYPE_CHECKING:
     from ..journal import Journal
@@ -89,7 +90,7 @@ def _settled(
 
 
 def attractors_of(
-    motions: Sequence[Motion], index: np.ndarray, mirrored: np.ndarray, p: float
+    motions: Sequence[Motion[Problem]], index: np.ndarray, mirrored: np.ndarray, p: float
 ) -> list[Attractor]:
     """What starts have settled on, with shares of them; see `contvines.coexistence.population`."""
     return [

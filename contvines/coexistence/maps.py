@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..flows.settings import FlowSettings
+from ..problems.starts_in_box import StartsInBox
 from ..shared.floating_point import TINY
+from ..shared.motions import Motion, wandering
 from .settings import MAPS
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ TRANSIENTS = (200, 800, 3200)  # iterations, each for those that do not recur be
 LONGEST = 64  # of the cycles looked for
 GROWTH = 4000  # iterations for a Lyapunov exponent
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
-SIGMAS = 3.0
 EMBEDDED, EMBEDDED_IN = (
     6,
     4000,
@@ -30,21 +30,7 @@ NEWTON, FROM_GUESS = 12, 0.05  # steps, and how far they may lead, relative to t
 ANYWHERE = 2.0  # likewise, where there is but a start
 
 
-@dataclass(frozen=True, eq=False)
-class Cycle:
-    """What some starts of a map settle on; a `contvines.coexistence.population.Motion`."""
-
-    kind: str
-    word: str = ""
-    periods: int = 0
-    problem: Problem | None = field(default=None, repr=False)
-    u: np.ndarray | None = field(default=None, repr=False)
-    exponent: float = float("nan")
-    error: float = float("nan")
-    state: np.ndarray | None = field(default=None, repr=False)
-
-
-class MapPopulation:
+class MapPopulation(StartsInBox):
     """Starts in a box of the map's states.
 
     Parameters
@@ -54,54 +40,28 @@ class MapPopulation:
         One pair per state; by default the cycle's own range, widened by its size on every side.
     """
 
+    across = 200  # starts across and up in a picture of basins where no number is given
+    brief = BRIEF
+
     def __init__(self, problem: MapProblem, box: Sequence[tuple[float, float]] | None = None) -> None:
-        self.problem, self.parameter = problem, problem.parameter
-        points = problem.u0.reshape(-1, problem.node)
-        if box is None:
-            reach = np.maximum(np.ptp(points, axis=0), np.maximum(1.0, np.abs(points).max(axis=0)))
-            self._box = np.column_stack([points.min(axis=0) - reach, points.max(axis=0) + reach])
-        else:
-            self._box = np.array(box, dtype=float).reshape(-1, 2)
-            if self._box.shape != (problem.node, 2) or not np.all(self._box[:, 0] < self._box[:, 1]):
-                raise ValueError(
-                    f"box = {box!r}: give {problem.node} pairs (low, high) with low < high, one per state"
-                )
+        self.problem = problem
+        super().__init__(problem.name, problem.parameter, box, problem.u0.reshape(-1, problem.node), 1.0)
         self.size = float(np.ptp(self._box, axis=1).max())
-        self.work = 0.0
-        """Steps of single points so far, those that solve for cycles included."""
-
-    @property
-    def about(self) -> dict[str, Any]:
-        """The map's name."""
-        return {"name": self.problem.name}
-
-    across = 200
-    """Starts across and up in a picture of basins where no number is given."""
-    price = 1.0
-
-    @property
-    def brief(self) -> tuple[int, int]:
-        """Values, and starts at each, of a brief look."""
-        return BRIEF
 
     @property
     def names(self) -> tuple[str, ...]:
         """x0, x1, ..."""
-        return tuple(f"x{j}" for j in range(self.problem.node))
-
-    def box(self, p: float) -> np.ndarray:
-        """Ranges of the starts, shape (d, 2)."""
-        return self._box
+        return tuple(f"x{j}" for j in range(self.node))
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
         """Low-discrepancy starts (Sobol, scrambled by the seed), shape (count, d)."""
         from scipy.stats import qmc
 
-        draw = qmc.Sobol(self.problem.node, scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
+        draw = qmc.Sobol(self.node, scramble=True, seed=np.random.default_rng(seed))  # pyright: ignore[reportCallIssue]
         points = draw.random_base2(int(np.ceil(np.log2(max(count, 2)))))[:count]
         return self._box[:, 0] + points * np.ptp(self._box, axis=1)
 
-    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Cycle], np.ndarray, np.ndarray]:
+    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
         """Iterate all starts and recognise what they settle on; see `contvines.coexistence.population`."""
         step = _Iteration(self.problem, p, np.asarray(starts, dtype=float))
         x = np.array(starts, dtype=float)
@@ -132,15 +92,15 @@ class MapPopulation:
 
     def _sorted(
         self, step: _Iteration, x: np.ndarray, periods: np.ndarray, p: float
-    ) -> tuple[list[Cycle], np.ndarray, np.ndarray]:
+    ) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
         index = np.full(len(x), -1)
-        motions: list[Cycle] = []
+        motions: list[Motion[Problem]] = []
         for i in range(len(x)):
             if index[i] >= 0:
                 continue
             if periods[i] < 0:
                 here = periods < 0
-                motions.append(Cycle("escaped"))
+                motions.append(Motion("escaped"))
             elif periods[i] == 0:
                 here = periods == 0
                 motions.append(self._wandering(x[i], p))
@@ -153,7 +113,7 @@ class MapPopulation:
                 here = (gaps < MAPS.near * self.size) & (periods == periods[i])
                 problem = self.problem.cycle_through(points, p)
                 motions.append(
-                    Cycle("periodic", f"{periods[i]}-cycle", int(periods[i]), problem, points.ravel())
+                    Motion("periodic", f"{periods[i]}-cycle", int(periods[i]), problem, points.ravel())
                 )
             here[i] = True
             index[here & (index < 0)] = len(motions) - 1
@@ -163,7 +123,7 @@ class MapPopulation:
         """Unstable cycles that the chaotic motion through a state passes near; see `contvines.coexistence.population`."""
         step = _Iteration(self.problem, p, state[None])
         self.work += EMBEDDED_IN
-        run = np.empty((EMBEDDED_IN, self.problem.node))
+        run = np.empty((EMBEDDED_IN, self.node))
         run[0] = state
         for k in range(1, EMBEDDED_IN):
             run[k] = step.one(run[k - 1])
@@ -197,17 +157,9 @@ class MapPopulation:
                     cycles.append(points)
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
-    def closed(self, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Cycles known in closed form: none of a map of the user's own."""
-        return []
-
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
-        return self.problem.cycle_through(np.reshape(u, (-1, self.problem.node)), p)
-
-    def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]:
-        """Measures of a motion that is no cycle: none."""
-        return {}
+        return self.problem.cycle_through(np.reshape(u, (-1, self.node)), p)
 
     def _solved(self, guess: np.ndarray, p: float, reach: float = FROM_GUESS) -> np.ndarray | None:
         """The points, shape (n, d), of the cycle next to a guess, by Newton's method on the n-th image; None if there is none."""
@@ -234,11 +186,11 @@ class MapPopulation:
         gaps = np.abs(known - points[0]).max(axis=1)
         return len(points) % len(known) == 0 and bool(gaps.min() < MAPS.near * self.size)
 
-    def _wandering(self, x: np.ndarray, p: float) -> Cycle:
+    def _wandering(self, x: np.ndarray, p: float) -> Motion[Problem]:
         """A motion that does not recur, judged by the growth of a tangent vector; blocks give the error of the mean."""
         state = x.copy()
         functions = self.problem.functions
-        vector = np.ones(self.problem.node) / np.sqrt(self.problem.node)
+        vector = np.ones(self.node) / np.sqrt(self.node)
         logs = np.empty(GROWTH)
         self.work += GROWTH
         for k in range(GROWTH):
@@ -249,13 +201,7 @@ class MapPopulation:
             x = functions.value(x, p)
         means = logs.reshape(20, -1).mean(axis=1)
         mean, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(len(means)))
-        if mean > SIGMAS * error:
-            kind = "chaotic"
-        elif mean > -SIGMAS * error and self.problem.node > 1:
-            kind = "quasi-periodic"
-        else:
-            kind = "slow"
-        return Cycle(kind, exponent=mean, error=error, state=state)
+        return Motion(wandering(mean, error, self.node > 1), exponent=mean, error=error, state=state)
 
 
 class _Iteration:

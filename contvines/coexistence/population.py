@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Protocol, runtime_checkable
 
 from ..problems.abilities import Populated
-from ..problems.populations import Motion as Motion
 from ..problems.populations import Population as Population
 
 

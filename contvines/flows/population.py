@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from contvines.shared.even_points import low_discrepancy
 from contvines.shared.floating_point import ROUNDED, TINY
+from contvines.shared.motions import Motion, wandering
 
 from ..problems.functions import NotEvaluable
 from ..problems.registry import rebuild
+from ..problems.starts_in_box import StartsInBox
 from .attractors import AtRest, Escaped, Irregular, Place, Stopped, last_round
 from .field import Field
 from .flow import Flow
@@ -37,26 +40,16 @@ DOUBLINGS = 4  # of the transient of a motion that is looked at by itself
 BRIEF = (3, 12)  # values, and starts at each, of a brief look
 TRIED = (4, 2, 2)  # motions that recur nowhere, after which no others are looked at by themselves
 NEWTON = 30
-GOLDEN = 60  # steps to the root
 GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
 BLOCKS = 20
 FEW = 8  # motions at least, copies of those there are ...
-SIGMAS = 3.0
 RANK = 8.0 * ROUNDED  # singular values below this part of the largest one are zero
 
 
 @dataclass(frozen=True, eq=False)
-class Settled:
+class Settled(Motion["AlgebraicProblem | CycleMesh"]):
     """What some starts settle on."""
 
-    kind: str
-    word: str = ""
-    periods: int = 0
-    problem: AlgebraicProblem | CycleMesh | None = field(default=None, repr=False)
-    u: np.ndarray | None = field(default=None, repr=False)
-    exponent: float = float("nan")
-    error: float = float("nan")
-    state: np.ndarray | None = field(default=None, repr=False)
     curve: np.ndarray | None = field(default=None, repr=False)  # states on it
     image: np.ndarray | None = field(default=None, repr=False)  # states on its mirror image
 
@@ -100,7 +93,7 @@ class PopulatedFlow(Flow, Protocol):
     def cycle_at(self, values: Mapping[str, float], times: np.ndarray, states: np.ndarray) -> CycleOrbit: ...
 
 
-class FlowPopulation:
+class FlowPopulation(StartsInBox):
     """Starts in a box of the flow's states.
 
     Parameters
@@ -117,7 +110,6 @@ class FlowPopulation:
 
     across = 60
     brief = BRIEF
-    price = 1.0
 
     def __init__(
         self,
@@ -127,60 +119,27 @@ class FlowPopulation:
         box: Sequence[tuple[float, float]] | None = None,
         around: np.ndarray | None = None,
     ) -> None:
-        self.flow, self.parameter = flow, parameter
+        self.flow = flow
         self.values = flow.values.against(parameter, values)
         self.field = flow.field.against(self.values)
-        self.node = len(flow.x0)
-        self.work = 0.0
-        box = flow.box if box is None else box
-        if box is None:
-            if around is not None and np.shape(around)[1:] != (self.node,):
+        points = np.array(flow.x0)[None]
+        if around is not None:
+            if np.shape(around)[1:] != points.shape[1:]:
                 raise ValueError(
-                    f"around has shape {np.shape(around)}; (n, {self.node}) is needed, a row per state of the flow"
+                    f"around has shape {np.shape(around)}; (n, {len(flow.x0)}) is needed, a row per state of the flow"
                 )
-            points = np.array(flow.x0)[None] if around is None else np.vstack([flow.x0, around])
-            reach = np.maximum(
-                np.ptp(points, axis=0), np.maximum(self.field.lengths, np.abs(points).max(axis=0))
-            )
-            self._box = np.column_stack([points.min(axis=0) - reach, points.max(axis=0) + reach])
-        else:
-            try:
-                self._box = np.array(box, dtype=float)
-            except (TypeError, ValueError):
-                self._box = np.empty(0)
-            if self._box.shape != (self.node, 2) or not (
-                np.isfinite(self._box).all() and (self._box[:, 0] < self._box[:, 1]).all()
-            ):
-                raise ValueError(
-                    f"box = {box!r}: give {self.node} pairs (low, high) with low < high, one per state"
-                )
+            points = np.vstack([points, around])
+        super().__init__(flow.name, parameter, flow.box if box is None else box, points, self.field.lengths)
         self.size = np.ptp(self._box, axis=1)
-
-    @property
-    def about(self) -> dict[str, Any]:
-        """The flow's name."""
-        return {"name": self.flow.name}
 
     @property
     def names(self) -> tuple[str, ...]:
         """Of the states."""
         return self.flow.states
 
-    def box(self, p: float) -> np.ndarray:
-        """Ranges of the starts, shape (d, 2)."""
-        return self._box
-
     def starts(self, count: int, seed: int, p: float) -> np.ndarray:
-        """Low-discrepancy starts, shape (count, d): multiples of 1 / g, 1 / g^2, ... with g^(d + 1) = g + 1 (Roberts 2018), moved by the seed.
-
-        Sobol's of scipy.stats would take longer to import than many a diagram takes.
-        """
-        g = 1.5
-        for _ in range(GOLDEN):
-            g = (1.0 + g) ** (1.0 / (self.node + 1))
-        first = np.random.default_rng(seed).random(self.node)
-        points = (first + np.arange(count)[:, None] * g ** -np.arange(1.0, self.node + 1)) % 1.0
-        return self._box[:, 0] + points * self.size
+        """Low-discrepancy starts, shape (count, d)."""
+        return self._box[:, 0] + low_discrepancy(self.node, count, seed) * self.size
 
     # ------------------------------------------------------------------ what attracts
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Settled], np.ndarray, np.ndarray]:
@@ -413,9 +372,9 @@ class FlowPopulation:
         room = (
             d + self.field.forced >= 3
         )  # for two frequencies, or chaos: not in the plane (Poincare and Bendixson)
-        zero = abs(mean) <= SIGMAS * error
-        kind = "slow" if not room or mean < -SIGMAS * error else "quasi-periodic" if zero else "chaotic"
-        return Settled(kind, exponent=mean, error=error, state=x[0])
+        return Settled(
+            wandering(mean, error, room) if room else "slow", exponent=mean, error=error, state=x[0]
+        )
 
     # ------------------------------------------------------------------ what does not attract
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
@@ -438,17 +397,9 @@ class FlowPopulation:
                 found.append(x)
         return [(self._equilibria(p), x) for x in found]
 
-    def closed(self, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Motions known in closed form: none."""
-        return []
-
     def restored(self, description: Mapping[str, Any], u: np.ndarray, p: float) -> Problem | None:
         """The problem of a motion that a journal remembers, as `settle` had it; None where it cannot be rebuilt."""
         return rebuild(description)
-
-    def observed(self, state: np.ndarray | None, p: float, periods: float = 0.0) -> dict[str, float]:
-        """Measures of a motion that is no cycle: none."""
-        return {}
 
 
 def curves(flow: Flow, orbit: CycleOrbit, rounds: int) -> tuple[np.ndarray, np.ndarray | None]:

@@ -33,29 +33,10 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from ..shared.motions import Motion
+
 if TYPE_CHECKING:
     from .protocol import Problem
-
-
-class Motion(Protocol):
-    """What some starts settle on; see item 3 of the contract."""
-
-    @property
-    def kind(self) -> str: ...
-    @property
-    def word(self) -> str: ...
-    @property
-    def periods(self) -> int: ...
-    @property
-    def problem(self) -> Problem | None: ...
-    @property
-    def u(self) -> np.ndarray | None: ...
-    @property
-    def exponent(self) -> float: ...
-    @property
-    def error(self) -> float: ...
-    @property
-    def state(self) -> np.ndarray | None: ...
 
 
 @runtime_checkable
@@ -84,7 +65,9 @@ class Population(Protocol):
 
     def starts(self, count: int, seed: int, p: float) -> np.ndarray: ...
 
-    def settle(self, starts: np.ndarray, p: float) -> tuple[Sequence[Motion], np.ndarray, np.ndarray]: ...
+    def settle(
+        self, starts: np.ndarray, p: float
+    ) -> tuple[Sequence[Motion[Problem]], np.ndarray, np.ndarray]: ...
 
     def embedded(self, state: np.ndarray, p: float) -> Sequence[tuple[Problem, np.ndarray]]: ...
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from contvines.shared.modulation import BAND, modulation_of
+from contvines.shared.motions import wandering
 from orbits.attractors.attractor import Attractor, Observation
 from orbits.attractors.modulation import modulation
-from orbits.attractors.motion import wandering
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import Simulator
 from orbits.flows.trajectory import Trajectory

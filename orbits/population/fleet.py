@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contvines.shared.motions import Motion, wandering
 from orbits.attractors.attractor import Attractor
-from orbits.attractors.motion import RARE, SOLVED, Motion, Problem, wandering
+from orbits.attractors.motion import RARE, SOLVED, Problem
 from orbits.attractors.recurrence import attracted, recurring, returns
 from orbits.flows.protocol import Batch, Outcome, SimulationError, Simulator
 from orbits.flows.trajectory import TWO_PI

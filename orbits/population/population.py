@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.even_points import low_discrepancy
+from contvines.shared.motions import Motion
 from contvines.shared.near_names import no_parameter
-from orbits.attractors.motion import SOLVED, Motion, Problem, distinct
+from orbits.attractors.motion import SOLVED, Problem, distinct
 from orbits.attractors.recurrence import solved
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError, Simulator
@@ -17,7 +19,7 @@ from orbits.machines.base import Model
 from orbits.machines.notation import STARTS
 from orbits.orbit import Orbit
 from orbits.population.fleet import Fleet
-from orbits.population.sorting import Sorting, low_discrepancy
+from orbits.population.sorting import Sorting
 from orbits.problem import rebuild
 from orbits.simulation.runs import simulator_of
 
@@ -119,12 +121,12 @@ class Population:
                     f"the walls of {self.model.name!r} leave nearly none of the box of starts at {self.parameter} = {p:g}; "
                     "say in the machine file where starts are drawn: Machine(..., starts={'x': (low, high)})"
                 )
-            points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn) * (box[:, 1] - box[:, 0])
+            points = box[:, 0] + low_discrepancy(len(box), count, seed, drawn + 1) * (box[:, 1] - box[:, 0])
             drawn += len(points)
             kept.append(points[simulator.free(points)])
         return np.concatenate(kept)[:count]
 
-    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+    def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
         """Simulate all starts and recognise what they settle on.
 
         Parameters

@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from orbits.attractors.motion import Form, Motion, alike
+from contvines.shared.motions import Motion
+from orbits.attractors.motion import Form, Problem, alike
 
 
 class Sorting:
@@ -23,12 +24,14 @@ class Sorting:
 
     def __init__(self, count: int, parameter: str, p: float) -> None:
         self.parameter, self.p = parameter, p
-        self.motions: list[Motion] = []
+        self.motions: list[Motion[Problem]] = []
         self.index = np.full(count, -1)
         self.mirrored = np.zeros(count, dtype=bool)
         self._forms: list[Form | None] = []
 
-    def sort(self, reached: Callable[[int, Sorting], None]) -> tuple[list[Motion], np.ndarray, np.ndarray]:
+    def sort(
+        self, reached: Callable[[int, Sorting], None]
+    ) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
         """Motions in the order of their first start, then `index` and `mirrored`; `reached` says of a start, and perhaps of others with it, which it reaches."""
         for i in range(len(self.index)):
             if self.index[i] < 0:
@@ -52,7 +55,7 @@ class Sorting:
                 return self.assign(members, k)
         self.assign(members, self._add(Motion(kind, exponent=exponent, error=error, state=state), None))
 
-    def place(self, motion: Motion) -> int:
+    def place(self, motion: Motion[Problem]) -> int:
         """The number of a motion, which is put on the list if it is a new one."""
         form = self._form(motion)
         for k, known in enumerate(self.motions):
@@ -67,7 +70,7 @@ class Sorting:
         self._forms.append(form)
         return len(self.motions) - 1
 
-    def _form(self, motion: Motion) -> Form | None:
+    def _form(self, motion: Motion[Problem]) -> Form | None:
         """By which a motion is known; None of one without a word."""
         if motion.problem is None or motion.u is None:
             return None
@@ -80,27 +83,3 @@ class Sorting:
         here &= self.index < 0
         self.mirrored[here] = np.broadcast_to(mirrored, here.shape)[here]
         self.index[here] = k
-
-
-def low_discrepancy(dimension: int, count: int, seed: int, first: int = 0) -> np.ndarray:
-    """Points of the unit cube, shape (count, dimension): an additive recurrence, shifted by the seed.
-
-    Parameters
-    ----------
-    dimension, count : int
-    seed : int
-        Of the shift (Cranley and Patterson 1976); each seed is another, equally even, set of points.
-    first : int
-        Points of the sequence to leave out at its start, so that draws can go on.
-
-    Notes
-    -----
-    Point n is ``shift + n (1/g, 1/g^2, ...) mod 1`` with ``g^(d+1) = g + 1`` (M. Roberts 2018; in one dimension the golden
-    ratio, whose gaps have at most three lengths for every count: the three-distance theorem).
-    """
-    root = 2.0
-    for _ in range(60):
-        root = (1.0 + root) ** (1.0 / (dimension + 1))
-    shift = np.random.default_rng(seed).random(dimension)
-    steps = root ** -np.arange(1.0, dimension + 1)
-    return (shift + np.arange(first + 1, first + count + 1)[:, None] * steps) % 1.0

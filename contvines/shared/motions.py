@@ -1,0 +1,54 @@
+"""What many starts settle on, and the kind of a motion that does not recur."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+import numpy as np
+
+SIGMAS = 3.0  # an exponent that many standard errors above zero is chaos
+P = TypeVar("P", covariant=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Motion(Generic[P]):
+    """One motion that some starts settle on.
+
+    Attributes
+    ----------
+    kind : str
+        ``periodic``, ``sliding``, ``stuck``, ``chatter``, ``chaotic``, ``quasi-periodic``, ``slow``, ``escaped``, ``stopped``, or
+        ``impossible`` (the start lies inside a wall).
+    word : str
+    periods : int
+    problem, u : Problem and float array, or None
+        The motion as a solution that can be continued, where it is one.
+    exponent, error : float
+        Largest Lyapunov exponent per period and its standard error; nan for motions that recur.
+    state : float array (S,) or None
+        A state on it, from which a simulation goes on.
+    """
+
+    kind: str
+    word: str = ""
+    periods: int = 0
+    problem: P | None = field(default=None, repr=False)
+    u: np.ndarray | None = field(default=None, repr=False)
+    exponent: float = float("nan")
+    error: float = float("nan")
+    state: np.ndarray | None = field(default=None, repr=False)
+
+
+def wandering(exponent: float, error: float, roomy: bool) -> str:
+    """The kind of a motion that does not recur, from its largest Lyapunov exponent and the standard error of it.
+
+    Parameters
+    ----------
+    exponent, error : float
+    roomy : bool
+        Whether the states have room for two incommensurate frequencies.
+    """
+    if exponent > SIGMAS * error:
+        return "chaotic"
+    return "quasi-periodic" if roomy and exponent > -SIGMAS * error else "slow"
