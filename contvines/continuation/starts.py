@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 
+from contvines.shared.floating_point import ROUNDED
+
 from ..problems.abilities import Named, Rough, Started
 from ..problems.functions import NotEvaluable, difference_text
 from ..problems.protocol import MEMBERS, Problem
@@ -196,7 +198,8 @@ def _moved(engine: Engine, u: ArrayLike, p: float, found: Solved) -> str:
         return ""
     size = float(np.abs(problem.residuals(u, float(p))).max())
     i = int(np.argmax(moved))
-    place = f"{_name(problem, i)} = {found.u[i]:.6g} instead of {u[i]:.6g}"
+    began = found.u[i] if abs(found.u[i]) > ROUNDED * engine.scale[i] else 0.0
+    place = f"{_name(problem, i)} = {began:.6g} instead of {u[i]:.6g}"
     guessed = np.maximum(engine.scale[:-1], np.abs(u))  # a solution at zero tells no size, the guess does
     if not (np.abs(found.u - u) / guessed).max() <= engine.settings.escape:
         raise ValueError(
