@@ -15,6 +15,8 @@ from .cycle_borders import CycleBorders
 if TYPE_CHECKING:
     from ..problems.algebraic import AlgebraicProblem
 
+MEANS = 20  # per state, at most: ten intervals of degree two have as many values
+
 
 class CycleRelatives(CycleBorders):
     """Symmetries of cycles, those of half and of twice the period, and their identity."""
@@ -119,7 +121,10 @@ class CycleRelatives(CycleBorders):
         return [Embedding(problem, doubled, direction, kind)]
 
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]:
-        """Means over the shortest period of powers and products of the coordinates, the same for all meshes and phases; of mirror images the smaller."""
+        """Means over the shortest period of powers and products of the coordinates, the same for all meshes and phases; of mirror images the smaller.
+
+        Of many states the first ones tell cycles apart: no more than there are values at the nodes of any mesh, whose scales they have.
+        """
         shorter = self.root(u, p)
         if shorter is not None:
             return shorter[0].canonical(shorter[1], p)
@@ -127,10 +132,10 @@ class CycleRelatives(CycleBorders):
         forms = [x]
         if self.flow.mirror is not None:
             forms.append(self._mirrored(u)[: self.states].reshape(x.shape))
-        found = [self._means(form, widths, period) for form in forms]
+        found = [self._means(form, widths, period)[: MEANS * self.node] for form in forms]
         best = min(found, key=in_order(np.full(len(found[0]), self.flow.settings.same)))
-        scale = np.resize(self.column_scale, len(best))
-        return ("cycle", self.rounds if not self.free_period else 0, self.node), best * scale
+        kind = ("cycle", self.rounds if not self.free_period else 0, self.node)
+        return kind, best * self.column_scale[: len(best)]
 
     def _means(self, x: np.ndarray, widths: np.ndarray, period: float) -> np.ndarray:
         r, d = self.rule, self.node

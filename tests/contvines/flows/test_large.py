@@ -5,6 +5,7 @@ import pytest
 from scipy.sparse import csc_matrix
 
 import contvines as cv
+from contvines.flows.orbit import CycleOrbit
 
 pytestmark = pytest.mark.slow
 
@@ -35,7 +36,7 @@ def orbit():
 def test_the_sparsity_is_found_out(orbit):
     pattern = orbit._problem.field.sparsity
     assert pattern is not None
-    expected = (jacobian(np.full(2 * CELLS, 0.3), None) != 0).toarray() | np.eye(2 * CELLS, dtype=bool)
+    expected = (jacobian(np.full(2 * CELLS, 0.3), None).toarray() != 0) | np.eye(2 * CELLS, dtype=bool)
     found = np.zeros((2 * CELLS, 2 * CELLS), dtype=bool)
     found[pattern.indices, pattern.columns] = True
     assert np.array_equal(found, expected)
@@ -81,5 +82,28 @@ def test_cycles_leave_a_hopf_point_of_a_large_flow():
     point = min(graph.of_kind("hopf"), key=lambda point: abs(point.value - a))
     assert point.value == pytest.approx(a, abs=1e-10)
     cycle = point.cycles()
+    assert isinstance(cycle, CycleOrbit)
     assert cycle.period == pytest.approx(2.0 * np.pi / np.sqrt(0.3 - 0.15**2), rel=1e-3)
     assert np.ptp(cycle.states[:, :CELLS], axis=1).max() < 1e-6  # all cells alike
+
+
+def test_cycles_of_forty_states_leave_each_of_two_hopf_points():
+    """Two oscillators z' = (p - a + i w) z - z |z|^2, a = 0 and 1/2, beside 36 states that decay: cycles |z|^2 = p - a."""
+
+    def rates(x, p):
+        first, second = p.p - x[0] ** 2 - x[1] ** 2, p.p - 0.5 - x[2] ** 2 - x[3] ** 2
+        turning = [
+            first * x[0] - x[1],
+            x[0] + first * x[1],
+            second * x[2] - 1.7 * x[3],
+            1.7 * x[2] + second * x[3],
+        ]
+        return [*turning, *(-x[i] + 0.1 * x[0] for i in range(4, 40))]
+
+    flow = cv.FlowProblem(rates, [0.0] * 40, {"p": -0.2})
+    graph = cv.diagram(flow, over="p", within=(-0.2, 1.0), depth=1, progress=False)
+    assert [point.value for point in graph.of_kind("hopf")] == pytest.approx([0.0, 0.5], abs=1e-9)
+    for label, name, begins in (("B2", "max x0", 0.0), ("B3", "max x2", 0.5)):
+        branch = graph.branches[label]
+        assert branch.values.max() == 1.0
+        assert branch.measure(name) ** 2 == pytest.approx(branch.values - begins, abs=1e-5)
