@@ -232,9 +232,13 @@ class Detector(SegmentSearch):
         for test, size, turn in zip(self.symmetries, scanned.sizes, scanned.turns):
             far = size > self.engine.settings.symmetric
             meets |= far[1:] & far[:-1] & (turn < 0.0)
-            for i in np.flatnonzero((turn < 0.0) & ~meets).tolist() if test.kind == "hopf" else ():
+            for i in np.flatnonzero((turn < 0.0) & ~meets).tolist() if self.engine.adaptive else ():
                 pair = slice(i, i + 2)
-                meets[i] = turns_round(test, test.part(chunk.points[pair], chunk.values[pair]), np.inf)
+                parts, accuracy = (
+                    test.part(chunk.points[pair], chunk.values[pair]),
+                    chunk.corrections[pair].max(),
+                )
+                meets[i] = turns_round(test, parts, np.inf, accuracy)
             lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < NEXT * size[:-1])
         return meets, lands
 

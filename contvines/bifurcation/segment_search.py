@@ -217,11 +217,12 @@ class SegmentSearch:
     def _meetings(self, segment: Segment) -> list[Located]:
         events, settings = [], self.engine.settings
         # beside multipliers near the inverse of rounding Newton's method stops at larger corrections, and what is not symmetric is noise
-        inexact = max(segment.a.correction, segment.b.correction) / settings.tolerance
-        least = settings.symmetric * max(1.0, inexact)
+        correction = max(segment.a.correction, segment.b.correction)
+        least = settings.symmetric * max(1.0, correction / settings.tolerance)
+        accuracy = correction if self.engine.adaptive else np.inf
         for index, test in enumerate(self.symmetries):
             ends = test.part(np.array([segment.a.u, segment.b.u]), [segment.a.p, segment.b.p])
-            if not turns_round(test, ends, least):
+            if not turns_round(test, ends, least, accuracy):
                 continue
             scale = float(np.sqrt(ends[0] @ ends[0]))
 

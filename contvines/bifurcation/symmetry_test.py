@@ -83,16 +83,17 @@ class SymmetryTest:
         return (self.symmetry.apply(u + scale * v) - self.symmetry.apply(u - scale * v)) / (2.0 * scale)
 
 
-def turns_round(test: SymmetryTest, parts: np.ndarray, least: float) -> bool:
+def turns_round(test: SymmetryTest, parts: np.ndarray, least: float, accuracy: float = np.inf) -> bool:
     """Whether the part that a symmetry changes has turned round between two points, shape (2, N).
 
-    Both are larger than noise; or a cycle has become an equilibrium there: all its many unknowns are opposite, as those of noise are not.
+    Both are larger than noise; or all their many unknowns are opposite, as those of noise are not: of a cycle on a mesh, which is known to an accuracy,
+    or of one that has become an equilibrium.
     """
     along = float(parts[0] @ parts[1])
     if not along < 0.0:
         return False
-    if np.abs(parts).max(axis=1).min() > least:
+    smaller = np.abs(parts).max(axis=1).min()
+    if smaller > least:
         return True
-    return test.kind == "hopf" and along < -OPPOSITE * float(
-        np.linalg.norm(parts[0]) * np.linalg.norm(parts[1])
-    )
+    opposite = along < -OPPOSITE * float(np.linalg.norm(parts[0]) * np.linalg.norm(parts[1]))
+    return opposite and (test.kind == "hopf" or bool(smaller > accuracy))

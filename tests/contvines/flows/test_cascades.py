@@ -46,3 +46,39 @@ def test_a_branch_of_eight_periods_ends_at_the_doublings_of_that_of_four():
     assert len(points) == 4  # its own two lie between those at which it ends
     for point in points[::3]:
         assert point.value == pytest.approx(doubling(point.orbit(0.0), point.value, 4), abs=1e-7)
+
+
+def roessler(x, p):
+    """Roessler's flow, a = b = 0.2."""
+    return [-x[1] - x[2], x[0] + 0.2 * x[1], 0.2 + x[2] * (x[0] - p.c)]
+
+
+def rounds_of_roessler(y, c, time):
+    """State and derivatives by the first one, by DOP853 with the variational equations."""
+
+    def rates(t, z):
+        a = np.array([[0.0, -1.0, -1.0], [1.0, 0.2, 0.0], [z[2], 0.0, z[0] - c]])
+        own = [-z[1] - z[2], z[0] + 0.2 * z[1], 0.2 + z[2] * (z[0] - c)]
+        return np.concatenate([own, (a @ z[3:].reshape(3, 3)).ravel()])
+
+    start = np.concatenate([y, np.eye(3).ravel()])
+    run = solve_ivp(rates, (0.0, time), start, method="DOP853", rtol=1e-12, atol=1e-13)
+    return run.y[:3, -1], run.y[3:, -1].reshape(3, 3)
+
+
+@pytest.mark.slow
+def test_a_cycle_of_eight_rounds_from_a_simulation_ends_at_the_doubling_of_that_of_four():
+    flow = cv.FlowProblem(roessler, [1.0, 1.0, 0.0], {"c": 4.18})
+    graph = cv.diagram(flow.attractor([1.0, 1.0, 0.0], c=4.18), over="c", within=(2.0, 6.0), depth=0)
+    assert not graph.of_kind("branch-point")
+    end = min(graph.of_kind("period-doubling"), key=lambda point: point.value)
+
+    def missed(v):
+        y, m = rounds_of_roessler([0.0, *v[:2]], v[2], v[3])
+        return [*(y - [0.0, *v[:2]]), np.linalg.det(m + np.eye(3))]
+
+    times = np.linspace(0.0, end.orbit.period, 4001)
+    heights = end.orbit(times)[:, 0]
+    k = int(np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[0])
+    found = fsolve(missed, [*end.orbit(times[k])[1:], end.value, 0.5 * end.orbit.period], xtol=1e-12)
+    assert end.value == pytest.approx(found[2], abs=1e-6)
