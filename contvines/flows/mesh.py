@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -52,9 +53,9 @@ def places(widths: np.ndarray, inside: np.ndarray) -> np.ndarray:
 def phases(widths: np.ndarray, inside: np.ndarray, copies: int, rounds: int) -> np.ndarray:
     """Places at these parts of each interval of a mesh of equal copies, as times in one period of a forcing that goes round so often, shape (N len(inside),).
 
-    They are the same to the last bit in all copies, so that a cycle which repeats a shorter one solves the equations exactly as that does.
+    They are the same to the last bit wherever the mesh and the forcing repeat, so that a cycle which repeats a shorter one solves the equations exactly as that does.
     """
-    parts = copies if rounds % copies == 0 else 1
+    parts = math.gcd(copies, rounds)
     return np.tile(np.mod(rounds * places(widths[: len(widths) // parts], inside), 1.0), parts)
 
 

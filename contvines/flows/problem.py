@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from .flow import Sizes
 
 INTERVALS = 40  # of a cycle from data, to begin with ...
+HALVES = 2  # equal parts of its mesh, so that what comes back half a period later, itself or its mirror image, is as exact as the cycle
 MORE = 4, 16  # ... and times those, where that does not converge, as bursts of sharp spikes
 
 
@@ -484,7 +485,6 @@ class FlowProblem:
         moves = (ranges > s.still * field.lengths).any()
         own = np.maximum(ranges, s.smallest * ranges.max()) if moves else field.lengths
         scale = own if given is None else given
-        copies = 1 if field.forced and rounds % 2 else 2
         count = INTERVALS * (rounds if field.forced else 1)
         unit, clock = abs(parameters.start) or 1.0, float(times[-1] - times[0])
         found = None
@@ -492,9 +492,9 @@ class FlowProblem:
             if found is not None:
                 break
             n = more * count
-            for widths in (np.full(n, 1.0 / n), mesh.along_data(times, states / scale, n, copies)):
+            for widths in (np.full(n, 1.0 / n), mesh.along_data(times, states / scale, n, HALVES)):
                 guess = self._guess(field, parameters.start, times, states, widths, rounds)
-                cycles = self.cycles(field, guess, (n, rounds, copies), (scale, clock, unit))
+                cycles = self.cycles(field, guess, (n, rounds, HALVES), (scale, clock, unit))
                 found = found or settled(cycles, guess, parameters.start)
         if found is None:
             raise ValueError(

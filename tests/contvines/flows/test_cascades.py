@@ -82,3 +82,42 @@ def test_a_cycle_of_eight_rounds_from_a_simulation_ends_at_the_doubling_of_that_
     k = int(np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[0])
     found = fsolve(missed, [*end.orbit(times[k])[1:], end.value, 0.5 * end.orbit.period], xtol=1e-12)
     assert end.value == pytest.approx(found[2], abs=1e-6)
+
+
+def half_of_ueda(x, f):
+    """Mirror image of the state half a period later, with its derivatives by the first one; -x at t + pi solves the equations as x does at t."""
+
+    def rates(t, y):
+        a = np.array([[0.0, 1.0], [-3.0 * y[0] ** 2, -0.1]])
+        own = [y[1], -(y[0] ** 3) - 0.1 * y[1] + f * np.cos(t)]
+        return np.concatenate([own, (a @ y[2:].reshape(2, 2)).ravel()])
+
+    run = solve_ivp(
+        rates, (0.0, np.pi), np.concatenate([x, np.eye(2).ravel()]), method="DOP853", rtol=1e-12, atol=1e-13
+    )
+    return -run.y[:2, -1], -run.y[2:, -1].reshape(2, 2)
+
+
+@pytest.mark.parametrize("mirrored", [True, False])
+def test_a_forced_oscillator_loses_its_symmetry_where_shooting_has_it(mirrored):
+    """Ueda's oscillator: whether its symmetry is named or not, the symmetric motion goes on as an unstable one."""
+
+    def missed(v):
+        y, m = half_of_ueda(v[:2], v[2])
+        return [*(y - v[:2]), np.linalg.det(m + np.eye(2))]  # the square has +1
+
+    def rates(x, p, t):
+        return [x[1], -(x[0] ** 3) - 0.1 * x[1] + p.f * np.cos(t)]
+
+    def mirror(x):
+        return -x
+
+    flow = cv.FlowProblem(
+        rates, [0.0, 0.0], {"f": 0.8}, period=2.0 * np.pi, mirror=mirror if mirrored else None
+    )
+    graph = cv.diagram(flow.attractor([0.0, 0.0], f=0.8), over="f", within=(0.2, 12.0), depth=1)
+    (point,) = graph.of_kind("symmetry-breaking" if mirrored else "branch-point")
+    start = point.orbit(0.0)
+    found = fsolve(missed, [*start, point.value], xtol=1e-12)[2]
+    assert point.value == pytest.approx(found, abs=1e-8)
+    assert graph["B1"].stable_intervals()[-1][1] == pytest.approx(found)
