@@ -86,8 +86,8 @@ class SymmetryTest:
 def turns_round(test: SymmetryTest, parts: np.ndarray, least: float, accuracy: float = np.inf) -> bool:
     """Whether the part that a symmetry changes has turned round between two points, shape (2, N).
 
-    Both are larger than noise; or all their many unknowns are opposite, as those of noise are not: of a cycle on a mesh, which is known to an accuracy,
-    or of one that has become an equilibrium.
+    Both are larger than noise; or all their many unknowns are opposite, as those of noise are not: of a cycle on a mesh, known to an accuracy, that has
+    become one of half the period, or an equilibrium.
     """
     along = float(parts[0] @ parts[1])
     if not along < 0.0:
@@ -96,4 +96,4 @@ def turns_round(test: SymmetryTest, parts: np.ndarray, least: float, accuracy: f
     if smaller > least:
         return True
     opposite = along < -OPPOSITE * float(np.linalg.norm(parts[0]) * np.linalg.norm(parts[1]))
-    return opposite and (test.kind == "hopf" or bool(smaller > accuracy))
+    return opposite and (test.kind == "hopf" or (test.kind == "period-doubling" and bool(smaller > accuracy)))

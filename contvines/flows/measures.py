@@ -50,7 +50,7 @@ def of_mesh(rule: Rule, ends: np.ndarray, widths: np.ndarray, word: str, j: int)
             return float((share * points[:, :, j]).sum())
         return float(np.sqrt((share * (points**2).sum(axis=2)).sum()))
     sign = 1.0 if word == "max" else -1.0
-    return sign * _largest(rule, sign * ends[:, :, j])
+    return sign * _largest(rule, sign * ends[:, :, j], widths)
 
 
 @cache
@@ -59,15 +59,12 @@ def _between(degree: int) -> np.ndarray:
     return rule_of(degree).interpolation(np.linspace(0.0, 1.0, FINER * degree + 1))
 
 
-def _largest(rule: Rule, ends: np.ndarray) -> float:
-    """The largest value of a piecewise polynomial, from a parabola through the largest of many of its values."""
-    values = ends @ _between(rule.degree).T
-    i, j = np.unravel_index(int(np.argmax(values)), values.shape)
-    j = min(max(int(j), 1), values.shape[1] - 2)
-    left, middle, right = values[i, j - 1 : j + 2]
-    bend = left - 2.0 * middle + right
-    if not bend < 0.0:
-        return float(values.max())
-    top = middle - (right - left) ** 2 / (8.0 * bend)
-    inside = abs(right - left) <= -2.0 * bend
-    return float(max(top, values.max())) if inside else float(values.max())
+def _largest(rule: Rule, ends: np.ndarray, widths: np.ndarray) -> float:
+    """The largest value of a piecewise polynomial, from a parabola through the largest of many of its values and those beside it."""
+    values = (ends @ _between(rule.degree).T)[:, :-1]
+    steps, values = np.repeat(widths / values.shape[1], values.shape[1]), values.reshape(-1)
+    k = int(np.argmax(values))
+    before, after, middle = steps[k - 1], steps[k], values[k]
+    rises, falls = (middle - values[k - 1]) / before, (values[(k + 1) % len(values)] - middle) / after
+    bend, slope = (falls - rises) / (before + after), (rises * after + falls * before) / (before + after)
+    return float(middle - 0.25 * slope * slope / bend if bend < 0.0 else middle)

@@ -120,4 +120,4 @@ def test_a_forced_oscillator_loses_its_symmetry_where_shooting_has_it(mirrored):
     start = point.orbit(0.0)
     found = fsolve(missed, [*start, point.value], xtol=1e-12)[2]
     assert point.value == pytest.approx(found, abs=1e-8)
-    assert graph["B1"].stable_intervals()[-1][1] == pytest.approx(found)
+    assert graph.branches["B1"].stable_intervals()[-1][1] == pytest.approx(found)
