@@ -6,6 +6,7 @@ import html
 import shutil
 import sys
 import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 GAP = "  "
@@ -101,6 +102,12 @@ class Table:
 def terminal_width() -> int | None:
     """Characters to a line where a terminal shows what is printed; None where a file, a pipe or a notebook takes it."""
     return shutil.get_terminal_size().columns if sys.stdout is not None and sys.stdout.isatty() else None
+
+
+def titled(title: str, table: Table, further: Sequence[str] = ()) -> str:
+    """A title, the table, and further lines below it, as wide as the terminal."""
+    below = ["", *map(fitted, further)] if further else []
+    return "\n".join([fitted(title), "", *table.lines(terminal_width()), *below])
 
 
 def fitted(text: str, width: int | None = None) -> str:

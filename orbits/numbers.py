@@ -1,7 +1,5 @@
 """Facts of floating point, and numbers as the formulas of the machines take them."""
 
-import math
-
 import numpy as np
 
 Reals = float | np.ndarray
@@ -15,9 +13,3 @@ UNBOUNDED = 1e15
 """Stands for a multiplier that grows without bound towards a border: larger than any that double precision can tell from infinity."""
 COMPLEX_STEP = 1e-200
 """Its square is zero, so that real parts of complex steps are those of real arithmetic; it changes no bit of an ordinary number."""
-
-
-def mean_of_blocks(values: np.ndarray, count: int) -> tuple[float, float]:
-    """Mean of values that follow each other, and its standard error from the scatter of so many blocks."""
-    means = np.array([block.mean() for block in np.array_split(values, count)])
-    return float(means.mean()), float(means.std(ddof=1) / math.sqrt(count))

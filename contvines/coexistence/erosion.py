@@ -15,7 +15,7 @@ from ..graph.table import with_unit
 from ..problems.abilities import notation_of
 from ..shared.number_text import figures, figures_in
 from ..shared.plot_options import PlotOptions
-from ..text_table import Table, terminal_width
+from ..text_table import Table, titled
 from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class Erosion:
         ]
         numbers = (with_unit(self.parameter, self.unit), "share", "smallest kick")
         table = Table((*numbers, "to"), rows, right=numbers)
-        return "\n".join([f"{self.label}  {short_word(self.word)}", "", *table.lines(terminal_width())])
+        return titled(f"{self.label}  {short_word(self.word)}", table)
 
     def plot(self, **options: Unpack[PlotOptions]) -> Figure:
         """Smallest kick and share against the parameter; see :func:`contvines.plots.erosion.plot_erosion`."""

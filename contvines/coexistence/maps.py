@@ -10,7 +10,7 @@ import numpy as np
 from ..flows.settings import FlowSettings
 from ..problems.starts_in_box import StartsInBox
 from ..shared.floating_point import TINY
-from ..shared.motions import Motion, wandering
+from ..shared.motions import Motion, mean_of_blocks, wandering
 from .settings import MAPS
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 TRANSIENTS = (200, 800, 3200)  # iterations, each for those that do not recur before
 LONGEST = 64  # of the cycles looked for
-GROWTH = 4000  # iterations for a Lyapunov exponent
+GROWTH, BLOCKS = 4000, 20  # iterations for a Lyapunov exponent, and blocks of them for its error
 BRIEF = (5, 48)  # values, and starts at each, of a brief look
 EMBEDDED, EMBEDDED_IN = (
     6,
@@ -199,8 +199,7 @@ class MapPopulation(StartsInBox):
             logs[k] = np.log(max(size, TINY))
             vector = vector / max(size, TINY)
             x = functions.value(x, p)
-        means = logs.reshape(20, -1).mean(axis=1)
-        mean, error = float(means.mean()), float(means.std(ddof=1) / np.sqrt(len(means)))
+        mean, error = mean_of_blocks(logs, BLOCKS)
         return Motion(wandering(mean, error, self.node > 1), exponent=mean, error=error, state=state)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..graph.shortening import short_word
 from ..shared.number_text import figures
-from ..text_table import Table, fitted, terminal_width
+from ..text_table import Table, titled
 
 if TYPE_CHECKING:
     from .basins import Basins
@@ -21,10 +21,7 @@ ENDS = {
 
 def table(basins: Basins) -> str:
     """What the plane is, a line per attractor with its share and the interval of it, and how ragged the boundary is."""
-    shares, further = _shares(basins).lines(terminal_width()), _boundary(basins)
-    return "\n".join(
-        [fitted(_title(basins)), "", *shares, *([""] if further else []), *(fitted(line) for line in further)]
-    )
+    return titled(_title(basins), _shares(basins), _boundary(basins))
 
 
 def page(basins: Basins) -> str:

@@ -16,7 +16,7 @@ from contvines.command.study_data import Sort, Study
 from contvines.command.transient_table import written
 from contvines.continuation.settings import Settings
 from contvines.shared.number_text import figures
-from contvines.text_table import Table, fitted, terminal_width
+from contvines.text_table import Table, titled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -97,7 +97,7 @@ class Found:
     def __str__(self) -> str:
         rows = [(name, *_rounded(value, error), unit, words) for name, value, error, unit, words in self.rows]
         table = Table(("figure", "value", "+-", "unit", "what it is"), rows)
-        return "\n".join([fitted(self.title), "", *table.lines(terminal_width())])
+        return titled(self.title, table)
 
     @property
     def series(self) -> Series:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contvines.command.measured import Rows, Series
+from contvines.shared.csv_files import write_csv
 from contvines.shared.number_text import figures
-from contvines.text_table import Table, fitted, terminal_width
+from contvines.text_table import Table, titled
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,10 +22,12 @@ def written(path: Path, series: Series) -> None:
     """Columns as a CSV."""
     from contvines.graph.table import with_unit
 
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow([with_unit(name, unit) for name, unit, _ in series])
-        writer.writerows([repr(float(x)) for x in row] for row in zip(*(values for _, _, values in series)))
+    rows = zip(*(values for _, _, values in series))
+    write_csv(
+        path,
+        [with_unit(name, unit) for name, unit, _ in series],
+        ([repr(float(x)) for x in row] for row in rows),
+    )
 
 
 @dataclass
@@ -60,7 +62,7 @@ class Told:
             ("figure", "value", "unit", "what it is"),
             [(name, figures(value), unit, words) for name, value, unit, words in self.rows],
         )
-        return "\n".join([fitted(self.title), "", *table.lines(terminal_width())])
+        return titled(self.title, table)
 
     def draw(self, size: tuple[float, float] | None = None) -> Figure:
         """The motion, or the energy, with the absorber and without; impacts as ticks."""

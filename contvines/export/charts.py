@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..graph.table import with_unit
 from ..provenance import carried
+from ..shared.csv_files import write_csv
 from .columns import chart_rows
 from .files import check_target
 from .standard_json import json_text
@@ -40,9 +40,9 @@ def export_chart(chart: Chart, form: str, path: Path) -> Path:
         path.write_text(json_text({**chart.to_dict(), **carried(chart)}) + "\n", encoding="utf-8")
         return path
     names = [with_unit(name, chart.units.get(name)) for name in chart.parameters]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["locus", "kind", "word", *names, "real"])
-        for label, _, kind, word, p, q, real in chart_rows(chart):
-            writer.writerow([label, kind, word, repr(p), repr(q), int(real)])
+    rows = (
+        (label, kind, word, repr(p), repr(q), int(real))
+        for label, _, kind, word, p, q, real in chart_rows(chart)
+    )
+    write_csv(path, ["locus", "kind", "word", *names, "real"], rows)
     return path

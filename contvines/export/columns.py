@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..graph.table import with_unit
+from ..graph.table import parameter_head, with_unit
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
@@ -41,11 +41,6 @@ def graph_columns(graph: Graph) -> dict[str, list[Any]]:
 
 
 FACTS = ("branch", "index", "stable", "real", "margin", "special")
-
-
-def parameter_head(graph: Graph) -> str:
-    """The parameter as the head of a column, with its unit."""
-    return with_unit(graph.parameter, graph.units.get(graph.parameter))
 
 
 def branch_columns(branch: Branch, units: Mapping[str, str]) -> dict[str, list[Any]]:

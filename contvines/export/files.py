@@ -1,6 +1,5 @@
 """A graph as files that other programs read: csv, json, graphml, mat."""
 
-import csv
 import math
 import re
 from collections.abc import Mapping
@@ -12,6 +11,7 @@ import numpy as np
 
 from ..file_names import is_database, refuse_ending, refuse_place
 from ..provenance import carried
+from ..shared.csv_files import write_csv
 from ..shared.extras import needed
 from .auto import places, write_auto
 from .columns import graph_columns, measures_of
@@ -97,11 +97,8 @@ def check_target(path: Path, ending: str) -> None:
 
 def _csv(graph: "Graph", path: Path) -> None:
     columns = graph_columns(graph)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        for row in zip(*columns.values(), strict=True):
-            writer.writerow([_written(value) for value in row])
+    rows = zip(*columns.values(), strict=True)
+    write_csv(path, columns, (map(_written, row) for row in rows))
 
 
 def _written(value: object) -> object:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..graph.table import parameter_head
 from ..shared.extras import needed
-from .columns import branch_columns, chart_rows, graph_columns, measures_of, parameter_head
+from .columns import branch_columns, chart_rows, graph_columns, measures_of
 
 if TYPE_CHECKING:
     from pandas import DataFrame

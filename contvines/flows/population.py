@@ -10,7 +10,7 @@ import numpy as np
 
 from contvines.shared.even_points import low_discrepancy
 from contvines.shared.floating_point import ROUNDED, TINY
-from contvines.shared.motions import Motion, wandering
+from contvines.shared.motions import Motion, mean_of_blocks, wandering
 
 from ..problems.functions import NotEvaluable
 from ..problems.registry import rebuild
@@ -366,7 +366,7 @@ class FlowPopulation(StartsInBox):
         except (ValueError, NotEvaluable):
             return Settled("slow", state=x[0])
         found = np.concatenate(logs[1:])  # in the first block vectors turn to where they grow
-        mean, error = float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
+        mean, error = mean_of_blocks(found, len(found))
         if not np.isfinite(mean):
             return Settled("slow", state=x[0])
         room = (

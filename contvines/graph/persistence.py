@@ -32,9 +32,14 @@ Entry = tuple[str, str, dict[str, Any]]
 _MEMBERS = ("branches", "special", "switches", "proofs", "attractors", "missing", "unresolved")
 
 
+def fields_of(thing: DataclassInstance, *apart: str) -> dict[str, Any]:
+    """The fields of a dataclass by name, but for those apart."""
+    return {f.name: getattr(thing, f.name) for f in fields(thing) if f.name not in apart}
+
+
 def graph_entries(graph: Graph) -> Iterator[Entry]:
     """The graph as (kind, key, content): one "graph", then every "branch", "special" and "switch" in order."""
-    yield "graph", "graph", {f.name: getattr(graph, f.name) for f in fields(graph) if f.name not in _MEMBERS}
+    yield "graph", "graph", fields_of(graph, *_MEMBERS)
     for branch in graph.branches.values():
         yield "branch", branch.label, content_of(branch)
     for point in graph.special.values():
@@ -47,7 +52,7 @@ def graph_entries(graph: Graph) -> Iterator[Entry]:
     for number, entry in enumerate(graph.unresolved):
         yield "unresolved", str(number), entry.to_dict()
     for i, switch in enumerate(graph.switches):
-        yield "switch", str(i), {f.name: getattr(switch, f.name) for f in fields(switch)}
+        yield "switch", str(i), fields_of(switch)
 
 
 def graph_from_entries(
@@ -105,7 +110,7 @@ def branch_of(content: Mapping[str, Any], problem: Problem | None) -> Branch:
 
 def content_of(thing: DataclassInstance) -> dict[str, Any]:
     """A branch or special point as arrays and JSON values, its problem apart."""
-    content = {f.name: getattr(thing, f.name) for f in fields(thing) if f.name not in ("problem", "own_kind")}
+    content = fields_of(thing, "problem", "own_kind")
     if "endings" in content:
         content["endings"] = [ending.to_dict() for ending in content["endings"]]
     return content

@@ -62,9 +62,14 @@ def title(graph: Graph) -> str:
     return line.rstrip() + ("" if graph.finished else " (unfinished)")
 
 
+def parameter_head(graph: Graph) -> str:
+    """The parameter as the head of a column, with its unit."""
+    return with_unit(graph.parameter, graph.units.get(graph.parameter))
+
+
 def branches_table(graph: Graph) -> Table:
     """A row per branch: what it is, where it is and is stable, and the special points at its ends, or why it ends."""
-    name = with_unit(graph.parameter, graph.units.get(graph.parameter))
+    name = parameter_head(graph)
     rows = []
     for branch in graph.branches.values():
         low, high = branch.range
@@ -88,7 +93,7 @@ def branches_table(graph: Graph) -> Table:
 
 def special_table(graph: Graph, reasons: bool = True) -> Table:
     """A row per special point: its kind, branch, value, what it leads to, and with `reasons` why."""
-    name = with_unit(graph.parameter, graph.units.get(graph.parameter))
+    name = parameter_head(graph)
     rows, width = [], graph.within[1] - graph.within[0]
     number = figures_in(graph.within, [point.value for point in graph.special.values()])
     for point in graph.special.values():
@@ -118,7 +123,7 @@ def attractors_table(graph: Graph, most: int | None = None) -> Table:
 
     With `most` so many of them, those with the largest shares first.
     """
-    name = with_unit(graph.parameter, graph.units.get(graph.parameter))
+    name = parameter_head(graph)
     values = np.array(sorted({a.value for a in graph.attractors if a.starts}))
     low, high = graph.within
     edges = np.concatenate([[low], 0.5 * (values[1:] + values[:-1]), [high]])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -11,7 +11,7 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import CODIMENSION_TWO
 from ..continuation.settings import hinted
-from ..graph.persistence import branch_of, content_of, renamed
+from ..graph.persistence import branch_of, content_of, fields_of, renamed
 from ..graph.well_formed import check_branch, check_fields, fits
 from ..interrupts import Resumable
 from ..problems.abilities import notation_of
@@ -180,20 +180,17 @@ class Chart(Resumable):
     # ------------------------------------------------------------------ to and from a file
     def entries(self) -> Iterator[tuple[str, str, dict[str, Any]]]:
         """The chart as (kind, key, content)."""
-        apart = ("loci", "points", "regions")
-        yield "chart", "chart", {f.name: getattr(self, f.name) for f in fields(self) if f.name not in apart}
+        yield "chart", "chart", fields_of(self, "loci", "points", "regions")
         for locus in self.loci.values():
-            apart = ("branch", "marked", "kinds")
-            own = {f.name: getattr(locus, f.name) for f in fields(locus) if f.name not in apart}
+            own = fields_of(locus, "branch", "marked", "kinds")
             own["marks"] = None if locus.marked is None else locus.marks
             own["turns"] = [[turn.index, *turn.value] for turn in locus.turns]
             branch = {f"branch_{name}": value for name, value in content_of(locus.branch).items()}
             yield "locus", locus.label, {**own, **branch}
         for point in self.points.values():
-            own = {f.name: getattr(point, f.name) for f in fields(point) if f.name != "problem"}
-            yield "plane-point", point.label, own
+            yield "plane-point", point.label, fields_of(point, "problem")
         for i, region in enumerate(self.regions):
-            yield "region", str(i), {f.name: getattr(region, f.name) for f in fields(region)}
+            yield "region", str(i), fields_of(region)
 
 
 def chart_from_entries(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
@@ -52,3 +53,9 @@ def wandering(exponent: float, error: float, roomy: bool) -> str:
     if exponent > SIGMAS * error:
         return "chaotic"
     return "quasi-periodic" if roomy and exponent > -SIGMAS * error else "slow"
+
+
+def mean_of_blocks(values: np.ndarray, count: int) -> tuple[float, float]:
+    """Mean of values that follow each other, and its standard error from the scatter of so many blocks."""
+    means = np.array([block.mean() for block in np.array_split(values, count)])
+    return float(means.mean()), float(means.std(ddof=1) / math.sqrt(count))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import html
 import json
 from collections.abc import Sequence
@@ -15,10 +14,11 @@ import numpy as np
 from ..continuation.settings import hinted
 from ..graph.table import with_unit
 from ..interrupts import Resumable
+from ..shared.csv_files import write_csv
 from ..shared.extras import needed
 from ..shared.number_text import figures
 from ..shared.plot_options import PanelOptions
-from ..text_table import Table, fitted, terminal_width
+from ..text_table import Table, titled
 from .files import read, write
 from .outcomes import KNOWN, OF_ALL
 from .plan import Plan, PlanError
@@ -162,15 +162,13 @@ class Survey(Resumable):
 
     def to_csv(self, path: str | Path) -> None:
         """One row per system: its parameters, its outcomes, its note."""
-        with Path(path).open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            names = (*self.plan.names, *self.columns)
-            writer.writerow([*(with_unit(name, self.units.get(name)) for name in names), "note"])
-            flat = [values.ravel() for values in self.columns.values()]
-            for i, values in enumerate(self.plan.systems()):
-                cells = [repr(values[name]) for name in self.plan.names]
-                cells += [repr(float(column[i])) if np.isfinite(column[i]) else "" for column in flat]
-                writer.writerow([*cells, self.notes.ravel()[i]])
+        names = (*self.plan.names, *self.columns)
+        rows, flat = [], [values.ravel() for values in self.columns.values()]
+        for i, values in enumerate(self.plan.systems()):
+            cells = [repr(values[name]) for name in self.plan.names]
+            cells += [repr(float(column[i])) if np.isfinite(column[i]) else "" for column in flat]
+            rows.append([*cells, self.notes.ravel()[i]])
+        write_csv(path, [*(with_unit(name, self.units.get(name)) for name in names), "note"], rows)
 
     def plot(self, outcome: str | None = None, **options: Unpack[PanelOptions]) -> Figure:
         """A curve over one axis, with bands where there are samples, or a map over two.
@@ -242,7 +240,7 @@ class Survey(Resumable):
         return f"Survey({len(self.plan)} systems over {', '.join(self.plan.names)}: {', '.join(self.columns) or 'no outcomes'}{more})"
 
     def __str__(self) -> str:
-        return "\n".join([fitted(self._title()), "", *self._table().lines(terminal_width())])
+        return titled(self._title(), self._table())
 
     def _repr_html_(self) -> str:
         return f"<p>{html.escape(self._title())}</p>{self._table().html()}"

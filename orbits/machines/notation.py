@@ -64,6 +64,13 @@ WORDS = {
     "force_amplitude": "amplitude of the force",
 }
 
+
+def sign(name: str) -> str:
+    """The symbol of a parameter alone, as on axes; its name where it has none."""
+    _, dollar, symbol = SYMBOLS.get(name, "").partition("$")
+    return dollar + symbol or name
+
+
 #: of the coordinates of a start
 STARTS = {
     **{name: SYMBOLS[name] for name in ("v", "v_rate")},

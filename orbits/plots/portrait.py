@@ -10,6 +10,7 @@ import numpy as np
 
 from contvines.shared.figures import new_figure, styled
 from contvines.shared.near_names import hinting
+from orbits.machines.notation import sign
 from orbits.plots import panels as panel
 from orbits.plots.shown import quantities, shown
 from orbits.settings import SIMULATING
@@ -19,19 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from orbits.orbit import Orbit
-
-# parameters as in the diagrams
-SYMBOLS = {
-    "amplitude": "$C$",
-    "frequency": r"$\Omega$",
-    "restitution": "$r$",
-    "friction": r"$\mu$",
-    "gravity": r"$\tilde g$",
-    "mass_ratio": r"$\varepsilon$",
-    "forcing": "$G$",
-    "damping": r"$\lambda$",
-}
-
 
 PANELS = ("both", "phase", "history")
 NARROW, LOW = 6.0, 3.4  # inches: below, panels stand under one another, or the phase portrait stands alone
@@ -131,7 +119,7 @@ def title(orbit: Orbit) -> str:
         orbit.parameters
     )  # numbers have symbols, quantities are called by their names
     here = ", ".join(
-        f"{SYMBOLS.get(name, name) if plain else name.replace('_', ' ')} = {value}"
+        f"{sign(name) if plain else name.replace('_', ' ')} = {value}"
         for name, value in parameters.items()
         if (name, value) != ("excitation", "1")
     )

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from contvines.shared.motions import mean_of_blocks
 from orbits.flows.protocol import Outcome
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.native_stepper import NUMBERS, floats, written
@@ -26,7 +27,6 @@ from orbits.machines.stepping import (
     Machine,
     W,
 )
-from orbits.numbers import mean_of_blocks
 from orbits.settings import SIMULATING
 from orbits.simulation.driver import buffers
 

@@ -83,6 +83,8 @@ class Forms:
         Typical size of an eigenvalue; time is counted in its inverse.
     """
 
+    unknown = "the equations cannot be evaluated"
+
     def __init__(self, problem: Problem, u: np.ndarray, p: float, rough: bool = False) -> None:
         self.rough = rough
         self.problem, self.p, self.n = problem, float(p), len(u)
@@ -177,21 +179,21 @@ class Forms:
         direction = np.ascontiguousarray(np.real(direction))
         key = direction.tobytes()
         if key not in self.lines:
-
-            def rows(points: np.ndarray) -> np.ndarray | None:
-                found = []
-                for u in points:
-                    here = self._jacobian(self.open, self.open_work, u)
-                    if here is None:
-                        return None
-                    found.append(here[: self.n])
-                return np.array(found)
-
-            found = along_line(rows, self.whole, direction, self.reach, self.rough)
+            found = along_line(self.rows, self.whole, direction, self.reach, self.rough)
             if found is None:
-                raise ValueError("the equations cannot be evaluated near the special point")
+                raise ValueError(f"{self.unknown} near the special point")
             self.lines[key] = found
         return self.lines[key]
+
+    def rows(self, points: np.ndarray) -> np.ndarray | None:
+        """The derivatives of one period's rows at points of the doubled cycle; None where one of them is not known."""
+        found = []
+        for u in points:
+            here = self._jacobian(self.open, self.open_work, u)
+            if here is None:
+                return None
+            found.append(here[: self.n])
+        return np.array(found)
 
     # ------------------------------------------------------------------ one real critical direction
     def null(self, factor: complex) -> tuple[np.ndarray, np.ndarray]:

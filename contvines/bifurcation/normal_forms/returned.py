@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...problems.abilities import Returning
 from ...problems.protocol import Problem
 from .coefficients import Forms
-from .taylor import Line, along_line
+from .taylor import Line
 
 
 def forms_at(problem: Problem, u: np.ndarray, p: float) -> Forms:
@@ -30,6 +30,8 @@ class ReturnForms(Forms):
     Critical vectors have unit length as states.
     """
 
+    unknown = "motions cannot be followed for a period"
+
     def __init__(self, problem: Problem, u: np.ndarray, p: float) -> None:
         self.problem, self.p, self.rough = problem, float(p), False
         assert isinstance(problem, Returning)
@@ -39,7 +41,7 @@ class ReturnForms(Forms):
         self.units, self.u, self.whole = np.ones(self.n), np.zeros(self.n), np.zeros(self.n)
         matrix = self.returns.varied(np.zeros((1, self.n)))[1][0]
         if not np.isfinite(matrix).all():
-            raise ValueError("the motions beside the cycle cannot be followed for a period")
+            raise ValueError(f"{self.unknown} beside the cycle")
         self.J, self.K = matrix - np.eye(self.n), -np.eye(self.n)
         self.lines: dict[bytes, Line] = {}
         self._nulls: dict[complex, tuple[np.ndarray, np.ndarray]] = {}
@@ -58,20 +60,9 @@ class ReturnForms(Forms):
     def unit(self, vector: np.ndarray) -> np.ndarray:
         return vector / (np.linalg.norm(self.returns.basis @ vector) or np.nan)
 
-    def line_of(self, direction: np.ndarray) -> Line:
-        direction = np.ascontiguousarray(np.real(direction))
-        key = direction.tobytes()
-        if key not in self.lines:
-
-            def rows(points: np.ndarray) -> np.ndarray | None:
-                found = self.returns.varied(points)[1]
-                return found if np.isfinite(found).all() else None
-
-            found = along_line(rows, self.whole, direction, self.reach, self.rough)
-            if found is None:
-                raise ValueError("the motions beside the cycle cannot be followed for a period")
-            self.lines[key] = found
-        return self.lines[key]
+    def rows(self, points: np.ndarray) -> np.ndarray | None:
+        found = self.returns.varied(points)[1]
+        return found if np.isfinite(found).all() else None
 
     def rests(self, here: np.ndarray, following: np.ndarray | None) -> np.ndarray:
         assert following is not None

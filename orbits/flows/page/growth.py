@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from contvines.shared.motions import mean_of_blocks
 from orbits.flows.page.stepper import TWO_PI, Stepper
-from orbits.numbers import SMALLEST, mean_of_blocks
+from orbits.numbers import SMALLEST
 from orbits.settings import SIMULATING
 
 SAMPLES, BLOCKS = 1200, 20
