@@ -9,10 +9,10 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.contacts.letters import SLIP
 from orbits.flows.protocol import Simulator
-from orbits.flows.solving import solved_at
+from orbits.flows.solving import solved_nodes
 from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.orbit import Orbit
-from orbits.settings import SIMULATING, SOLVING
+from orbits.settings import SIMULATING
 from orbits.words import Word
 
 SHORT = 4  # forcing periods of the cycles that are looked for first
@@ -182,11 +182,9 @@ def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) ->
 
 def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:
     """The real orbit with the same word next to a guess, its shortest form; None if there is none within `far` (relative to 1 + states)."""
-    system = orbit.system(symmetric=False)
-    u, residual = solved_at(system, system.reduce(orbit.nodes), system.value(orbit.params))
-    if not residual < SOLVING.scaled * max(1.0, float(np.abs(u).max(initial=0.0))):
+    nodes = solved_nodes(orbit.system(symmetric=False), orbit.nodes, orbit.params)
+    if nodes is None:
         return None
-    nodes = system.expand(u)[: len(orbit.nodes)]
     moved = nodes - orbit.nodes
     for entry in orbit.flow.loose(orbit.model, orbit.word):  # shifted as a whole it is the same motion
         moved[:, entry] -= moved[:, entry].mean()

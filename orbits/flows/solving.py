@@ -38,6 +38,17 @@ def newton(
     return u, float(p), float(residual), tangent
 
 
+def solved_nodes(
+    system: Equations, nodes: np.ndarray, params: np.ndarray, limit: int = 40
+) -> np.ndarray | None:
+    """Nodes of the solution next to these, at these parameters; None if Newton's method does not converge to one."""
+    value = system.value(params)
+    u, residual = solved_at(system, system.reduce(nodes), value, limit)
+    if not residual < SOLVING.scaled * max(1.0, float(np.abs(u).max(initial=0.0))):
+        return None
+    return system.expand(u, value)[: len(nodes)]
+
+
 def solved_at(system: Equations, guess: np.ndarray, p: float, limit: int = 40) -> tuple[np.ndarray, float]:
     """Solution at a parameter value, and its residual (infinite if there is none)."""
     u, _, residual, _ = newton(system, guess, p, limit=limit)

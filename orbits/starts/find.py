@@ -13,9 +13,8 @@ import numpy as np
 from orbits.cycles.deviation import BACKWARD
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError
-from orbits.flows.solving import solved_at
+from orbits.flows.solving import solved_nodes
 from orbits.orbit import Orbit
-from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
@@ -38,14 +37,10 @@ class StartError(ValueError):
 
 def polish(orbit: Orbit, limit: int = 30) -> Orbit | None:
     """Newton's method from the orbit's nodes at fixed parameters; None if it does not converge to an orbit with this word."""
-    parameter = orbit.model.default_parameter
-    half = orbit.symmetric and orbit.model.has_mirror(orbit.params, parameter)
-    system = orbit.flow.equations(orbit.model, orbit.word, orbit.periods, parameter, orbit.params, half)
-    value = system.value(orbit.params)
-    u, residual = solved_at(system, system.reduce(orbit.nodes), value, limit=limit)
-    if not residual < SOLVING.scaled * max(1.0, float(np.abs(u).max())):
+    half = orbit.symmetric and orbit.model.has_mirror(orbit.params, orbit.model.default_parameter)
+    nodes = solved_nodes(orbit.system(half), orbit.nodes, orbit.params, limit)
+    if nodes is None:
         return None
-    nodes = system.expand(u, value)[: len(orbit.nodes)]
     if orbit.forced:
         nodes[:, 0] -= 2.0 * np.pi * np.floor(nodes[0, 0] / (2.0 * np.pi))
     return replace(orbit, nodes=nodes)
