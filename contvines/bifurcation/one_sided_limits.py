@@ -56,7 +56,7 @@ def one_sided(segment: Segment, root: Root) -> tuple[Solved, Solved | None]:
         limits = _limits(segment, position, row)
         if limits is not None:
             m, roots, row = engine.m, _roots(limits), row.copy()
-            row[0 : 2 * m : 2], row[1 : 2 * m : 2] = np.real(roots), np.imag(roots)
+            row[: 2 * m].view(np.complex128)[:] = roots
         elif not np.isfinite(row[: 2 * engine.m]).all():
             row = _by_growth(segment, position, row)
     return point._replace(tangent=tangent, row=row), solved_point(found, -1) if short > 0.0 else None
@@ -150,7 +150,7 @@ def _by_growth(segment: Segment, position: float, own: np.ndarray) -> np.ndarray
         ]
     )
     row = own.copy()
-    row[0 : 2 * m : 2], row[1 : 2 * m : 2] = np.real(roots), np.imag(roots)
+    row[: 2 * m].view(np.complex128)[:] = roots
     return row
 
 

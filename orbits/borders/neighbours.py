@@ -33,7 +33,7 @@ def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
 def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
     """Whether all multipliers of a solution lie inside the unit circle."""
     pairs = examined(problem, u, p)[: 2 * problem.n_multipliers]
-    return bool(np.all(np.hypot(pairs[::2], pairs[1::2]) < 1.0))
+    return bool(np.all(np.abs(pairs.view(np.complex128)) < 1.0))
 
 
 def examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:

@@ -6,13 +6,15 @@ import warnings
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
 from ..nearness import NEAREST
 from ..settings import LINEAR
 from ..spectra import without_roundoff
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from scipy.sparse import csc_array
 
 
@@ -20,6 +22,20 @@ class Solving(Protocol):
     """Factors of a matrix, or what solves with it in another way."""
 
     def solve(self, sides: np.ndarray, /) -> np.ndarray: ...
+
+
+def by_arpack(solve: Callable[..., Any], matrix: object, n: int, **options: Any) -> np.ndarray:
+    """Eigenvalues that `solve`, which is eigs or eigsh, finds from a fixed start: those that converge, none where it fails."""
+    start = np.random.default_rng(5).standard_normal(n)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        try:
+            found = solve(matrix, v0=start, tol=LINEAR.eigenvalues, return_eigenvectors=False, **options)
+        except ArpackNoConvergence as error:
+            found = error.eigenvalues
+        except RuntimeError:
+            found = np.zeros(0)
+    return np.asarray(found, dtype=complex)
 
 
 def nearest_sparse(factors: Solving | None, reference: csc_array, n: int) -> np.ndarray:
@@ -35,17 +51,9 @@ def nearest_sparse(factors: Solving | None, reference: csc_array, n: int) -> np.
     if factors is None:
         return np.zeros(NEAREST, dtype=complex)
     operator = LinearOperator((n, n), matvec=lambda x: factors.solve(reference @ x), dtype=float)  # type: ignore[call-arg]
-    start = np.random.default_rng(5).standard_normal(n)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        try:
-            options: dict[str, Any] = {"v0": start, "tol": LINEAR.eigenvalues, "return_eigenvectors": False}
-            found = eigs(operator, k=NEAREST, **options)
-        except ArpackNoConvergence as error:
-            found = np.asarray(error.eigenvalues)
-        except ArpackError:
-            found = np.zeros(0)
-        values = without_roundoff(1.0 / np.asarray(found, dtype=complex))
+    found = by_arpack(eigs, operator, n, k=NEAREST)
+    with np.errstate(all="ignore"):
+        values = without_roundoff(1.0 / found)
     if not len(values):
         return np.full(NEAREST, np.nan, dtype=complex)
     values = values[np.argsort(np.abs(values), kind="stable")][:NEAREST]

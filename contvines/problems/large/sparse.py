@@ -10,12 +10,11 @@ A LinearOperator is never factorised: GMRES solves the bordered system, with the
 from __future__ import annotations
 
 import math
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, eigs, eigsh, splu
 
 from ..functions import NotEvaluable, Operator
 from ..interpreted import assign, inspect
@@ -23,7 +22,7 @@ from ..nearness import distance
 from ..protocol import Kernels
 from ..settings import LINEAR
 from . import matrix_free
-from .nearest_eigenvalues import nearest_sparse
+from .nearest_eigenvalues import by_arpack, nearest_sparse
 from .sparse_factors import Factors, SuperLUFactors
 from .sparse_loci import flip, matrix, transpose
 from .sparse_work import Elimination, SparseWork
@@ -263,13 +262,7 @@ def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.n
         values = np.linalg.eigvals(matrix @ np.eye(n) if isinstance(matrix, Operator) else matrix.toarray())
         order = np.argsort(np.abs(values - shift), kind="stable")
         return values[order][:count]
-    start = np.random.default_rng(5).standard_normal(n)
-    options: dict[str, Any] = {
-        "k": count,
-        "v0": start,
-        "tol": LINEAR.eigenvalues,
-        "return_eigenvectors": False,
-    }
+    options: dict[str, Any] = {"k": count}
     solve = eigs
     if not isinstance(matrix, Operator):
         factors = _factorise(work) if shift == 0.0 else None
@@ -283,14 +276,7 @@ def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.n
         options["OPinv"], options["sigma"] = LinearOperator((n, n), matvec=inverse.solve, dtype=float), shift  # type: ignore[call-arg]
     else:
         options["which"] = "LR"
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
-        try:
-            values = np.asarray(solve(matrix, **options), dtype=complex)
-        except ArpackNoConvergence as error:
-            values = np.asarray(error.eigenvalues, dtype=complex)
-        except (ArpackError, RuntimeError):
-            values = np.zeros(0, dtype=complex)
+    values = by_arpack(solve, matrix, n, **options)
     if not len(values):
         return np.full(count, np.nan, dtype=complex)
     values = values[np.argsort(np.abs(values - shift), kind="stable")][:count]

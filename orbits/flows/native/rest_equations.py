@@ -92,8 +92,7 @@ class RestKernels(PlainKernels[RestEquations, RestWork]):
         """Multipliers of the forcing period, and the reserve of friction."""
         params = data.values(p)
         spectrum = data.model.rest.multipliers(params)
-        row[: 2 * spectrum.size : 2] = np.real(spectrum)
-        row[1 : 2 * spectrum.size : 2] = np.imag(spectrum)
+        row[: 2 * spectrum.size].view(np.complex128)[:] = spectrum
         row[-1] = data.model.rest.reserve(params, u)
 
     @staticmethod

@@ -69,8 +69,7 @@ class PageKernels(PlainKernels[Pieces, flights.Work]):
     def inspect(self, data: Pieces, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
         """Multipliers as (re, im) pairs, then the margins, into `row`."""
         m = data.n_multipliers
-        values = flights.multipliers(data, work)
-        row[0 : 2 * m : 2], row[1 : 2 * m : 2] = np.real(values), np.imag(values)
+        row[: 2 * m].view(np.complex128)[:] = flights.multipliers(data, work)
         fill_margins(data, u, work, row[2 * m :])
 
 
