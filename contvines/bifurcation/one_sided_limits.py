@@ -212,8 +212,7 @@ def _before(segment: Segment, s: float) -> Solved | None:
     if distance > LIMITS.straight:
         return None
     guess = segment.za - distance * a.tangent
-    border = engine.weights * a.tangent
-    found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), a.tangent)
+    found = engine.across(guess[:-1], float(guess[-1]), a.tangent)
     if found is None or engine.norm(engine.join(found.u, found.p) - guess) > STRAYING * distance:
         return None
     return found

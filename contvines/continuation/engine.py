@@ -162,6 +162,11 @@ class Engine(Rows):
         border = self.weights * tangent
         return self.solve(u, p, border, float(border @ self.join(u, p)), tangent)
 
+    def beside(self, point: Solved, step: float) -> Solved | None:
+        """The solution at a distance along the tangent of a known one."""
+        guess = self.join(point.u, point.p) + step * point.tangent
+        return self.across(guess[:-1], float(guess[-1]), point.tangent)
+
     # ------------------------------------------------------------------ single points
     def solve(
         self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
@@ -270,8 +275,7 @@ class Engine(Rows):
         u = np.asarray(u, dtype=float)
         if tangent is not None and np.any(tangent):
             tangent = self.unit(np.asarray(tangent, dtype=float))
-            border = self.weights * tangent
-            found = self.solve(u, p, border, float(border @ self.join(u, p)), tangent)
+            found = self.across(u, p, tangent)
             if found is not None and self.lower <= found.p <= self.upper:
                 return found
         found, p = None, min(max(p, self.lower), self.upper)

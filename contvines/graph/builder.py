@@ -323,7 +323,5 @@ def off(engine: Engine, point: Solved, step: float, real: bool | None) -> Solved
 
 def beside(engine: Engine, point: Solved, step: float) -> Solved | None:
     """A point of the same branch at a small distance, if it lies in the interval."""
-    guess = engine.join(point.u, point.p) + step * point.tangent
-    border = engine.weights * point.tangent
-    found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), point.tangent)
+    found = engine.beside(point, step)
     return found if found is not None and engine.lower <= found.p <= engine.upper else None

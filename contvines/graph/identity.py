@@ -200,9 +200,7 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
     gap, length, point = away(first), same, first
     exactly = IDENTITY.exact * same
     while exactly < gap <= same and 100.0 * engine.noise < exactly and length < FAR:
-        border = engine.weights * point.tangent
-        guess = engine.join(point.u, point.p) + length * point.tangent
-        found = engine.solve(guess[:-1], float(guess[-1]), border, float(border @ guess), point.tangent)
+        found = engine.beside(point, length)
         if found is None or not engine.lower <= found.p <= engine.upper:
             return False
         if engine.inner(point.tangent, found.tangent) < 0.9:

@@ -409,7 +409,7 @@ def beginning(
     beside = []
     if start is not None:
         reach = BESIDE + 2.0 * ahead / float(np.linalg.norm(start.tangent[-2:]))
-        beside = [_beside(engine, start, by) for by in (-reach, reach)]
+        beside = [engine.beside(start, by) for by in (-reach, reach)]
     around = [point for point in beside if point is not None]
     if len(around) < 2:
         return None
@@ -440,9 +440,3 @@ def becomes(locus: LocusProblem, u: np.ndarray, p: float, q: float) -> Becomes |
         if np.abs((image_of(symmetry, u, p) - u) / sizes).max() < VANISHING.image:
             return Becomes(symmetry.kind, *(() if symmetry.root is None else symmetry.root(u)))
     return None
-
-
-def _beside(engine: Engine, point: Solved, by: float) -> Solved | None:
-    """The point of a locus at a distance along its tangent."""
-    guess, border = engine.join(point.u, point.p) + by * point.tangent, engine.weights * point.tangent
-    return engine.solve(guess[:-1], float(guess[-1]), border, float(border @ guess), point.tangent)
