@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING
@@ -13,7 +13,7 @@ from orbits.proofs.obstacles import ProofError
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from flint import arb
+    from flint import arb, arb_mat
 
 #: a parameter as a proof takes it: a float (its shortest decimal is meant), an exact decimal as text, or middle and radius
 Given = float | int | str | tuple[str, str]
@@ -84,6 +84,16 @@ def ball(value: Given) -> arb:
     arb = library().arb
     text = decimal(value)
     return arb(*text) if isinstance(text, tuple) else arb(text)
+
+
+def as_balls(nodes: Iterable[Iterable[float]]) -> list[list[arb]]:
+    """Rows of floats as balls."""
+    return [[ball(float(value)) for value in node] for node in nodes]
+
+
+def diagonal(size: int, value: arb | int = 1) -> arb_mat:
+    """The identity times a number."""
+    return library().arb_mat(size, size, [value * (i == j) for i in range(size) for j in range(size)])
 
 
 def interval(low: arb, high: arb) -> arb:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from orbits.proofs.admissible import examine
-from orbits.proofs.balls import Given, ball, decimal, library, precision
+from orbits.proofs.balls import Given, as_balls, ball, decimal, library, precision
 from orbits.proofs.certificates import Entry, certificate, tile_box
 from orbits.proofs.checks import check_symmetry
 from orbits.proofs.crossing import orbit_at, orbit_entry
@@ -261,7 +261,7 @@ class _Cover:
         return None
 
     def _orbit(self, value: str, start: Sequence[Sequence[float]] | np.ndarray) -> Box:
-        nodes = [[ball(float(v)) for v in node] for node in start]
+        nodes = as_balls(start)
         return orbit_at(self.family, value, nodes, BITS)
 
     def _next(
@@ -282,7 +282,7 @@ class _Cover:
         along = Along(family, None, ball(center))
         try:
             system = family.system(ball(center))
-            z, _ = refine(system, [[ball(float(v)) for v in node] for node in nodes], [], BITS)
+            z, _ = refine(system, as_balls(nodes), [], BITS)
             tile = lay(along, center, half, z, ball(center))
             if tile is None or not tile.holds(at, box):
                 return smaller

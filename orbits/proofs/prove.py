@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.proofs.admissible import NOTHING, Zero, examine
-from orbits.proofs.balls import Given, ball, decimal, precision
+from orbits.proofs.balls import Given, as_balls, ball, decimal, precision
 from orbits.proofs.certificates import conditions
 from orbits.proofs.checks import check_parameters, check_symmetry, mirrored, motif_of, require_mirror
 from orbits.proofs.crossing import crossing
@@ -154,7 +154,7 @@ def prove_special(
         check_parameters(motif, here)
         if not len(motif):
             return _slip(proof, family, value, at)
-        x = [[ball(float(v)) for v in node] for node in nodes]
+        x = as_balls(nodes)
         vanishing = vanishing_margin(motif, here, x, *margin) if margin else None
         system, z, e, turn = _defining(kind, family, x, value, vanishing)
         z, e = _refined(system, nodes, e, at, z)
@@ -233,7 +233,7 @@ def _refined(
     system: System, nodes: np.ndarray, extras: Sequence[arb], bits: int, start: list[list[arb]] | None = None
 ) -> Solution:
     """Newton's method; the result must be the computed orbit, not one somewhere else."""
-    z = start or [[ball(float(v)) for v in node] for node in nodes]
+    z = start or as_balls(nodes)
     z, e = refine(system, z, extras, bits)
     n = system.motif.node
     away = max(

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.proofs.balls import library
+from orbits.proofs.balls import diagonal, library
 from orbits.proofs.equations import System
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
 from orbits.settings import PROVING
@@ -53,7 +53,7 @@ def stable(system: System, nodes: Nodes) -> tuple[bool | None, Obstacle | None]:
 def _verdict(product: arb_mat, squarings: int = SQUARINGS) -> bool | None:
     """By the signs of det(1 - A), det(1 + A) and prod(1 - mu_i mu_j), and by norms of the powers."""
     size = product.nrows()
-    one = library().arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+    one = diagonal(size)
     if any(matrix.det() < 0 for matrix in (one - product, one + product)) or _pairs(product) < 0:
         return False
     for _ in range(squarings):
@@ -72,7 +72,7 @@ def away_from_one(system: System, nodes: Nodes) -> bool:
     product, size = factors[0], factors[0].nrows()
     for factor in factors[1:]:
         product = factor * product
-    one = library().arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+    one = diagonal(size)
     both = [(one - product).det(), (one + product).det()]
     return all(float(det.rad()) < PROVING.rough * abs(float(det.mid())) for det in both)
 

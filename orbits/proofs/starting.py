@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.proofs.balls import library
+from orbits.proofs.balls import diagonal, library
 from orbits.proofs.equations import Motif, System
 from orbits.proofs.flights import Flight, Flights
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
@@ -35,10 +35,10 @@ def eigenvector(factors: Sequence[arb_mat], mu: int) -> tuple[list[list[arb]], N
     arb, arb_mat = library().arb, library().arb_mat
     size = factors[0].nrows()
     product = middle_product(factors)
-    shifted = product - arb_mat(size, size, [arb(mu) * (i == j) for i in range(size) for j in range(size)])
+    shifted = product - diagonal(size, arb(mu))
     # inverse iteration; the multiplier is known to about ten digits only
     tilt = arb(2) ** (-60)
-    shifted = shifted + arb_mat(size, size, [tilt * (i == j) for i in range(size) for j in range(size)])
+    shifted = shifted + diagonal(size, tilt)
     vector = arb_mat(size, 1, [arb(1) / (1 + i) for i in range(size)])
     for _ in range(3):
         try:
