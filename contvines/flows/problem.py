@@ -18,7 +18,7 @@ from ..problems.protocol import Seed
 from ..problems.registry import addresses
 from ..problems.scales import flat_start, given_scale
 from . import mesh
-from .attractors import Stopped, recurrence
+from .attractors import SAMPLES, Stopped, recurrence
 from .collocation import rule
 from .compiled import CompiledRates
 from .cycles import CycleProblem
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 INTERVALS = 40  # of a cycle from data, to begin with ...
 HALVES = 2  # equal parts of its mesh, so that what comes back half a period later, itself or its mirror image, is as exact as the cycle
 MORE = 4, 16  # ... and times those, where that does not converge, as bursts of sharp spikes
+MOST_TURNS = 64  # after which a motion may come back to where it was
+MESHES = 10.0  # times the error of a cycle between its mesh points: cycles on different meshes that are one
 
 
 class FlowOptions(TypedDict, total=False):
@@ -510,7 +512,37 @@ class FlowProblem:
         shorter = cycles.root(u, parameters.start)
         if shorter is not None and isinstance(shorter[0], CycleProblem):
             cycles, u = shorter[0], shorter[1]
-        return CycleOrbit(cycles, u, parameters.start)
+        orbit = CycleOrbit(cycles, u, parameters.start)
+        return self._once(orbit, parameters, cycles.rounds) or orbit
+
+    def _once(self, orbit: CycleOrbit, parameters: ParameterSet, rounds: int) -> CycleOrbit | None:
+        """The shorter cycle that an orbit repeats several times; None if there is none.
+
+        A motion that goes round a cycle while it comes nearer may recur after several periods sooner than after one.
+        """
+        field, s = self.field.against(parameters), self.settings
+        if field.forced and rounds == 1:
+            return None
+        own = np.ptp(orbit.states, axis=0) / field.lengths
+        size = field.lengths * np.maximum(own, s.least * own.max())
+        near, exact = (size * share + s.still * field.lengths for share in (s.recurs, MESHES * self.error))
+        times = np.linspace(0.0, orbit.period, SAMPLES + 1)
+        states, parts = orbit(times), np.arange(rounds if field.forced else MOST_TURNS, 1, -1)
+        parts = parts[(np.abs(orbit(orbit.period / parts) - states[0]) <= near).all(axis=1)]
+        for n in parts.tolist():
+            if field.forced and rounds % n:
+                continue
+            if not (np.abs(orbit((times + orbit.period / n) % orbit.period) - states) <= near).all():
+                continue
+            share, left = times / n, rounds // n if field.forced else 1
+            try:
+                shorter = self._cycle(share, orbit(share), parameters, left)
+            except ValueError:
+                continue
+            again = shorter(n * shorter.period * times / orbit.period % shorter.period)
+            if (np.abs(again - states) <= exact).all():
+                return shorter
+        return None
 
     def _guess(
         self, field: Field, p: float, times: np.ndarray, states: np.ndarray, widths: np.ndarray, rounds: int

@@ -153,7 +153,7 @@ def test_mirror_images_of_a_forced_flow_are_one_motion_half_a_period_later():
     other = flow.attractor([-1.0, 0.0], g=0.1)
     listed = [one for one in problem.simulated_attractors(0.1) if one["kind"] == "periodic"]
     for orbit in (flow.attractor([1.0, 0.0], g=0.1), other):
-        known = orbit.problem("g").attractor(orbit.u, 0.1)
+        known = flow.known(orbit.problem("g"), orbit.u, 0.1)
         assert known["u"] == pytest.approx(listed[0]["u"], rel=1e-4)
 
 
@@ -175,3 +175,28 @@ def test_in_the_plane_nothing_is_quasi_periodic():
     flow = cv.FlowProblem(lambda x, p: [x[1], -x[0] + (p.a - x[0] ** 2) * x[1]], [1.0, 0.0], {"a": 0.0})
     motions, _, _ = flow.population().settle(np.array([[1.0, 0.5]]), 0.0)
     assert [one.kind for one in motions] == ["slow"]
+
+
+def test_a_motion_that_goes_round_its_cycle_is_not_taken_for_a_longer_one():
+    """Ueda's oscillator with little damping: motions from everywhere come to one cycle of one period, round which they go; after 3, 5 or 13 periods they are
+    nearer to where they were than after one."""
+    flow = cv.FlowProblem(
+        lambda x, p, t: [x[1], -0.02 * x[1] - x[0] ** 3 + p.B * np.cos(t)],
+        [0.0, 0.0],
+        {"B": 2.0},
+        period=lambda p: 2.0 * np.pi,
+    )
+    orbit = flow.attractor([2.0, 2.0])
+    assert orbit.period == pytest.approx(2.0 * np.pi)
+    exact = solve_ivp(
+        lambda t, x: [x[1], -0.02 * x[1] - x[0] ** 3 + 2.0 * np.cos(t)],
+        (0.0, 2.0 * np.pi),
+        orbit.states[0],
+        rtol=1e-11,
+        atol=1e-12,
+    )
+    assert exact.y[:, -1] == pytest.approx(orbit.states[0], abs=1e-6)
+    population = flow.population("B", box=[(-4.0, 4.0), (-6.0, 6.0)])
+    motions, index, _ = population.settle(population.starts(30, 1, 2.0), 2.0)
+    assert [motion.periods for motion in motions] == [1]
+    assert not index.any()
