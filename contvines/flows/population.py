@@ -39,6 +39,11 @@ LONGEST = 16  # returns, or periods of the forcing, after which a motion is take
 DOUBLINGS = 4  # of the transient of a motion that is looked at by itself
 BRIEF = (3, 12)  # values, and starts at each, of a brief look
 TRIED = (4, 2, 2)  # motions that recur nowhere, after which no others are looked at by themselves
+AGAIN = (
+    2,
+    4,
+    MOST_STEPS,
+)  # solved for once more, though known, after which others are left to come nearer to them by themselves
 NEWTON = 30
 GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
 BLOCKS = 20
@@ -52,6 +57,7 @@ class Settled(Motion["AlgebraicProblem | CycleMesh"]):
 
     curve: np.ndarray | None = field(default=None, repr=False)  # states on it
     image: np.ndarray | None = field(default=None, repr=False)  # states on its mirror image
+    size: np.ndarray | float = field(default=0.0, repr=False)  # range of each state along it
 
 
 @dataclass(frozen=True)
@@ -153,7 +159,7 @@ class FlowPopulation(StartsInBox):
         except NotEvaluable:  # there is no forcing with such parameters
             return [Settled("escaped")], np.zeros(n, dtype=int), mirrored
         rounds = 0
-        for steps, periods, most in zip(STEPS, PERIODS, TRIED, strict=True):
+        for steps, periods, most, again in zip(STEPS, PERIODS, TRIED, AGAIN, strict=True):
             ways: dict[int, list[Place]] = {int(i): [] for i in np.flatnonzero(index < 0)[:most]}
             for _ in range(steps if period is None else periods):
                 left = np.flatnonzero(index < 0)
@@ -175,7 +181,7 @@ class FlowPopulation(StartsInBox):
                     break
             self.work += march.steps / PER_PERIOD
             march.steps = 0
-            self._recognise(march, ways, index, mirrored, motions, p, most)
+            self._recognise(march, ways, index, mirrored, motions, p, most, again)
             if (index >= 0).all():
                 return motions, index, mirrored
         left = np.flatnonzero(index < 0)
@@ -198,17 +204,17 @@ class FlowPopulation(StartsInBox):
         if motion.curve is None:
             return
         left = np.flatnonzero((index < 0) & np.isfinite(x).all(axis=1))
-        near = self._on(x[left], motion.curve)
+        near = self._on(x[left], motion.curve, motion.size)
         index[left[near]] = k
         if motion.image is not None:
             left = left[~near]
-            near = self._on(x[left], motion.image)
+            near = self._on(x[left], motion.image, motion.size)
             index[left[near]], mirrored[left[near]] = k, True
 
-    def _on(self, x: np.ndarray, curve: np.ndarray) -> np.ndarray:
-        """Which states lie on a curve, of one point or of many that follow each other round it (in forced flows: apart)."""
+    def _on(self, x: np.ndarray, curve: np.ndarray, size: np.ndarray | float) -> np.ndarray:
+        """Which states lie on a curve of a motion of such a size, of one point or of many that follow each other round it (in forced flows: apart)."""
         s = self.field.settings
-        size = np.maximum(np.ptp(curve, axis=0), s.smallest * self.size)
+        size = np.maximum(size, s.smallest * self.size)
         near = np.zeros(len(x), dtype=bool)
         apart = self.field.forced or len(curve) == 1
         ahead = (curve if apart else np.roll(curve, -1, axis=0)) - curve
@@ -230,10 +236,11 @@ class FlowPopulation(StartsInBox):
         motions: list[Settled],
         p: float,
         most: int,
+        again: int,
     ) -> None:
         """Solve for what the states that belong to nothing yet have come near to."""
         tried: list[int] = []
-        while len(tried) < most:
+        while len(tried) < most and again > 0:
             left = [int(i) for i in np.flatnonzero(index < 0) if i not in tried]
             if not left:
                 return
@@ -246,21 +253,26 @@ class FlowPopulation(StartsInBox):
                 self._add(motions, index, np.array([i]), motion)
                 continue
             known = [k for k, m in enumerate(motions) if m.curve is not None and self._same(m, motion)]
-            if not known:
+            if known:
+                again -= 1
+            else:
                 motions.append(motion)
             k = known[0] if known else len(motions) - 1
-            index[i], mirrored[i] = k, bool(known) and not self._along(motion, motions[k].curve)
+            index[i], mirrored[i] = (
+                k,
+                bool(known) and not self._along(motion, motions[k].curve, motions[k].size),
+            )
             self._assign(march.x, index, mirrored, k, motion)
 
     def _same(self, one: Settled, other: Settled) -> bool:
         alike = one.word == other.word and one.periods == other.periods
-        return alike and (self._along(other, one.curve) or self._along(other, one.image))
+        return alike and any(self._along(other, curve, one.size) for curve in (one.curve, one.image))
 
-    def _along(self, motion: Settled, curve: np.ndarray | None) -> bool:
-        """Whether a motion lies on a curve."""
+    def _along(self, motion: Settled, curve: np.ndarray | None, size: np.ndarray | float) -> bool:
+        """Whether a motion lies on a curve of another one, of such a size."""
         if curve is None or motion.curve is None:
             return False
-        return bool(self._on(motion.curve[:: max(1, len(motion.curve) // 8)], curve).all())
+        return bool(self._on(motion.curve[:: max(1, len(motion.curve) // 8)], curve, size).all())
 
     def _solved(self, x: np.ndarray, way: Sequence[Place], p: float) -> Settled | None:
         """The equilibrium or cycle on which the motion from a state settles, which came some way; None where it is neither, or not soon."""
@@ -306,7 +318,15 @@ class FlowPopulation(StartsInBox):
         rounds = problem.rounds if self.field.forced else 0
         curve, image = curves(self.flow, orbit, rounds)
         return Settled(
-            "periodic", "cycle", rounds, problem, orbit.u.copy(), state=curve[0], curve=curve, image=image
+            "periodic",
+            "cycle",
+            rounds,
+            problem,
+            orbit.u.copy(),
+            state=curve[0],
+            curve=curve,
+            image=image,
+            size=np.ptp(orbit.states, axis=0),
         )
 
     def _equilibrium(self, x: np.ndarray, p: float) -> Settled:
