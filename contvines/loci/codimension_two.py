@@ -207,26 +207,22 @@ def _zeros(
     """The zeros of tests between points of a locus that are what is looked for, each with the index of the point before it."""
     plane, last = Plane(problem), len(points) - 2
     places = [_place(problem, point) for point in points]
-    at: References | None = None
-    rough = {sought.kind: list[float]() for sought in wanted if sought.rough is not None}
-    beside: list[References] = []
-    for place in places if rough else ():
-        plane.at(place)
-        at = References(plane, problem, at)
-        beside.append(at)
-        for sought in wanted:
-            if sought.rough is not None:
-                rough[sought.kind].append(
-                    _value(plane, place, lambda x, rough=sought.rough, at=at: rough(x, at))
-                )
+    beside: list[References | None] = []
+    for place in places:
+        before = beside[-1] if beside else None
+        finite = math.isfinite(plane.at(place))
+        beside.append(References(plane, problem, before) if finite else before)
+    rough = {
+        sought.kind: [_roughly(sought.rough, plane, *pair) for pair in zip(places, beside)]
+        for sought in wanted
+        if sought.rough is not None
+    }
     for sought in wanted:
         if sought.rough is not None:
             _sharpen(rough[sought.kind], sought, plane, places, beside)
-    at = None
-    for i, ends in enumerate(pairwise(places)):
-        if not math.isfinite(plane.at(ends[0])):
+    for i, (ends, at) in enumerate(zip(pairwise(places), beside)):
+        if at is None or not math.isfinite(plane.at(ends[0])):
             continue
-        at = References(plane, problem, at)
         tests = [(sought, test) for sought in wanted if (test := sought.test(at)) is not None]
         values = [
             [rough[s.kind][i + k] if s.rough else _value(plane, end, test) for s, test in tests]
@@ -248,8 +244,18 @@ def _zeros(
                 yield index, point
 
 
+def _roughly(
+    rough: Callable[[Plane, References], float], plane: Plane, place: Place, at: References | None
+) -> float:
+    return math.nan if at is None else _value(plane, place, lambda x: rough(x, at))
+
+
 def _sharpen(
-    values: list[float], sought: Sought, plane: Plane, places: Sequence[Place], beside: Sequence[References]
+    values: list[float],
+    sought: Sought,
+    plane: Plane,
+    places: Sequence[Place],
+    beside: Sequence[References | None],
 ) -> None:
     """Replace rough values by exact ones at both ends of each change of sign, which may then lie between the next two points."""
     exact: set[int] = set()
@@ -260,8 +266,8 @@ def _sharpen(
         - exact
     ):
         for j in ends:
-            plane.at(places[j])
-            test = sought.test(beside[j])
+            at = beside[j]
+            test = None if at is None else sought.test(at)
             if test is not None:
                 values[j] = _value(plane, places[j], test)
         exact |= ends
