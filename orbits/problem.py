@@ -72,6 +72,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
         self.model, self.word, self.periods = model, word, int(periods)
         self.parameter, self.params, self.symmetric = parameter, params, bool(symmetric)
         self.flow, self.forced = flow_of(model), bool(model.forced)
+        model.place_of(parameter)
         self.mirrored = model.has_mirror(params, parameter)
         self.units = model.natural_units(params) if units is None else units
         self.equations = system = self.flow.equations(

@@ -1,5 +1,7 @@
 """Wrong input in Python, and a fragment of the sentence that refuses it: the field, the value or the way out. The command line's are in `contvines/command`."""
 
+# pyright: reportArgumentType=false, reportCallIssue=false, reportAttributeAccessIssue=false
+# what is refused here has wrong types on purpose
 from functools import cache
 
 import numpy as np
@@ -289,6 +291,16 @@ REFUSED = {
     "events are of built-in machines; 'box' is declared: its orbits have nodes": lambda: (
         box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0).events
     ),
+    "parameter = 'gp' is unknown to the model 'box' (did you mean 'gap'?)": lambda: (
+        box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0).problem("gp")
+    ),
+    "within = [-1, 3]: frequency = -1: a forcing frequency is above 0": lambda: cv.diagram(
+        box().orbit("", 1, [[0.0, 0.0, 0.0]], forcing=0.1, frequency=2.0), over="frequency", within=(-1, 3)
+    ),
+    "within = [0.2, 2]: restitution = 2 is out of range; give a number above 0": lambda: cv.diagram(
+        PAPER.symmetric_orbit(amplitude=0.55), over="restitution", within=(0.2, 2.0)
+    ),
+    "at = 'x': the value of m must be a finite number": lambda: cv.basins(oscillator().population(), at="x"),
     "Machine has no argument 'state' (did you mean 'states'?); it has name": lambda: Machine(
         name="stop", state=("x", "v")
     ),

@@ -214,7 +214,7 @@ class SpecialPoint:
             If it is no Hopf point of a flow, or no cycle is found.
         """
         if self.kind != "hopf":
-            raise ValueError(f"{self.label} is a {self.kind} point; cycles are born at Hopf points")
+            raise ValueError(f"{self.label} is a point of kind {self.kind}; cycles are born at Hopf points")
         from ..graph.cycle_at import cycle_at
 
         return cycle_at(self)

@@ -233,8 +233,8 @@ def basins(
     population = population_of(machine, over)
     if at is None:
         raise ValueError(f"at = None: give the value of {population.parameter}, for example at=1.1")
-    if not np.isfinite(float(at)):
-        raise ValueError(f"at = {at!r}: the value of {population.parameter} must be finite")
+    if not isinstance(at, float | int | np.number) or not np.isfinite(at):
+        raise ValueError(f"at = {at!r}: the value of {population.parameter} must be a finite number")
     names = population.names
     if plane is not None and len(plane) != 2:
         raise ValueError(f"plane = {plane!r}: give two names of {', '.join(names)}")

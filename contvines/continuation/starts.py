@@ -109,9 +109,14 @@ def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:
     Raises
     ------
     ValueError
-        If the start lies outside the interval or Newton's method does not converge from it.
+        If an end of the interval is no value of the parameter, the start lies outside, or Newton's method does not converge from it.
     """
     name = engine.problem.parameter
+    try:
+        for end in (engine.lower, engine.upper):
+            engine.problem.check_value(name, end)
+    except ValueError as error:
+        raise ValueError(f"within = [{engine.lower:.10g}, {engine.upper:.10g}]: {error}") from None
     u = np.asarray(u, dtype=float).reshape(-1)
     p = float(p)
     if not engine.lower <= p <= engine.upper:

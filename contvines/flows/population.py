@@ -42,8 +42,8 @@ TRIED = (4, 2, 2)  # motions that recur nowhere, after which no others are looke
 AGAIN = (
     2,
     4,
-    MOST_STEPS,
-)  # solved for once more, though known, after which others are left to come nearer to them by themselves
+    np.inf,
+)  # motions solved for though known, after which others are left to come nearer by themselves
 NEWTON = 30
 GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
 BLOCKS = 20
@@ -236,7 +236,7 @@ class FlowPopulation(StartsInBox):
         motions: list[Settled],
         p: float,
         most: int,
-        again: int,
+        again: float,
     ) -> None:
         """Solve for what the states that belong to nothing yet have come near to."""
         tried: list[int] = []
