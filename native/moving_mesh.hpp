@@ -30,16 +30,23 @@ inline void steer(const Ring& y, const double* u, const double* row, double* tan
     double *slopes = y.room, *low = slopes + states, *moved = low + d, *stretch = moved + d, *square = stretch + d, *cross = square + n, *wanted = cross + n;
     double *right = wanted + n, *there = right + n, *diagonal = there + n, *one = diagonal + n, *other = one + n, *shift = other + n;
     double size = 0.0;
+    const whole part = states / y.copies;
     for (whole a = 0; a < d; a++) {
-        whole lowest = a, highest = a;
-        for (whole k = a; k < states; k += d) {
-            if (u[k] < u[lowest]) lowest = k;
-            if (u[k] > u[highest]) highest = k;
+        double smallest = HUGE_VAL, largest = -HUGE_VAL, range = 0.0, grows = 0.0;
+        low[a] = moved[a] = 0.0;
+        for (whole from = a; from < states; from += part) {  // means over the parts of the mesh: which one has the outermost node may change
+            whole lowest = from, highest = from;
+            for (whole k = from; k < from - a + part; k += d) {
+                if (u[k] < u[lowest]) lowest = k;
+                if (u[k] > u[highest]) highest = k;
+            }
+            const Extreme least = at_extreme(y, u, widths, tangent, lowest), most = at_extreme(y, u, widths, tangent, highest);
+            low[a] += least.value / y.copies, moved[a] += least.change / y.copies;
+            range += most.value - least.value, grows += most.change - least.change;
+            smallest = smaller(smallest, u[lowest]), largest = larger(largest, u[highest]);
         }
-        const Extreme least = at_extreme(y, u, widths, tangent, lowest), most = at_extreme(y, u, widths, tangent, highest);
-        const double range = most.value - least.value;
-        low[a] = least.value, moved[a] = least.change, stretch[a] = range > 0.0 ? (most.change - least.change) / range : 0.0;
-        size = larger(size, (u[highest] - u[lowest]) / y.scale[a]);
+        stretch[a] = range > 0.0 ? grows / range : 0.0;
+        size = larger(size, (largest - smallest) / y.scale[a]);
     }
     if (!(size > y.least)) return;
     for (whole i = 0; i < 5 * n; i++) square[i] = 0.0;

@@ -195,8 +195,9 @@ class Detector(SegmentSearch):
 
     def _told(self, origin: Solved, point: Solved, error: float = 0.0) -> bool:
         """Whether the parameter of a point, known to an error and to rounding, is another one than that of a branch point."""
-        rounded = rounding_of_parameter(self.engine, point) if self.engine.adaptive else 0.0
-        return abs(point.p - origin.p) >= max(error, rounded)
+        if self.engine.adaptive:  # on another mesh the branch begins elsewhere within the error of its origin
+            error = max(error, rounding_of_parameter(self.engine, point), origin.correction)
+        return abs(point.p - origin.p) >= error
 
     def _hides(self, origin: Solved, start: Solved) -> bool:
         """Whether a point beside a branch point tells that multipliers have passed the circle between both, or that the parameter has turned.

@@ -51,6 +51,8 @@ def kinked(segment: Segment) -> bool:
         if not (np.isfinite(near).all() and near[k] < min(near[0], near[-1])):
             return False
         if zoom == 0:
+            if engine.adaptive and max(near[0], near[-1]) <= engine.settings.critical:
+                return False  # where all of it is next to the circle kinks are those of rounding
             first = steepness
         elif steepness < engine.settings.steep * first:
             return False

@@ -239,7 +239,11 @@ class SegmentSearch:
                 known = self.engine.many or segment.length <= self.engine.settings.resolution
                 astray = not (known or singular(self.engine, root.point))
                 events.append(Located.at(root, kind, index, Role.MEETING, astray))
-        return events
+        if not events:
+            return []
+        # an equilibrium that a cycle becomes may be its own mirror image, too: of symmetries that are met at once the first one says what is met
+        first = min(events, key=lambda event: event.position)
+        return [e for e in events if self.engine.distance(e.point, first.point) <= settings.one_place][:1]
 
     # ------------------------------------------------------------------ what the ends of a segment do not tell
     def evidence_of(self, points: Sequence[Solved]) -> Evidence:

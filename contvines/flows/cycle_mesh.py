@@ -83,7 +83,7 @@ class CycleMesh(CycleUnknowns):
 
     def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
         """Whether a cycle asks for more intervals: its error is too large on a mesh that suits it, too, Newton's method fails beside it, as at canards on a
-        coarse mesh, it becomes one of half the period, which takes a mesh with equal halves to tell, or a decay gets lost."""
+        coarse mesh, it becomes one of half the period, or its own mirror image, which takes a mesh with equal halves to tell, or a decay gets lost."""
         if stuck:
             return self.intervals < ENOUGH * self.copies
         if self.free_period and self.copies % 2 and self._asymmetry(u) < self.flow.settings.halving:
@@ -123,11 +123,18 @@ class CycleMesh(CycleUnknowns):
         return bool(found < 1.0 < true)
 
     def _asymmetry(self, u: np.ndarray) -> float:
-        """How far a cycle is from itself half a period later, relative to its size: 0 of one that runs twice through a shorter one."""
+        """How far a cycle is from itself half a period later, or, on a mesh with other halves, from its mirror image then, relative to its size.
+
+        0 of one that runs twice through a shorter one, or is its own mirror image.
+        """
         x, widths = self._curve(u)
         later = mesh.evaluate(self.rule, widths, x, mesh.node_places(self.rule, widths) + 0.5)
+        images, apart = [later], np.abs(widths - np.roll(widths, self.intervals // 2)).max()
+        if self.flow.mirror is not None and apart > self.flow.settings.same * widths.max():
+            images.append(np.array([self.flow.mirror(y) for y in later]))
         x = x.reshape(later.shape) / self.node_scale
-        return float(np.abs(x - later / self.node_scale).max() / max(np.ptp(x, axis=0).max(), TINY))
+        gaps = [np.abs(x - image / self.node_scale).max() for image in images]
+        return float(min(gaps) / max(np.ptp(x, axis=0).max(), TINY))
 
     def refined(self) -> Self:
         """The same cycles with twice as many intervals."""

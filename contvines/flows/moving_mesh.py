@@ -136,8 +136,14 @@ class MovingMesh:
         """What is left of a direction without what moves and stretches the whole range of each coordinate: cycles that grow keep their mesh."""
         flat, change, each = x.reshape(-1, x.shape[2]), dx.reshape(-1, x.shape[2]), np.arange(x.shape[2])
         gaps = (np.diff(self.rule.nodes) * widths[:, None]).reshape(-1)
-        low, moved = _at_extreme(flat, change, gaps, flat.argmin(axis=0), each)
-        high, raised = _at_extreme(flat, change, gaps, flat.argmax(axis=0), each)
+        # means over the equal parts of the mesh: which one of them has the outermost node may change
+        parts = flat.reshape(self.copies, -1, x.shape[2])
+        first = np.arange(self.copies)[:, None] * parts.shape[1]
+        low, moved, high, raised = (
+            mean
+            for outermost in (parts.argmin(axis=1), parts.argmax(axis=1))
+            for mean in np.mean([_at_extreme(flat, change, gaps, k, each) for k in first + outermost], axis=0)
+        )
         ranges = high - low
         stretch = np.divide(raised - moved, ranges, out=np.zeros(len(ranges)), where=ranges > 0.0)
         return dx - moved - stretch * (x - low)

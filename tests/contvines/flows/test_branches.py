@@ -176,3 +176,23 @@ def test_doublings_where_a_pair_meets_on_the_axis_in_the_same_step():
     doublings = sorted(point.value for point in graph.of_kind("period-doubling"))
     assert doublings == [pytest.approx(7.849537397847, abs=1e-9), pytest.approx(7.921977675728, abs=1e-9)]
     assert "unresolved" not in str(graph)
+
+
+def test_cycles_that_become_their_own_mirror_images_end_there():
+    """r' = (p + z^2 - r^2) r, z' = (1 - z^2 - r^2 / 2) z: cycles with r^2 = 2 (p + 1) / 3 from rest at z = 1 to z = 0, at p = 2."""
+
+    def rates(s, p):
+        x, y, z = s
+        growth, turning = p.p + z * z - x * x - y * y, 1.0 + 0.9 * z * x
+        return [growth * x - turning * y, growth * y + turning * x, (1.0 - z * z - 0.5 * (x * x + y * y)) * z]
+
+    flow = cv.FlowProblem(rates, [0.0, 0.0, 1.0], {"p": -1.5}, mirror=lambda s: -s)
+    graph = cv.diagram(flow, over="p", within=(-1.5, 3.0), depth=2)
+    assert sorted(point.value for point in graph.of_kind("hopf")) == pytest.approx([-1.0, 0.0], abs=1e-6)
+    (point,) = graph.of_kind("symmetry-breaking")
+    assert point.value == pytest.approx(2.0, abs=1e-6)
+    assert not graph.of_kind("branch-point") and not graph.of_kind("fold")
+    born = graph.branches["B2"]
+    assert born.range == pytest.approx((-1.0, 2.0), abs=1e-6)
+    symmetric = graph.branches["B3"]  # r^2 = p
+    assert symmetric.measure("max x0") == pytest.approx(np.sqrt(np.abs(symmetric.values)), rel=1e-7, abs=1e-5)

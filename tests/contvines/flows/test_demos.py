@@ -26,7 +26,7 @@ LONG = {
     "brc",
 }  # `python -m tools.flow_demos.make_table` solves these, too
 AWAY = {"homoclinic": 3e-6}  # parts of the interval; else of the location of an equilibrium or a cycle
-CLOSE = 1e-8
+CLOSE = 2e-8
 ROUNDED = 1e-11  # of long cycles, beside the error of the mesh
 
 
