@@ -235,11 +235,8 @@ class Detector(SegmentSearch):
             meets |= far[1:] & far[:-1] & (turn < 0.0)
             for i in np.flatnonzero((turn < 0.0) & ~meets).tolist() if self.engine.adaptive else ():
                 pair = slice(i, i + 2)
-                parts, accuracy = (
-                    test.part(chunk.points[pair], chunk.values[pair]),
-                    chunk.corrections[pair].max(),
-                )
-                meets[i] = turns_round(test, parts, np.inf, accuracy)
+                parts = test.part(chunk.points[pair], chunk.values[pair])
+                meets[i] = turns_round(test, parts, np.inf, float(chunk.corrections[pair].max()))
             lands |= far[:-1] & (size[1:] < self.engine.settings.near) & (size[1:] < NEXT * size[:-1])
         return meets, lands
 

@@ -37,7 +37,10 @@ def nearest(engine: Engine, rows: np.ndarray, spectra: Spectra | None = None) ->
 
 
 def kinked(segment: Segment) -> bool:
-    """Whether the real multiplier nearest to the circle has a kink there within a segment: looked at nearer, its sides stay as steep."""
+    """Whether the real multiplier nearest to the circle has a kink there within a segment: looked at nearer, its sides stay as steep.
+
+    Of cycles on a mesh nothing is told where both ends are next to the circle, as where a branch turns round at a cycle of half the period.
+    """
     engine, low, high, first = segment.engine, 0.0, 1.0, 0.0
     for zoom in range(ZOOMS):
         places = low + (high - low) * PLACES
@@ -52,7 +55,7 @@ def kinked(segment: Segment) -> bool:
             return False
         if zoom == 0:
             if engine.adaptive and max(near[0], near[-1]) <= engine.settings.critical:
-                return False  # where all of it is next to the circle kinks are those of rounding
+                return False  # kinks are those of rounding
             first = steepness
         elif steepness < engine.settings.steep * first:
             return False

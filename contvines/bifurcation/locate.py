@@ -16,7 +16,10 @@ from .segment import Segment
 from .settings import LOCATING
 
 NODES = 8
-NARROWER, WIDER = 0.5 ** np.arange(7), 2.0 ** np.arange(1, 6)  # windows
+NARROWER, WIDER = (
+    0.5 ** np.arange(7),
+    2.0 ** np.arange(1, 6),
+)  # windows that are tried, in units of the first one
 
 
 class Root(NamedTuple):
@@ -102,7 +105,8 @@ def locate_singular(
     """The zero of a test function at a branch point, where the bordered system is singular.
 
     Newton's method loses digits near such a point, so the branch is solved at Chebyshev nodes beside it, and the point and
-    the test function are interpolated. The interpolation converges like (width/2)^8.
+    the test function are interpolated. The interpolation converges like (width/2)^8. Narrower windows are tried, too, and on a segment that is so
+    short that the point would be known to fewer digits than are asked for, wider ones, which reach out to both sides.
 
     Parameters
     ----------
@@ -111,7 +115,7 @@ def locate_singular(
     rough : float
         Approximate position.
     width : float
-        Half of the window, relative to the segment.
+        Half of the first window, relative to the segment.
     """
     engine = segment.engine
     roots = _in_windows(segment, test, rough, width * NARROWER)

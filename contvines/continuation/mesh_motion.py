@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -34,18 +35,15 @@ class MeshMotion:
 
     def steered(self, point: Solved) -> Solved:
         """The point, with the direction along which the mesh moves with the solution."""
-        if self.moving is None:
-            return point
-        tangent = point.tangent.copy()
-        self.moving.steer(point.u, tangent)
-        return point._replace(tangent=self.engine.unit(tangent))
+        return point if self.moving is None else self._along(point, self.moving.steer)
 
     def standing(self, point: Solved) -> Solved:
         """The point, with the direction along which the mesh stands where it is."""
-        if self.moving is None:
-            return point
+        return point if self.moving is None else self._along(point, self.moving.stand)
+
+    def _along(self, point: Solved, change: Callable[[np.ndarray, np.ndarray], None]) -> Solved:
         tangent = point.tangent.copy()
-        self.moving.stand(point.u, tangent)
+        change(point.u, tangent)
         return point._replace(tangent=self.engine.unit(tangent))
 
     def carried(self, u: np.ndarray, other: np.ndarray, tangent: np.ndarray) -> np.ndarray | None:

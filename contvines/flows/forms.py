@@ -62,7 +62,8 @@ class Return:
         self.points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
         self.steps = np.repeat(period * widths, m)
         self.widths = np.repeat(widths, m)
-        self.times = period * mesh.places(widths, r.points) if problem.field.forced else None
+        forced, around = problem.field.forced, (problem.copies, problem.rounds)
+        self.times = period / problem.rounds * mesh.phases(widths, r.points, *around) if forced else None
         self.jacobian = problem.field.jacobian(self.points, p, self.times)
         f = problem.field(self.points, p, self.times)
         self.size = self.states + self.free

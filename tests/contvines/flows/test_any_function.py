@@ -39,7 +39,7 @@ def test_a_period_that_takes_the_magnitude_of_the_frequency():
     )
     branch = contvines.diagram(flow, over="w", within=(0.5, 2.0)).branches["B1"]
     assert branch.values.min() == 0.5 and branch.values.max() == 2.0
-    assert branch.measure("max x0") == pytest.approx(1.0 / np.sqrt(1.0 + branch.values**2), rel=1e-5)
+    assert branch.measure("max x0") == pytest.approx(1.0 / np.sqrt(1.0 + branch.values**2), rel=1e-8)
 
 
 @pytest.mark.parametrize("error", [RuntimeError, KeyError, ZeroDivisionError])

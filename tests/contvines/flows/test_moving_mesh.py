@@ -74,6 +74,20 @@ def test_nodes_go_with_a_jump_and_stay_where_the_whole_range_grows():
     assert np.allclose(dx, grown, atol=1e-9) and np.abs(dw / widths).max() < 1e-9
 
 
+def test_the_mesh_goes_on_alike_where_two_equal_parts_change_places():
+    """A curve that goes twice round, with what tells the rounds apart on either side of nothing: half the step between both is what it does at nothing."""
+    widths = np.full(80, 1.0 / 80)
+    places = mesh.node_places(RULE, widths)
+    twice, apart = curve(2.0 * places), np.sin(2.0 * np.pi * places)[:, None] * np.array([0.3, 1.0])
+    found = [
+        np.concatenate(
+            [part.reshape(-1) for part in steered(widths, on_mesh(widths, x), on_mesh(widths, apart), 2)]
+        )
+        for x in (twice - 1e-6 * apart, twice, twice + 1e-6 * apart)
+    ]
+    assert np.abs(found[2] - found[0]).max() < 1e-4 * np.abs(found[1]).max()
+
+
 @pytest.mark.slow
 def test_a_canard_is_passed_from_one_hopf_point_to_the_growing_relaxation_oscillations():
     """Van der Pol with constant forcing, epsilon = 0.01: Hopf point at a = 1, then a canard explosion near 1 - eps / 8 - 3 eps^2 / 32
