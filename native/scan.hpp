@@ -32,9 +32,10 @@ struct Scanned : Scanner {
     whole count;
     double flat;  // slopes up to this are rounding
     const double *points, *values, *tangents, *rows, *determinants;
-    double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *past = near + 3 * count, *reached = past + 3 * count,
+    double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *past = near + count, *reached = past + 3 * count,
            *low = reached + count - 1, *sizes = low + row - 2 * multipliers, *turns = sizes + symmetries * count;
     Place* places = (Place*)(turns + symmetries * (count - 1));  // (count, multipliers)
+    double* near_both = (double*)(places + count * multipliers);  // (4, count): of the distances from 1 and from -1 (from 0) products and the nearest, as logarithms
 };
 
 // Terms joined in four parts, so that the order is that of vector instructions whether there are any or not.
@@ -50,26 +51,32 @@ template <class Term> inline double sum(whole n, Term term) {
     return joined(n, 0.0, [](double a, double b) { return a + b; }, term);
 }
 
-// Of each sort (near 1, near -1, pairs) the distance of the nearest from the circle, negative where an odd number is past it.
+// How many of each sort (near 1, near -1, pairs) are past the circle, and how far all are from 1 and from -1.
 inline void multipliers_of(const Scanned& s, const double* row, whole i) {
-    double near[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, past[3] = {};
+    double near[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, past[3] = {}, products[2] = {};
     Place* place = s.places + i * s.multipliers;
     for (whole k = 0; k < s.multipliers && s.kind != NONE; k++) {
         const double re = row[2 * k], im = row[2 * k + 1];
         const bool real = im == 0.0, map = s.kind == MAP;
         const int sort = s.kind == REAL ? 0 : !real ? 2 : map && !(re > 0.0) ? 1 : 0;
+        for (int side = 0; side < (map ? 2 : 1); side++) {
+            const double part = hypotenuse(re - (map ? 1.0 - 2.0 * side : 0.0), im) / (1.0 + hypotenuse(re, im));
+            if (part > PAST) products[side] += logarithm(part);
+        }
         place[k] = {NAN, NAN, NAN, {HUGE_VAL, 0.0, 0, k}, {HUGE_VAL, 0.0, 0, k}};
         if (s.kind != REAL && !real && !(im > 0.0)) continue;
         const double modulus = real ? fabs(re) : hypotenuse(re, im), size = map ? logarithm(modulus) : re;
-        past[sort] += size > PAST, near[sort] = fabs(size) < near[sort] ? fabs(size) : near[sort];
+        past[sort] += size > PAST;
+        if (fabs(size) < near[sort]) near[sort] = fabs(size);
         const double x = map ? re / modulus : 0.0, y = map ? im / modulus : im;
         if (isfinite(size) && isfinite(x) && isfinite(y)) place[k].size = size, place[k].x = x, place[k].y = y;
     }
-    for (int sort = 0; sort < 3; sort++) {
-        const bool told = near[sort] > PAST && near[sort] < HUGE_VAL;
-        s.near[sort * s.count + i] = told ? (whole(past[sort]) % 2 ? -near[sort] : near[sort]) : NAN;
-        s.past[sort * s.count + i] = past[sort];
+    for (int sort = 0; sort < 3; sort++) s.past[sort * s.count + i] = past[sort];
+    for (int side = 0; side < 2; side++) {
+        near[side] = near[side] > PAST && near[side] < HUGE_VAL ? near[side] : NAN;
+        s.near_both[side * s.count + i] = products[side], s.near_both[(2 + side) * s.count + i] = logarithm(near[side]);
     }
+    s.near[i] = near[0];
 }
 
 // The nearest multiplier at the next point of each one of point i - 1, and at the point before of each one of point i.
@@ -84,6 +91,19 @@ inline void join(const Scanned& s, whole i) {
             if (gap < before[j].ahead.gap) before[j].ahead = {gap, fabs(along), born, k};
             if (gap < here[k].back.gap) here[k].back = {gap, fabs(along), born, j};
         }
+}
+// Whether the parabola of the product of all distances from 1, or from -1, or of the nearest, through point i and the two beside it passes zero.
+inline bool dips(const Scanned& s, whole i) {
+    if (i == 0 || i + 1 == s.count) return false;
+    const double h1 = s.lengths[i - 1], h2 = s.lengths[i];
+    for (int side = 0; side < 4; side++) {
+        const double *logs = s.near_both + side * s.count + i, *past = s.past + side % 2 * s.count + i;
+        if (past[-1] != past[0] || past[1] != past[0]) continue;
+        const double before = (1.0 - exponential(logs[-1] - logs[0])) / h1, after = (exponential(logs[1] - logs[0]) - 1.0) / h2;
+        const double bend = (after - before) / (h1 + h2), slope = (before * h2 + after * h1) / (h1 + h2), vertex = -0.5 * slope / bend;
+        if (bend > 0.0 && -h1 < vertex && vertex < h2 && 1.0 - 0.25 * slope * slope / bend < 0.0) return true;
+    }
+    return false;
 }
 // Whether one of a pair at one end of segment i, or at the other, may have reached the circle between; see `reached` in the reference.
 inline bool reaches(const Scanned& s, whole i) {
@@ -136,8 +156,7 @@ inline bool open_at(const Scanned& s, whole i) {
         if (s.past[sort * s.count + i] != s.past[sort * s.count + i - 1]) return true;
     if (i < 2) return false;
     const double part = fall(s.lengths[i - 2], length), slopes[] = {slope[-2 * n - 2], here, there};
-    return may_fall(slopes + 2, part) || may_fall(s.near + i, STRAIGHT * part) || may_fall(s.near + s.count + i, part) ||
-           may_fall(s.near + 2 * s.count + i, part);
+    return may_fall(slopes + 2, part) || may_fall(s.near + i, STRAIGHT * part);
 }
 
 // Returns whether nothing is open.
@@ -177,7 +196,7 @@ inline bool scan(const Scanned& s) {
         }
     }
     for (whole i = 0; i + 1 < s.count; i++) {
-        s.reached[i] = (s.kind == MAP || s.kind == FLOW) && reaches(s, i) ? 1.0 : 0.0;
+        s.reached[i] = dips(s, i) || dips(s, i + 1) || ((s.kind == MAP || s.kind == FLOW) && reaches(s, i)) ? 1.0 : 0.0;
         quiet &= s.reached[i] == 0.0;
     }
     return quiet && sum(width, [&](whole j) { return s.low[j]; }) == 0.0;

@@ -13,13 +13,13 @@ from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Nearing
 from ..shared.floating_point import EPSILON
 from .consistency import at_one, leap
-from .evidence import SLOPE, evidence, filled, may_be_real, pointed, suspicious
+from .evidence import evidence, filled, may_be_real, pointed, suspicious
 from .kinks import kinked, nearest
 from .locate import locate
 from .located import NOWHERE, Located, Role
 from .location_error import rounding_of_parameter
 from .multiplier_counts import counts
-from .scan import Scan, reached, scanner
+from .scan import Scan, scanner
 from .segment import Segment
 from .segment_search import SegmentSearch
 from .symmetry_test import turns_round
@@ -79,10 +79,8 @@ class Detector(SegmentSearch):
         smallest = seen.first_margin - 1
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
-        apart = scanned.reached > 0.0
+        apart = (scanned.reached > 0.0) & (not engine.many)
         sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths)
-        if engine.many:
-            inside[:, SLOPE + 1 : SLOPE + 4] = False
         told = ((sides[1:] != sides[:-1]).any(axis=1) | borders | meets)[extra:]
         meets, lands = meets[extra:], lands[extra:]
         inside, apart, sharp = inside[extra:], apart[extra:] & ~meets, sharp[extra:] & ~meets
@@ -164,10 +162,7 @@ class Detector(SegmentSearch):
         if start is None or seen is None:
             return []
         segment = Segment(self.engine, start, first)
-        apart = reached(self.engine, np.array([start.row, first.row]), np.ones(1))[0]
-        split = self.halved(segment, real) if apart else None
-        if split is None:
-            split = self.alone(segment, real)
+        split = self.alone(segment, real)
         if share < beyond:
             split = (beyond - share) / (1.0 - share), seen
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)

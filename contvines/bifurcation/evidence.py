@@ -1,7 +1,8 @@
 """What points of a branch tell: on which side of special points each of them lies, and how far from these it is.
 
 Where a number of `sides` differs at the two ends of a segment, something lies between. Where none does, one of `distances` may come to
-zero between the points and go back: the parabola through three of them says so, and points inside the segment decide.
+zero between the points and go back: the parabola through three of them says so, and points inside the segment decide. Of multipliers
+:func:`contvines.bifurcation.scan.reached` says it.
 """
 
 from __future__ import annotations
@@ -13,9 +14,9 @@ import numpy as np
 from ..continuation.engine import Engine
 from ..continuation.layout import MARGIN
 from .multiplier_counts import balance
+from .parabola import parabola_dips
 from .scan import Scan, Spectra
 
-SLOPE = 0  # column of `distances`
 AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
 
 
@@ -28,8 +29,7 @@ class Evidence(NamedTuple):
         Direction of the parameter, sign of the bordered determinant, numbers of multipliers past the circle, sides of users' tests; 0
         where nothing tells.
     distances : ndarray, shape (n, j)
-        Numbers that pass zero at special points: the parameter's part of the tangent, of real multipliers on both sides and of pairs the nearest to the
-        circle, users' tests, the smallest margin.
+        Numbers that pass zero at special points: the parameter's part of the tangent, users' tests, the smallest margin.
     margins : ndarray, shape (n, w)
         All of them, of which the distances follow those in ``distances``.
     """
@@ -95,7 +95,7 @@ def evidence(
         *(spectra.past + 1),
         *(np.where(values >= 0.0, 1, -1) for values in tests),
     ]
-    distances = np.column_stack([slopes, *spectra.near, own, smallest - MARGIN])
+    distances = np.column_stack([slopes, own, smallest - MARGIN])
     return Evidence(np.column_stack(sides).astype(int), distances, rows[:, 2 * engine.m :])
 
 
@@ -139,18 +139,6 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
         found[:-1, places] |= dip
         found[1:, places] |= dip
     return np.append(np.arange(first), low_margins), found
-
-
-def parabola_dips(
-    left: np.ndarray, middle: np.ndarray, right: np.ndarray, h1: np.ndarray | float, h2: np.ndarray | float
-) -> np.ndarray:
-    """Whether the parabola through three positive values at such distances passes zero between them."""
-    with np.errstate(all="ignore"):
-        before, after = (middle - left) / h1, (right - middle) / h2
-        bend, slope = (after - before) / (h1 + h2), (before * h2 + after * h1) / (h1 + h2)
-        vertex = -0.5 * slope / bend
-        found = (left > 0.0) & (middle > 0.0) & (right > 0.0) & (bend > 0.0) & (-h1 < vertex) & (vertex < h2)
-        return found & (middle - 0.25 * slope * slope / bend < 0.0)
 
 
 def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:

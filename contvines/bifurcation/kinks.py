@@ -27,7 +27,7 @@ def nearest(engine: Engine, rows: np.ndarray, spectra: Spectra | None = None) ->
     if engine.many:
         return -rows[:, 0]
     if spectra is not None and engine.detection != "real":
-        return np.abs(spectra.near[0])
+        return spectra.near
     with np.errstate(all="ignore"):
         if engine.detection == "real":
             sizes = np.hypot(rows[:, : 2 * engine.m : 2], rows[:, 1 : 2 * engine.m : 2])

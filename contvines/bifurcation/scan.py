@@ -18,6 +18,7 @@ from ..continuation.layout import MARGIN
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 from .multiplier_counts import sizes_by_sort
+from .parabola import parabola_dips
 from .settings import LOCATING
 from .symmetry_test import SymmetryTest
 
@@ -27,9 +28,9 @@ class Spectra(NamedTuple):
 
     Attributes
     ----------
-    near : ndarray, shape (3, n)
-        Of real ones near 1, near -1 and of pairs the distance of the nearest from the circle, as a logarithm (for flows real parts from the
-        axis), negative where an odd number is past it; NaN where there are none, or one on the circle to rounding.
+    near : ndarray, shape (n,)
+        Distance of the positive real one that is nearest to the circle, as a logarithm (for flows of the real part from the axis); NaN where
+        there is none, or one on the circle to rounding.
     past : ndarray, shape (3, n)
         How many are past the circle.
     """
@@ -48,7 +49,7 @@ class Scan(NamedTuple):
         Smallest margins, infinity without margins.
     spectra : Spectra
     reached : ndarray, shape (n - 1,)
-        Not 0 where a pair may have reached the circle between two points; see `reached`.
+        Not 0 where a multiplier may have reached the circle between two points and gone back; see `reached`.
     low : ndarray, shape (w,)
         Not 0 for margins that a parabola through three neighbours may bring to zero: below the lowest of three points it falls by a part of the
         changes between them, at most a quarter of the square of the longer length over the shorter one.
@@ -81,17 +82,54 @@ def spectra(engine: Engine, rows: np.ndarray) -> Spectra:
     """What the multipliers of some rows tell."""
     with np.errstate(all="ignore"):
         sizes = sizes_by_sort(engine, rows)
-        past = (sizes > LOCATING.past).sum(axis=2)
-        near = np.fmin.reduce(np.abs(sizes), axis=2, initial=np.inf)
-        told = (near > LOCATING.past) & (near < np.inf)
-        near = np.where(told, np.where(past % 2, -near, near), np.nan)
-        return Spectra(near, past)
+        return Spectra(_nearest_of(sizes)[0], (sizes > LOCATING.past).sum(axis=2))
+
+
+def _nearest_of(sizes: np.ndarray) -> np.ndarray:
+    """The smallest sizes along the last axis; NaN where there are none, or one is rounding."""
+    near = np.fmin.reduce(np.abs(sizes), axis=-1, initial=np.inf)
+    return np.where((near > LOCATING.past) & (near < np.inf), near, np.nan)
 
 
 def reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Segments between neighbouring rows on which one of a pair of multipliers may have reached the circle (the axis), shape (n - 1,).
+    """Segments between neighbouring rows on which a multiplier may have reached the circle (the axis) and gone back, shape (n - 1,).
 
-    In the plane of logarithms the circle is a line, and so is the axis in that of eigenvalues. A multiplier is the nearest one at the next point, be
+    In the plane of logarithms the circle is a line, and so is the axis in that of eigenvalues.
+    """
+    return _dips(engine, rows, lengths) | _pairs_reached(engine, rows, lengths)
+
+
+def _dips(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Segments beside points at which a parabola, through these and their two neighbours, says that a real multiplier passes the line and comes back.
+
+    The parabola is that of the product of all distances from 1, and from -1 (of eigenvalues from 0), in parts of one plus the sizes: regular where two
+    multipliers change places or become a pair, and hardly changed by those that are far away. So is that of the nearest one, as two that pass
+    together leave the product positive. Those on the line to rounding are left out.
+    """
+    found = np.zeros(len(lengths), dtype=bool)
+    if engine.detection == "none" or not engine.m or len(lengths) < 2:
+        return found
+    re, im = rows[:, : 2 * engine.m : 2], rows[:, 1 : 2 * engine.m : 2]
+    places = (1.0, -1.0) if engine.detection == "map" else (0.0,)
+    with np.errstate(all="ignore"):
+        sizes = sizes_by_sort(engine, rows)[: len(places)]
+        parts = np.array([np.hypot(re - place, im) for place in places]) / (1.0 + np.hypot(re, im))
+        products = np.log(np.where(parts > LOCATING.past, parts, 1.0)).sum(axis=2)
+        logs = np.concatenate([products, np.log(_nearest_of(sizes))])
+        past = np.tile((sizes > LOCATING.past).sum(axis=2), (2, 1))
+        left, right = np.exp(logs[:, :-2] - logs[:, 1:-1]), np.exp(logs[:, 2:] - logs[:, 1:-1])
+        one_side = (past[:, :-2] == past[:, 1:-1]) & (past[:, 2:] == past[:, 1:-1])
+        dips = parabola_dips(left, np.ones_like(left), right, lengths[:-1], lengths[1:])
+    dips = (dips & one_side).any(axis=0)
+    found[:-1] |= dips
+    found[1:] |= dips
+    return found
+
+
+def _pairs_reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Segments on which one of a pair may have reached the line.
+
+    A multiplier is the nearest one at the next point, be
     that real or one of a pair. It may have reached the line if it goes as far as both its places at the ends of the segment are from the line, together;
     on two sides it has passed. It goes as far as from one place to the other, or as `Locating.faster` times the largest of its rates on this segment and those
     beside it have it: rates towards the line, or, where two real ones become a pair on one of these, in any direction. On the line to rounding nothing tells.
@@ -178,19 +216,19 @@ class NativeScan:
     def __call__(self, chunk: Chunk) -> Scan:
         """Scan a chunk."""
         n, k, w = len(chunk), self.symmetries, self.margins
-        places = 11 * n * self.engine.m  # room for those of multipliers
-        found = np.empty(9 * n - 2 + w + k * (2 * n - 1) + places)
+        places = 11 * n * self.engine.m + 4 * n  # room for those of multipliers, and of all together
+        found = np.empty(7 * n - 2 + w + k * (2 * n - 1) + places)
         quiet = _native()(
             address(self.frame), n, self.engine.upright(float(chunk.values[0])), place(chunk.points), place(chunk.values),
             place(chunk.tangents), place(chunk.rows), place(chunk.signs), address(found),
         )  # fmt: skip
-        spectra, low = found[2 * n - 1 : 8 * n - 1], 9 * n - 2
+        past, low = 3 * n - 1, 7 * n - 2
         sizes, turns = low + w, low + w + k * n
         return Scan(
             found[: n - 1],
             found[n - 1 : 2 * n - 1],
-            Spectra(spectra[: 3 * n].reshape(3, n), spectra[3 * n :].reshape(3, n)),
-            found[8 * n - 1 : low],
+            Spectra(found[2 * n - 1 : past], found[past : past + 3 * n].reshape(3, n)),
+            found[past + 3 * n : low],
             found[low:sizes],
             found[sizes:turns].reshape(k, n),
             found[turns : turns + k * (n - 1)].reshape(k, n - 1),

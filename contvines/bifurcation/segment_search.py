@@ -14,7 +14,7 @@ from ..continuation.layout import MARGIN
 from ..shared.floating_point import EPSILON, TINY
 from .consistency import at_one, on_circle, unaccounted, unresolved
 from .determinant import singular
-from .evidence import Evidence, evidence, parabola_dips
+from .evidence import Evidence, evidence
 from .first_border import find_border, first_zero, rounding
 from .kind import Kind, Test
 from .kinds import BY_NAME, KINDS
@@ -22,6 +22,7 @@ from .locate import locate, locate_singular
 from .located import NOWHERE, Located, Role
 from .location_error import blurred
 from .one_sided_limits import one_sided
+from .parabola import parabola_dips
 from .point_on_branch import PointOnBranch
 from .scan import reached, spectra
 from .segment import Segment
@@ -32,10 +33,9 @@ if TYPE_CHECKING:
     from .user_functions import Own, UserFunction
 
 PLACES = np.arange(1, 8) / 8.0  # of a segment at which its inside is looked at
-NARROWER, ROOF = (
-    3,
-    12,
-)  # times that a distance is looked at nearer, and the smallest margin, which may be a roof
+NARROWER = 3  # times that a distance is looked at nearer, at places eight times as dense each time, ...
+HALVINGS = 9  # ... times that parts are halved on which a multiplier may reach the circle, ...
+ROOF = 12  # ... and times that the smallest margin, which may be a roof, is looked at nearer
 
 
 class SegmentSearch:
@@ -322,6 +322,11 @@ class SegmentSearch:
             return found[0]
         columns: list[int] = []
         if found:
+            rows = np.array([segment.a.row, found[0][1].row, segment.b.row])
+            if not self.engine.many and reached(self.engine, rows, np.array([0.5, 0.5])).any():
+                split = self.halved(segment, real)
+                if split is not None:
+                    return split
             (first, last), middle = ends.distances, seen.distances[0]
             side = np.sign(middle)
             dips = parabola_dips(side * first, side * middle, side * last, 0.5, 0.5)
@@ -333,15 +338,15 @@ class SegmentSearch:
     def halved(
         self, segment: Segment, real: bool, neighbours: Sequence[tuple[float, np.ndarray]] = ()
     ) -> tuple[float, Solved] | None:
-        """A point inside a segment that tells what neither end tells, with its place, or None, where a pair may have reached the circle.
+        """A point inside a segment that tells what neither end tells, with its place, or None, where a multiplier may have reached the circle.
 
-        The segment is halved, then those of its parts on which, as far as the points now tell, a pair may have. `neighbours` are rows of points
+        The segment is halved, then those of its parts on which, as far as the points now tell, one may have. `neighbours` are rows of points
         before and behind, with their places.
         """
         ends = self.evidence_of([segment.a, segment.b])
         known = sorted([*neighbours, (0.0, segment.a.row), (1.0, segment.b.row)], key=itemgetter(0))
         halves = np.array([0.5])
-        for _ in range(NARROWER):
+        for _ in range(HALVINGS):
             found, _, new = self._at(segment, halves, ends, real)
             if new.any():
                 return found[int(new.argmax())]
@@ -388,7 +393,7 @@ class SegmentSearch:
         columns = np.flatnonzero(parabola_dips(left - MARGIN, middle - MARGIN, right - MARGIN, *parts))
         if not len(columns):
             return None
-        first = 5 + len(self.own)
+        first = 2 + len(self.own)
         inside = self.inside(Segment(engine, segment.a, border.point), True, (first + columns).tolist())
         if inside is None or not engine.smallest_margin(inside[1].row) < MARGIN:
             return None

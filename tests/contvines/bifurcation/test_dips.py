@@ -96,6 +96,37 @@ def test_short_loss_of_stability(centre, half):
     )
 
 
+@settings(max_examples=20, deadline=None)
+@given(
+    st.floats(0.2, 0.8),
+    st.floats(5e-3, 0.05),
+    st.sampled_from([0.999, 1.001, 0.98]),
+    st.sampled_from([1.0, -1.0]),
+)
+def test_short_loss_of_stability_while_another_multiplier_is_nearer_to_the_circle(centre, half, near, side):
+    """x -> +-(s x - x^3) at x = 0, where s = 1 + 4 (half^2 - (p - centre)^2), and y -> +-near y."""
+
+    def right(x, p):
+        s = 1.0 + 4.0 * (half**2 - (p.p - centre) ** 2)
+        return [side * near * x[0], side * (s * x[1] - x[1] ** 3)]
+
+    graph = cv.diagram(cv.MapProblem(right, [0.0, 0.0], {"p": 0.0}), over="p", within=(0.0, 1.0), depth=0)
+    found = sorted(p.value for p in graph.of_kind("branch-point" if side > 0.0 else "period-doubling"))
+    assert found == pytest.approx([centre - half, centre + half], abs=1e-9)
+
+
+@pytest.mark.parametrize("centre", [0.43, 0.467, 0.5])
+def test_short_loss_of_stability_in_two_directions_at_once(centre):
+    """z -> (s + |z|^2) z in the plane, s = 1 + 4 (0.02^2 - (p - centre)^2)."""
+
+    def right(x, p):
+        return (1.0 + 4.0 * (0.02**2 - (p.p - centre) ** 2) + x @ x) * x
+
+    graph = cv.diagram(cv.MapProblem(right, [0.0, 0.0], {"p": 0.0}), over="p", within=(0.0, 1.0), depth=0)
+    found = sorted(point.value for point in graph.of_kind("branch-point"))
+    assert found == pytest.approx([centre - 0.02, centre + 0.02], abs=1e-8)
+
+
 def test_a_touch_from_above_is_no_event():
     graph = cv.diagram(Line(margin=lambda p: (p - 0.1234) ** 2 + 1e-9), within=(-1.0, 1.0))
     assert len(graph) == 1 and not graph.of_kind("velocity-graze")

@@ -65,12 +65,7 @@ def test_numbers_known_by_hand(scan):
     found = scan(engine, [mirror], chunk(points, values, rows))
     np.testing.assert_allclose(found.lengths, [np.sqrt(0.5 * 25.0 + 0.25 * 4.0), 1.0], rtol=1e-15)
     np.testing.assert_allclose(found.smallest, [1.0, -2.0, -1.0])
-    near = [
-        [-1.0, np.nan, 1.0],
-        [2.0, np.nan, np.nan],
-        [np.nan, np.nan, np.nan],
-    ]  # a pair on the circle tells nothing
-    np.testing.assert_allclose(found.spectra.near, near, rtol=1e-14)
+    np.testing.assert_allclose(found.spectra.near, [1.0, np.nan, 1.0], rtol=1e-14)
     np.testing.assert_allclose(found.spectra.past, [[1, 0, 2], [0, 0, 0], [0, 0, 0]])
     np.testing.assert_allclose(found.reached, [0, 0])
     np.testing.assert_allclose(found.low, [0, 1])  # the second one changes its sign
@@ -104,9 +99,15 @@ def pair(size, angle):
         # where two real ones become a pair 0.4 away
         ([(0.8, 0.7), pair(np.log(0.8), 0.4), pair(np.log(0.7), 0.4)], [1, 1]),
         ([(0.4, 0.3), pair(np.log(0.4), 0.4), pair(np.log(0.3), 0.4)], [0, 0]),
+        # the parabola through 2, 0.02, 0.7 falls to -0.06, that through 2, 0.2, 0.7 to 0.11. Another real multiplier is nearer to the circle
+        *(
+            ([tuple(side * np.exp([at, 0.01])) for at in logarithms], [below, below])
+            for side in (1.0, -1.0)
+            for logarithms, below in (([2.0, 0.02, 0.7], 1), ([-2.0, -0.02, -0.7], 1), ([2.0, 0.2, 0.7], 0))
+        ),
     ],
 )
-def test_segments_on_which_a_pair_may_have_reached_the_circle(scan, multipliers, reached):
+def test_segments_on_which_a_multiplier_may_have_reached_the_circle(scan, multipliers, reached):
     rows = places(*((complex(z), complex(w)) for z, w in multipliers))
     points = np.arange(float(len(rows)))[:, None]
     found = scan(Shown(1, 2, 0), [], chunk(points, 0.0 * points[:, 0], rows))
