@@ -342,7 +342,7 @@ class OrbitProblem(Simulated, Relatives, Answers):
             "word": self.spelling,
             **self.word.describe(),
             "periods": self.periods,
-            "impacts": self.impacts,
+            "impacts": self.impacts if self.word.alphabet.walled else None,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
             **({"units": self.model.units} if self.model.units else {}),

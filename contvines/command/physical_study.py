@@ -193,6 +193,8 @@ def number_of(
     own = machine.units.get(name, "")
     try:
         number, unit = units.read(quantity, value)
+        if not spread:
+            units.check_limits(quantity, number, unit, machine.base.limits)
         if not machine.unusual and not spread:
             units.check_usual(quantity, units.si(quantity, number, unit), f"{name} = {value!r}")
     except QuantityError as error:

@@ -95,7 +95,7 @@ def _kind(about: Mapping[str, Any]) -> str:
     periods = int(about.get("periods") or 0)
     said = ["symmetric"] if about.get("symmetric") else []
     said += [f"period {periods}"] if periods > 1 else []
-    if "impacts" in about and not about["impacts"]:
+    if about.get("impacts") == 0:
         said.append("no impacts")
     return ", ".join(said)
 

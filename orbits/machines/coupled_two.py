@@ -96,6 +96,6 @@ coupled_two = Machine(
     mirror={"L1": "R1", "L2": "R2"},
     starts={name: (-5.0, 5.0) if unit == "mm" else (-0.5, 0.5) for name, unit in STATES.items()},
     energy=_energy,
-    response="max_q",
+    response="max_abs_q",
     units=STATES | {name: unit for name, (_, unit, _) in PARAMETERS.items() if unit},
 )

@@ -121,16 +121,21 @@ class PageTrajectory(Trajectory):
         return np.array(speeds)
 
     def extremes(self, per_period: int = 0) -> dict[str, float]:
-        """Largest and least first state."""
+        """Largest and least first state, and the larger of their sizes."""
         x = self.sample(np.linspace(self.clocks[0], self.finish, SAMPLES))[:, 0]
         first = self.model.states[0]
-        return {f"max_{first}": float(x.max()), f"min_{first}": float(x.min())}
+        return {
+            f"max_{first}": float(x.max()),
+            f"min_{first}": float(x.min()),
+            f"max_abs_{first}": float(np.abs(x).max()),
+        }
 
     def responses(self, per_period: int) -> tuple[np.ndarray, np.ndarray]:
-        """The first state over the phase."""
+        """The first state over the phase; its size where this is what the machine shows."""
         count = max(2, math.ceil(per_period * self.lasted))
         clocks = np.linspace(self.clocks[0], self.finish, count, endpoint=False)
-        return clocks, self.sample(clocks)[:, 0]
+        x, first = self.sample(clocks)[:, 0], self.model.states[0]
+        return clocks, np.abs(x) if self.model.response == f"max_abs_{first}" else x
 
     def onwards(self, clocks: np.ndarray) -> np.ndarray:
         """States, shape (m, n), so long after the end of a run of a self-excited machine, in its last mode and without events."""

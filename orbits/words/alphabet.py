@@ -27,8 +27,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from orbits.contacts.dry_friction import ABSENT, SLIDE_BACK, SLIDE_ON, FrictionLaw
+from orbits.contacts.letters import HIT, SWITCH, Letter
 from orbits.contacts.letters import NAMES as KINDS
-from orbits.contacts.letters import SWITCH, Letter
 from orbits.contacts.wall import FREE, WallLaw
 
 if TYPE_CHECKING:
@@ -88,6 +88,11 @@ class Alphabet:
         return {
             letter.text: letter for j, contact in enumerate(self.contacts) for letter in contact.events(j)
         }
+
+    @cached_property
+    def walled(self) -> bool:
+        """Whether there is a wall that can be hit."""
+        return any(letter.kind == HIT for letter in self.letters.values())
 
     @cached_property
     def codes(self) -> dict[str, int]:

@@ -14,6 +14,7 @@ from orbits.flows.page.pieces import loose_states
 from orbits.flows.protocol import Census, Motion
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
+from orbits.machines.page.si import OF_A_STATE
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 
@@ -86,7 +87,12 @@ class PageFlow:
         """How far the first state goes, the fastest impact and how many there are; where it is forced a band, too."""
         first = model.states[0]
         forced = (*BAND, SILENT) if model.forced else ()
-        return (f"max_{first}", f"min_{first}", "approach_speed", "impacts_per_period", *forced)
+        return (
+            *(f"{kind}_{first}" for kind in OF_A_STATE[:3]),
+            "approach_speed",
+            "impacts_per_period",
+            *forced,
+        )
 
     def swept(self, model: Machine) -> tuple[str, ...]:
         """What the page says; else impact speeds, which belong to the impacts, or how far the first state goes."""

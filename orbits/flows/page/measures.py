@@ -11,28 +11,26 @@ from orbits.contacts.letters import HIT
 from orbits.flows.page.loads import Impacts, friction_work
 from orbits.machines.measures import loads, way_out
 from orbits.machines.page.energies import CONTACT
+from orbits.machines.page.si import OF_A_STATE
 from orbits.settings import EVENTS, SOLVING
 from orbits.words import Word
 
 if TYPE_CHECKING:
     from orbits.machines.page.machine import Machine
 
-OF_STATES = ("max", "min", "first", "strobe")
-
 
 def names(model: Machine) -> tuple[str, ...]:
-    """max_x, min_x (over the period), first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
+    """max_x, min_x and max_abs_x (the larger of their sizes) over the period, first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
     event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact); forces and energies at the contacts
     (`orbits.machines.page.energies`), the energies per period of the orbit."""
-    what = OF_STATES if model.forced else OF_STATES[:3]
+    what = OF_A_STATE if model.forced else OF_A_STATE[:-1]
     own = [f"{kind}_{state}" for state in model.states for kind in what]
-    walls = any(letter.kind == HIT for letter in model.alphabet.letters.values())
     return (
         *own,
         *(["phase"] if model.forced else []),
         "period",
         "rate",
-        *(["approach_speed"] if walls else []),
+        *(["approach_speed"] if model.alphabet.walled else []),
         *model.load_names,
     )
 
@@ -60,11 +58,12 @@ def measure(
             raise KeyError(f"there is no measure {name!r}{way_out(name)}; choose from {', '.join(known)}")
     result: dict[str, np.ndarray] = {}
     period = _periods(model, periods, nodes, params)
+    states = {f"{kind}_{state}": (kind, i) for i, state in enumerate(model.states) for kind in OF_A_STATE}
     extremes = None
     if not _LOADS.isdisjoint(name.partition("_")[0] for name in wanted):
         result |= _loads(model, word, periods, nodes, params, period, wanted)
     for name in wanted:
-        kind, _, state = name.partition("_")
+        kind, place = states.get(name, ("", 0))
         if name in result:
             continue
         if name == "phase":
@@ -76,13 +75,14 @@ def measure(
         elif name == "approach_speed":
             result[name] = _approach_speeds(model, word, nodes, params)
         elif kind == "first":
-            result[name] = nodes[:, 0, 1 + model.states.index(state)].copy()
+            result[name] = nodes[:, 0, 1 + place].copy()
         elif kind == "strobe":
-            result[name] = _strobed(model, word, periods, nodes, params)[:, model.states.index(state)]
+            result[name] = _strobed(model, word, periods, nodes, params)[:, place]
         else:
             if extremes is None:
                 extremes = _extremes(model, word, periods, nodes, params)
-            result[name] = extremes[0 if kind == "max" else 1][:, model.states.index(state)]
+            high, low = (side[:, place] for side in extremes)
+            result[name] = {"max": high, "min": low, "max_abs": np.maximum(high, -low)}[kind]
     return {name: result[name] for name in wanted}
 
 

@@ -61,7 +61,7 @@ class Machine(Varying):
         measures ``impulse``, ``impact_energy``, ``impact_loss``, ``friction_loss``, ``mean_force``, ``work_rate`` and, where a parameter is called
         ``contact_time`` (in seconds), ``peak_force``.
     response : str, optional
-        The measure that diagrams, sweeps and surveys show: ``max_`` or ``min_`` with the name of the first state, or ``approach_speed`` of the
+        The measure that diagrams, sweeps and surveys show: ``max_``, ``min_`` or ``max_abs_`` with the name of the first state, or ``approach_speed`` of the
         fastest impact, which is the default of a machine with walls.
 
     Raises
@@ -155,6 +155,7 @@ class Machine(Varying):
     def notation(self) -> dict[str, str]:
         """Labels of axes by name of measure; states and parameters (never "phase") are shown by the names in the machine file."""
         found = {name: SYMBOLS[name] for name in ("phase", *self.load_names) if name in SYMBOLS}
+        found |= {f"max_abs_{state}": f"largest |{state}|" for state in self.states}
         if "peak_force" in found:
             found["peak_force"] += f" (half sine over {CONTACT})"
         return found

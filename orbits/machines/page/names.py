@@ -13,6 +13,7 @@ from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import Wall
 from orbits.machines.page.formulas import PageError
+from orbits.machines.page.si import OF_A_STATE
 
 
 def check_names(
@@ -153,6 +154,6 @@ def check_response(response: str | None, states: Sequence[str], contacts: Sequen
         If it is none of the known names.
     """
     walls = any(isinstance(contact, Wall) for contact in contacts)
-    known = [f"max_{states[0]}", f"min_{states[0]}", *(["approach_speed"] if walls else [])]
+    known = [*(f"{kind}_{states[0]}" for kind in OF_A_STATE[:3]), *(["approach_speed"] if walls else [])]
     if response is not None and response not in known:
         raise PageError(f"response = {response!r}: expected {', '.join(known)}")

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from orbits.machines.page.patterns import Equations
     from orbits.symbols import Symbol
 
-OF_A_STATE = ("max", "min", "first", "strobe")
-"""Measures that are values of a state."""
+OF_A_STATE = ("max", "min", "max_abs", "first", "strobe")
+"""Measures that are values of a state; the last one only of forced machines."""
 LONGEST = 50.0  # typical sizes of a state
 
 

@@ -88,6 +88,7 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Phys
             value = base.parameter(key).words.get(value, value)
         counted[key] = units.read(known[key], value)
         values[key] = units.si(known[key], *counted[key])
+        units.check_limits(known[key], *counted[key], base.limits)
         if not unusual:
             units.check_usual(known[key], values[key], f"{key} = {value!r}")
     contact_time = None
@@ -264,6 +265,16 @@ class Physical(Model):
         params = self.vector(values)
         moved = along(self.path(name, params), params, value)
         return super().vector({**self.loose, **self.named(moved)})
+
+    def check_value(self, name: str, value: float) -> None:
+        """Refuse a value of quantity `name`, counted in `units`, that it cannot have; of other names, one of the machine's own numbers."""
+        quantity: Quantity | None = self.tables.QUANTITIES.get(name)
+        if quantity is None:
+            super().check_value(name, value)
+            return
+        unit = self.units.get(name) or units.unit_of(quantity)
+        units.read(quantity, units.text(value, unit))
+        units.check_limits(quantity, value, unit, self.base.limits)
 
     def check_at(self, name: str, value: float) -> None:
         """Refuse a value of quantity `name`, counted in `units`, that does not go with the others.

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
 from contvines.shared.extras import pip_install
+from orbits.machines.parameters import Limits
 from orbits.machines.physical.quantities import Quantity, QuantityError
 
 _KINDS = {
@@ -252,6 +254,26 @@ def check_usual(quantity: Quantity, value: float, shown: str) -> None:
     raise QuantityError(
         f"{shown} is implausible for {quantity.meaning}: expected {ends}; if it is meant, say unusual = true in [model]"
     )
+
+
+def check_limits(quantity: Quantity, number: float, unit: str, limits: Mapping[str, Limits]) -> None:
+    """Refuse a number counted in `unit` that is impossible for the one number of the machine that the quantity is, if it is one.
+
+    Raises
+    ------
+    QuantityError
+        With the limits in this unit.
+    """
+    of = next(iter(quantity.powers))
+    if quantity.powers != {of: 1} or quantity.constant != 1.0 or of not in limits:
+        return
+    limit = limits[of]
+    if si(quantity, number, unit) not in limit:
+        factor = si(quantity, 1.0, unit)
+        allowed = Limits(limit.low / factor, limit.high / factor, limit.open).text
+        raise QuantityError(
+            f"{quantity.name} = {text(number, unit)} is out of range; give a number {allowed}{' ' + unit if unit else ''}"
+        )
 
 
 def _finite(quantity: Quantity, value: float, shown: str, would: str) -> float:

@@ -256,7 +256,7 @@ def test_quantities_of_a_page_that_has_units_are_numbers_in_these():
         match=r"vary.clearance_1 without count is uncertain; for example vary.clearance_1 = \{ within = \[6.0, 30.0\], count",
     ):
         recommend(study, workers=1)
-    with pytest.raises(ValueError, match="--target 3 kg: .*max_q is shown in mm"):
+    with pytest.raises(ValueError, match="--target 3 kg: .*max_abs_q is shown in mm"):
         _target("3 kg", study)
     assert _target("3 cm", study) == pytest.approx(30.0)
 

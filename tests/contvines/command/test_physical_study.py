@@ -133,7 +133,8 @@ def test_start_replaces_what_the_model_says_of_the_same_thing():
 
         ({"model__absorber_mass": "32 kg"}, "absorber_mass = 32 kg is 8.42 times oscillator_mass = 3.8 kg, which is implausible"),
 
-        ({"continue__parameter": "restitution", "continue__within": [0.5, 1.5]}, "[continue] within[1] = 1.5 is implausible for a coefficient of restitution"),
+        ({"continue__parameter": "restitution", "continue__within": [0.5, 1.5]}, "[continue] within[1] = 1.5 is out of range; give a number above 0 and at most 1"),
+        ({"continue__parameter": "slope", "continue__within": ["1 deg", "90.5 deg"]}, "[continue] within[1] = 90.5 deg is out of range; give a number from -90 to 90 deg"),
     ],
 )  # fmt: skip
 def test_bad_studies_get_a_sentence(change, says):

@@ -4,6 +4,8 @@ import numpy as np
 
 import contvines as cv
 from contvines.graph.summary import summary
+from orbits import Machine
+from orbits.symbols import cos
 
 
 def test_a_logistic_map_is_summarised():
@@ -25,3 +27,16 @@ def test_an_atlas_in_brief_has_what_most_starts_reach():
     assert [line.split()[-2] for line in told if line.startswith("1-cycle k=1")] == ["50.00%", "50.00%"]
     assert "starts simulated at 2 values" in told[-1]
     assert "share of starts" not in summary(atlas, 100)  # the tables that follow have it
+
+
+def test_motions_of_a_machine_without_walls_are_not_said_to_have_no_impacts():
+    """x'' + x'/5 + x = cos(Omega t) is smooth, its only motion never hits anything: nothing is said of impacts."""
+    machine = Machine(
+        name="plain", states=("x", "v"), parameters={"frequency": 0.5}, phase_rate="frequency",
+        motion=lambda state, phase, p, contact: (state.v, cos(phase) - 0.2 * state.v - state.x), contacts=[],
+    )  # fmt: skip
+    graph = cv.diagram(machine.orbit(""), over="frequency", within=(0.4, 1.5), depth=0)
+    told = summary(graph, 100)
+    assert (
+        "no impacts" not in told and "5.025 at 0.99" in told
+    )  # 1/(0.2 sqrt(0.99)), at sqrt(0.98), or the point next to it

@@ -15,6 +15,7 @@ from contvines.command.machine_outcomes import dissipation
 from contvines.command.study import check_study
 from contvines.survey.outcomes import Findings
 from orbits import Coupled, Machine, coupled_two
+from orbits.attractors.sweeping import sweep
 from orbits.machines.coupled_two import _motion
 from orbits.machines.page.names import check_response
 from orbits.problem import rebuild
@@ -153,7 +154,7 @@ def test_dissipated_powers_are_losses_over_the_period():
     graph = cv.diagram(orbit, over="frequency", within=(8.195, 8.205), depth=0)
     found = dissipation(Findings(graph, orbit))
     branch = graph["B1"]
-    top: Any = branch.orbit(int(np.argmax(branch.measure("max_q"))))  # the response that a diagram shows
+    top: Any = branch.orbit(int(np.argmax(branch.measure("max_abs_q"))))  # the response that a diagram shows
     for name in ("impact", "friction"):
         power = 1e3 * top.measure(f"{name}_loss") * top.parameters["frequency"]  # mW
         assert found[f"{name}_power"] == pytest.approx(power, rel=1e-3)
@@ -162,10 +163,29 @@ def test_dissipated_powers_are_losses_over_the_period():
 def test_its_response_is_how_far_the_oscillator_goes():
     orbit = coupled_two.attractor(START, frequency=8.2).orbit
     problem = orbit.problem("frequency")
-    assert problem.default_measure == "max_q" and coupled_two.units["max_q"] == "mm"
+    assert problem.default_measure == "max_abs_q" and coupled_two.units["max_abs_q"] == "mm"
     assert orbit.measure("max_q") == pytest.approx(orbit.sample(4000)["q"].max(), rel=1e-6)
-    with pytest.raises(ValueError, match="response = 'max_x1': expected max_q, min_q, approach_speed"):
+    with pytest.raises(
+        ValueError, match="response = 'max_x1': expected max_q, min_q, max_abs_q, approach_speed"
+    ):
         check_response("max_x1", coupled_two.states, coupled_two.contacts)
+
+
+def test_the_response_of_a_motion_and_of_its_mirror_image_is_one():
+    """9.5022 mm to one side, 9.3288 mm to the other: Newton's laws from event to event by DOP853, 300 periods from rest."""
+    machine = {
+        "oscillator_mass": 5.1, "natural_frequency": 5.6, "damping_ratio": 0.012, "absorber_mass_1": 0.09, "absorber_mass_2": 0.04,
+        "clearance_1": 9.0, "clearance_2": 13.0, "restitution_1": 0.7, "restitution_2": 0.55, "friction_1": 0.07, "friction_2": 0.04,
+        "base_amplitude": 0.45, "frequency": 5.586,
+    }  # fmt: skip
+    one = coupled_two.attractor(**machine).orbit
+    half = {name: -value for name, value in zip(coupled_two.states, one.nodes[0, 1:])}
+    other = coupled_two.attractor(half | {"phase": one.nodes[0, 0] + math.pi}, **machine).orbit
+    assert sorted([one.measure("max_q"), other.measure("max_q")]) == pytest.approx([9.3288, 9.5022], abs=1e-4)
+    for orbit in (one, other):
+        assert orbit.measure("max_abs_q") == pytest.approx(9.5022, abs=1e-4)
+    (row,) = sweep(coupled_two, "frequency", [5.586], **machine)
+    assert row.measures["max_abs_q"] == pytest.approx(9.5022, abs=1e-3)
 
 
 def test_an_absorber_that_sticks_at_its_wall_does_not_hit_it_and_both_slip_at_once():
