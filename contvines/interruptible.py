@@ -11,7 +11,7 @@ from functools import partial
 from typing import Literal, TypeVar
 
 from .interrupts import Interrupted, Resumable, take, unfinished
-from .journal import Journal, MemoryJournal
+from .journal import Journal, MemoryJournal, checked
 from .progress import Tell, shown
 
 OnInterrupt = Literal["raise", "return"]
@@ -45,10 +45,10 @@ def carried_out(
     Interrupted
         On Ctrl-C once the work has begun.
     ValueError
-        If `interrupt` is neither word.
+        If `interrupt` is neither word, or the journal is none.
     """
     check_interrupt(interrupt)
-    kept = MemoryJournal() if journal is None else journal
+    kept = MemoryJournal() if journal is None else checked(journal)
     with shown(progress) as tell:
         result, work = begin(kept, tell)
         try:

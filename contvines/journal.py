@@ -45,6 +45,25 @@ class Journal(Protocol):
         ...
 
 
+def checked(journal: Journal) -> Journal:
+    """The journal, if it has the methods of the contract.
+
+    Raises
+    ------
+    ValueError
+        If it has not.
+    """
+    missing = [
+        name for name in ("recall", "record", "checkpoint") if not callable(getattr(journal, name, None))
+    ]
+    if missing:
+        raise ValueError(
+            f"journal = {journal!r} has no method {missing[0]!r}; an object with recall, record and checkpoint is asked for, "
+            'such as contvines.resume("FILE.vines")'
+        )
+    return journal
+
+
 class NullJournal:
     """A journal that keeps nothing."""
 

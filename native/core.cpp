@@ -1,7 +1,5 @@
 #include "api.h"
-#include "cavity.hpp"
 #include "collocation.hpp"
-#include "coupled_cycles.hpp"
 #include "loci.hpp"
 #include "moving_mesh.hpp"
 #include "math.hpp"
@@ -46,12 +44,10 @@ EXPORT void core_exponentials(whole count, const double* x, double* values) {
 
 // ---- compiled problems -----------------------------------------------------------------------------------------------------------
 // The tables of the built-in machines' cycles, and of loci of any compiled problem.
-EXPORT const Table* core_table(whole which) {
-    static const Table* const tables[] = {&cycles::CycleKernels<cycles::Cavity<AbsorberLaw>>::table,
-                                          &cycles::CycleKernels<cycles::Cavity<GeneralLaw>>::table,
-                                          &cycles::CycleKernels<cycles::Coupled>::table, &loci::table};
-    return tables[which];
+EXPORT const Table* core_machine_table(whole number) {
+    return with_machine(number, [](auto machine) { return &cycles::CycleKernels<typename decltype(machine)::Cycles>::table; });
 }
+EXPORT const Table* core_loci_table() { return &loci::table; }
 
 EXPORT double core_newton(const Table* table, void* data, void* work, whole size, double* u, double* p, double* room, const double* border,
                           double* step, double* tangent, double tolerance, whole limit, whole* iterations) {

@@ -184,7 +184,7 @@ inline Status march(Frame& f, const Chunk& chunk, whole first, whole stop, doubl
         double turn = sqrt(larger(0.0, 2.0 - 2.0 * cosine)), factor = judge(turn, error, sweeps, length, control.angle, larger(f.solution->rounding, noise));
         if (factor == ABORT) return ABORTED;
         if (!(factor > 0.0)) {
-            h = length * (-1.0 < factor && factor < 0.0 ? -factor : 0.5);
+            h = -factor * length;
             continue;
         }
         if (p > control.upper || p < control.lower) {

@@ -321,12 +321,4 @@ private:
     }
 };
 
-// The machines whose cavity moves as prescribed.
-struct Absorber : Shaken {
-    explicit Absorber(const double *p) : Shaken(AbsorberLaw::law(p)) {}
-};
-struct Cavity : Shaken {
-    explicit Cavity(const double *p) : Shaken(GeneralLaw::law(p)) {}
-};
-
 }  // namespace simulation

@@ -1,19 +1,12 @@
 // The simulator's functions as Python calls them; the first argument is the machine's number.
 #pragma once
-#include "coupled_simulation.hpp"
+#include "machines.hpp"
 #include "many_starts.hpp"
-#include "shaken.hpp"
 
 namespace simulation {
 
-enum Machines { ABSORBER, CAVITY, COUPLED };
-
 template <class F> auto with_machine(whole number, const double *params, F f) {
-    switch (number) {
-        case ABSORBER: return f(Absorber(params));
-        case CAVITY: return f(Cavity(params));
-        default: return f(Coupled(params));
-    }
+    return ::with_machine(number, [&](auto machine) { return f(typename decltype(machine)::Simulation(params)); });
 }
 
 }  // namespace simulation
@@ -81,8 +74,10 @@ EXPORT void simulation_growth(whole machine, double *state, double *other, const
     });
 }
 
-// Of the coupled machine's segments: see `Coupled::shape`.
-EXPORT void simulation_shapes(whole count, const double *states, const double *params, const double *lengths, double *out) {
-    const simulation::Coupled machine(params);
-    for (whole i = 0; i < count; i++) machine.shape(states + i * machine.STATE, lengths[i], out + 4 * i);
+// Of the segments of a machine that rides on an oscillator: see `Coupled::shape`.
+EXPORT void simulation_shapes(whole machine, whole count, const double *states, const double *params, const double *lengths, double *out) {
+    simulation::with_machine(machine, params, [&](const auto& m) {
+        if constexpr (requires { m.shape(states, 0.0, out); })
+            for (whole i = 0; i < count; i++) m.shape(states + i * m.STATE, lengths[i], out + 4 * i);
+    });
 }

@@ -49,6 +49,10 @@ def kind(name="mine", label="MI", **options):
     return cv.Kind(name, label, **({"test": lambda point: 1.0} | options))
 
 
+def half(point):
+    return point.value - 0.5
+
+
 def with_kind(extra):
     return cv.diagram(algebraic(), within=UNIT, kinds=[*cv.KINDS, extra])
 
@@ -148,6 +152,19 @@ REFUSED = {
     "tolerance": lambda: Settings(tolerance=-1.0),
     "step_rule = 'angle' must be a contvines.StepRule": lambda: Settings(step_rule="angle"),
     "must be a function of": lambda: cv.StepRule(3.0, "three"),
+    "step_rule: name = 3": lambda: cv.StepRule(lambda *numbers: 1.0, 3),
+    "step_rule 'none': judge returned None for a step": lambda: cv.diagram(
+        algebraic(), within=UNIT, settings={"step_rule": cv.StepRule(lambda *numbers: None, "none")}
+    ),
+    "step_rule 'far': judge returned -2.0": lambda: cv.diagram(
+        PAPER.symmetric_orbit(amplitude=0.6),
+        over="amplitude",
+        within=(0.5, 0.7),
+        settings={"step_rule": cv.StepRule(lambda *numbers: -2.0, "far")},
+    ),
+    "journal = 'line.vines' has no method 'recall'": lambda: cv.diagram(
+        algebraic(), within=UNIT, journal="line.vines"
+    ),
     "wants the label of a special point as text, for example 'EP1', the label of": lambda: cv.switch(
         line(), line()["EP1"]
     ),
@@ -159,6 +176,17 @@ REFUSED = {
     "no test function": lambda: with_kind(cv.Kind("mine", "MI")),
     "contvines.Kind": lambda: with_kind("fold"),
     "kind mine: its test fails at p": lambda: with_kind(kind(test=lambda point: point.velocity)),
+    "kind mine: its test returns True at p = ": lambda: with_kind(kind(test=lambda point: True)),
+    "kind mine: its test returns (1+2j) at p = ": lambda: with_kind(kind(test=lambda point: 1.0 + 2.0j)),
+    "kind mine: its verify returns None at p = ": lambda: with_kind(
+        kind(test=half, verify=lambda point: None)
+    ),
+    "kind mine: its classify returns ('odd', 1.0) at p = ": lambda: with_kind(
+        kind(test=half, classify=lambda point: ("odd", 1.0))
+    ),
+    "kind mine: locus = 'fold' is no function": lambda: kind(locus="fold"),
+    "kind mine: marker = 'zz'": lambda: kind(marker="zz"),
+    "kinds is a Kind; a list is asked for": lambda: cv.diagram(algebraic(), within=UNIT, kinds=kind()),
     "no condition to follow": without_condition,
     # two parameters
     "over = 'amplitude' is the parameter of the diagram itself": lambda: cv.locus(

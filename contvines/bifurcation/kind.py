@@ -49,6 +49,8 @@ Sides = tuple[str | None, float | None]
 """What a user's kind may return in the place of `Classified`: criticality and coefficient."""
 NAME = re.compile(r"[a-z][a-z0-9-]*")
 LABEL = re.compile(r"[A-Z][A-Z0-9]*")
+MARKERS = tuple("*os^vDpdhHPXx+|<>8.,1234_")
+"""As matplotlib calls them."""
 
 
 @hinted
@@ -72,14 +74,14 @@ class Kind:
     text : str
         For people; by default the name without hyphens.
     marker : str
-        In pictures, as matplotlib knows it.
+        In pictures, as matplotlib calls it: one of ``* o s ^ v D p d h H P X x + | < > 8 . , 1 2 3 4 _``.
     filled : bool
     verify : callable, optional
-        point -> bool: whether a located zero is of this kind, as where the sign of another number decides.
+        point -> True or False: whether a located zero is of this kind, as where the sign of another number decides.
     classify : callable, optional
         point -> (criticality, coefficient): "supercritical", "subcritical" or None, and a number or None.
     locus : callable, optional
-        point -> float: the condition that ``contvines.locus`` adds to the equations, often the test itself.
+        point -> float: the condition that ``contvines.locus`` adds to the equations, often the test itself. Its point has no tangent.
     ends : bool
         Branches end there.
     border, tests, find, leaves, nothing, without
@@ -88,7 +90,8 @@ class Kind:
     Raises
     ------
     ValueError
-        If the name, the label or the marker cannot be used, or ``test`` is no function.
+        If the name, the label or the marker cannot be used, or ``test``, ``verify``, ``classify`` or ``locus`` is no function. While a
+        diagram is made: if one of them fails or returns something else than it should, but NaN, with which a test says nothing.
     """
 
     name: str
@@ -120,10 +123,14 @@ class Kind:
             raise ValueError(
                 f"kind {self.name}: label = {self.label!r}; expected capital letters, for example 'NSD'"
             )
-        for role in ("test", "verify", "classify"):
+        for role in ("test", "verify", "classify", *(["locus"] if self.test is not None else [])):
             given = getattr(self, role)
             if given is not None and not callable(given):
                 raise ValueError(f"kind {self.name}: {role} = {given!r} is no function of a point")
+        if self.marker not in MARKERS:
+            raise ValueError(
+                f"kind {self.name}: marker = {self.marker!r}; expected one of matplotlib's: {' '.join(MARKERS)}"
+            )
         if not self.text:
             object.__setattr__(self, "text", self.name.replace("-", " "))
 

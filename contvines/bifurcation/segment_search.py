@@ -17,6 +17,7 @@ from .determinant import singular
 from .evidence import Evidence, evidence
 from .first_border import find_border, first_zero, rounding
 from .kind import Kind, Test
+from .kind_answers import verified
 from .kinds import BY_NAME, KINDS
 from .locate import locate, locate_singular
 from .located import NOWHERE, Located, Role
@@ -123,7 +124,7 @@ class SegmentSearch:
         if root is None or not root.continuous:
             return None
         point = PointOnBranch(self.engine, root.point, segment, root.position, test.index)
-        if kind.verify is not None and not kind.verify(point):
+        if not verified(kind, point, {self.engine.problem.parameter: root.point.p}):
             return None
         return blurred(segment, Located.at(root, kind.name, test.index), test.function)
 

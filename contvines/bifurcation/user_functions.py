@@ -10,6 +10,7 @@ import numpy as np
 from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
 from .kind import Kind
+from .kind_answers import number_of
 from .point_on_branch import PointOnBranch
 
 UserFunction = Callable[[np.ndarray, float], float] | tuple[str, float]
@@ -45,15 +46,9 @@ def _of_kind(engine: Engine, kind: Kind) -> Own:
     assert test is not None
 
     def at(point: Solved) -> float:
-        try:
-            return float(test(PointOnBranch(engine, point)))
-        except (ArithmeticError, np.linalg.LinAlgError):
-            return float("nan")
-        except Exception as error:
-            raise ValueError(
-                f"kind {kind.name}: its test fails at {engine.problem.parameter} = {point.p:.10g}: "
-                f"{type(error).__name__}: {error}"
-            ) from error
+        return number_of(
+            kind, "test", test, PointOnBranch(engine, point), {engine.problem.parameter: point.p}
+        )
 
     return Own(kind, "", lambda chunk: np.array([at(chunk.solved(i)) for i in range(len(chunk))]), at)
 

@@ -1,11 +1,13 @@
 """The console script: the command line, with Ctrl-C in good order from the first moment."""
 
 import sys
+import warnings
 
 
 def main() -> None:
     """Run `contvines`; an interrupt ends as a sentence with exit status 130."""
     sys.unraisablehook = _unraisable
+    warnings.showwarning = _one_line
     try:
         from contvines.command.cli import main as run
 
@@ -13,6 +15,14 @@ def main() -> None:
     except KeyboardInterrupt:
         print("contvines: stopped; nothing new is kept; run the same command again.", file=sys.stderr)
         sys.exit(130)
+
+
+def _one_line(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, *where: object
+) -> None:
+    """A warning as a sentence on stderr; of a library's with its place."""
+    place = "" if category is UserWarning else f"{filename}:{lineno}: {category.__name__}: "
+    print(f"contvines: {place}{message}", file=sys.stderr)
 
 
 def _unraisable(problem: "sys.UnraisableHookArgs") -> None:

@@ -47,7 +47,7 @@ class InterpretedLoop:
     def march(self, chunk: Points, first: int, h: float, control: Control) -> tuple[int, float, int]:
         """See :func:`contvines.continuation.loop.march`."""
         with np.errstate(all="ignore"):
-            return loop.march(self.kernels, self.rule.judge, self.frame, chunk, first, h, control)
+            return loop.march(self.kernels, self.rule.factor, self.frame, chunk, first, h, control)
 
     def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:
         """The points at some places, or the one that is aimed at; see :mod:`contvines.continuation.corrector`."""

@@ -112,7 +112,7 @@ def march(kernels, judge, frame, chunk, first, h, control):
         turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
         factor = judge(turn, error, sweeps, length, angle, max(SOLUTION.rounding, noise))
         if not factor > 0.0:
-            h = length * (-factor if -1.0 < factor < 0.0 else 0.5)
+            h = -factor * length
             continue
         if p > upper or p < lower:
             bound = upper if p > upper else lower

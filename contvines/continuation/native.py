@@ -43,7 +43,7 @@ class Judge:
 
     def _asked(self, *numbers: float) -> float:
         try:
-            return float(self.rule.judge(*numbers))
+            return self.rule.factor(*numbers)
         except BaseException as error:
             self.error = error
             return ABORT

@@ -18,7 +18,7 @@ class StepRule:
     ----------
     judge : callable
         ``judge(turn, error, sweeps, length, angle, roundoff) -> factor``. The next step is `factor` times as long as this one if the
-        factor is positive; a negative one rejects this step, which is tried again with the length ``-factor`` (below 1). It gets
+        factor is positive; a negative one, above -1, rejects this step, which is tried again ``-factor`` times as long. It gets
 
         ``turn``
             the angle between the tangents before and after the step, radians;
@@ -45,6 +45,28 @@ class StepRule:
             raise ValueError(
                 f"step_rule: judge = {self.judge!r} must be a function of (turn, error, sweeps, length, angle, roundoff)"
             )
+        if not isinstance(self.name, str):
+            raise ValueError(f"step_rule: name = {self.name!r} must be a text")
+
+    def factor(self, *numbers: float) -> float:
+        """What ``judge`` says of a step.
+
+        Raises
+        ------
+        ValueError
+            If it returns no such factor.
+        """
+        found = self.judge(*numbers)
+        try:
+            factor = float(found)
+        except (TypeError, ValueError):
+            factor = 0.0
+        if not (factor > 0.0 or -1.0 < factor < 0.0):
+            raise ValueError(
+                f"step_rule {self.name!r}: judge returned {found!r} for a step of length {numbers[3]:.3g}; a factor is asked for, "
+                "above 0 for the next step, or between -1 and 0 to try this one again"
+            )
+        return factor
 
 
 def by_angle(turn, error, sweeps, length, angle, roundoff):

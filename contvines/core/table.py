@@ -185,6 +185,6 @@ def _newton() -> Callable[..., float]:
 
 
 @cache
-def native_table(place: int) -> int:
-    """Address of a table of the native core, by its place in `core_table` (native/core.cpp)."""
-    return int(function("core_table", POINTER, WHOLE)(place))
+def native_table(name: str, *number: int) -> int:
+    """Address of a table of the native core, from the function of native/core.cpp that returns it."""
+    return int(function(name, POINTER, *[WHOLE] * len(number))(*number))

@@ -6,6 +6,8 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import checked
 from ..continuation.settings import Settings, hinting
@@ -109,10 +111,33 @@ def diagram(
             begin(run, problem, u, p)
             work(run)
             finish(run)
+            for kind in kinds or ():
+                if (
+                    kind.test is not None
+                    and not run.graph.of_kind(kind.name)
+                    and not _ever_a_number(run, kind)
+                ):
+                    warnings.warn(
+                        f"kind {kind.name}: its test is a number on no branch, so that nothing is found",
+                        UserWarning,
+                        stacklevel=5,
+                    )
 
         return run.graph, carry_on
 
     return carried_out(begun, journal, progress, interrupt)
+
+
+def _ever_a_number(run: Run, kind: Kind) -> bool:
+    """Whether a user's test is a number in the middle of any branch."""
+    for branch in run.graph.branches.values():
+        engine, detector = run.engine(branch.attached)
+        i = len(branch) // 2
+        point = engine.at_value(branch.points[i], float(branch.values[i]))
+        own = next(own for own in detector.own if own.kind is kind)
+        if point is not None and np.isfinite(own.at(point)):
+            return True
+    return False
 
 
 def new_run(

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..bifurcation.kind import Classified
+from ..bifurcation.kind_answers import classified
 from ..bifurcation.kinds import BORDERS
 from ..bifurcation.located import Located, Role
 from ..bifurcation.location_error import missed, singular_within
@@ -338,11 +338,9 @@ def _special(run: Run, kind: str, engine: Engine, branch: Branch, event: Located
     _doubt(engine, special)
     if event.role is Role.MEETING:
         special.met_from = branch.label
-    if classify := run.kind(kind).classify:
-        form = classify(PointOnBranch(engine, point))
-        form = form if isinstance(form, Classified) else Classified(*form)
-        special.criticality, special.coefficient, remarks = form
-        special.remarks = (*special.remarks, *remarks)
+    form = classified(run.kind(kind), PointOnBranch(engine, point), {special.parameter: special.value})
+    special.criticality, special.coefficient, remarks = form
+    special.remarks = (*special.remarks, *remarks)
     return special
 
 

@@ -145,6 +145,7 @@ class AdaptiveLocus(LocusProblem):
             position,
             self.masked,
             self.unit,
+            self.own_kind,
         )
 
     def describe(self) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bifurcation.kind import Kind
+from ..bifurcation.kind_answers import verified
 from ..bifurcation.locate import locate
 from ..bifurcation.segment import Segment
 from ..bifurcation.settings import LOCATING
@@ -26,7 +27,7 @@ from ..problems.protocol import Problem
 from ..shared.floating_point import ROUNDED
 from .conditions import COEFFICIENTS, References, Test, coefficient_of, test_of
 from .kinds import TOUCH, Look, looks
-from .layout import FLIP, FOLD, MARGIN, PAIR, PERIOD
+from .layout import FLIP, FOLD, MARGIN, OWN, PAIR, PERIOD
 from .locus import Locus
 from .on_mesh import on_mesh
 from .own_test import of_plane, tested
@@ -128,7 +129,9 @@ def _of_look(look: Look, problem: LocusProblem) -> Sought:
 
 
 def _borders(problem: LocusProblem) -> Iterator[Sought]:
-    """One more margin that vanishes."""
+    """One more margin that vanishes; of the condition of a user's kind nothing is known."""
+    if problem.condition == OWN:
+        return
     kind = BORDER_KINDS.get(problem.condition, "border-fold")
     if problem.condition == FLIP and problem.base.flip_kind == "symmetry-breaking":
         kind = "border-symmetry-breaking"
@@ -149,7 +152,8 @@ def _few_digits(look: Look, plane: Plane, at: References) -> float:
 
 
 def _of_own(kind: Kind, plane: Plane) -> bool:
-    return kind.verify is None or bool(kind.verify(of_plane(plane)))
+    point = of_plane(plane)
+    return verified(kind, point, point.place)
 
 
 def _inside(kind: str, masked: frozenset[int], plane: Plane) -> bool:

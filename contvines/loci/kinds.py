@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from ..bifurcation.kinds import CODIMENSION_TWO
 from ..problems.protocol import Problem
-from .layout import BRANCH, FLIP, FOLD, MARGIN, PAIR, PERIOD
+from .layout import BRANCH, FLIP, FOLD, MARGIN, OWN, PAIR, PERIOD
 
 #: kind of a point of codimension two -> prefix of its label
 PREFIXES = {kind.name: kind.label for kind in CODIMENSION_TWO.values()}
@@ -59,7 +59,7 @@ TOUCH = Look("touch", "degenerate-border")
 
 def looks(problem: Problem, condition: int) -> list[Look]:
     """What is looked for along a locus with this condition; borders are found by the margins themselves."""
-    if getattr(problem, "own_kind", None) is not None:
+    if condition == OWN:
         return []  # of a user's condition nothing is known
     spectrum, m = problem.spectrum, int(problem.n_multipliers)
     half = problem.flip_kind == "symmetry-breaking"

@@ -1,7 +1,7 @@
 """The conditions that a locus may follow, and what stands where in the arrays of its kernels."""
 
-# of problems in Python alone: PERIOD, one of the unknowns, the period, has a given value; GROWTH, the only multiplier is 1
-FOLD, FLIP, MARGIN, PAIR, BRANCH, PERIOD, GROWTH = range(7)
+# in Python alone: PERIOD, one of the unknowns, the period, has a given value; GROWTH, the only multiplier is 1; OWN, the condition of a user's kind
+FOLD, FLIP, MARGIN, PAIR, BRANCH, PERIOD, GROWTH, OWN = range(8)
 
 ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of `solutions`, the last one with another after it
 B, C, FLIP_B, FLIP_C = range(4)  # rows of `borders`

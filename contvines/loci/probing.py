@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..bifurcation.settings import LOCATING
 from ..shared.floating_point import ROUNDED
-from .layout import BRANCH, FLIP, FLIP_B, FLIP_C, FOLD, GROWTH, KNOWN, MARGIN, PERIOD, TESTED, B, C
+from .layout import BRANCH, FLIP, FLIP_B, FLIP_C, FOLD, GROWTH, KNOWN, MARGIN, OWN, PERIOD, TESTED, B, C
 from .settings import SCALING
 
 
@@ -80,6 +80,8 @@ def tests(data, work, u, p, q, values):
         values[:2] = null[-1], step[-1]
     elif kind == PERIOD:
         values[0] = u[data.which] / work.reference[0] - 1.0
+    elif kind == OWN:
+        values[0] = data.own(u, p, q, trial, work.row)
     else:
         row = work.row
         calls.inspect(first, u, p, trial, row)

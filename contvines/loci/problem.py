@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -10,6 +10,8 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.critical import critical
+from ..bifurcation.kind import Kind
+from ..bifurcation.kind_answers import number_of
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
@@ -17,13 +19,13 @@ from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaul
 from .borders import borders_at, fresh_borders
 from .kernels import locus_bordered, locus_inspect, locus_linearise
 from .kinds import condition
-from .layout import BRANCH, FLIP, LONGEST, MARGIN, PAIR
+from .layout import BRANCH, FLIP, LONGEST, MARGIN, OWN, PAIR
+from .point_of_locus import PointOfLocus
 from .settings import SCALING
 
 FURTHER = 100.0  # times the sizes along the branch: no locus is measured with more
 
 
-TABLE = 3  # of loci, in the native core
 IN_PYTHON = Kernels(locus_linearise, locus_bordered, locus_inspect)
 
 
@@ -42,6 +44,7 @@ class Data(NamedTuple):
     flow: bool
     unit: float
     memory: np.ndarray = NOTHING
+    own: Callable[..., float] | None = None
 
 
 class Work:
@@ -114,6 +117,8 @@ class LocusProblem(ProblemDefaults):
         Margins that are zero all along the locus, as those of a border are.
     unit : float
         In which the first parameter is counted among the unknowns.
+    own_kind : Kind, optional
+        Of the user's: its condition is followed, computed in Python.
 
     Raises
     ------
@@ -134,6 +139,7 @@ class LocusProblem(ProblemDefaults):
         reference: float = 0.0,
         masked: Sequence[int] = (),
         unit: float = 1.0,
+        own_kind: Kind | None = None,
     ) -> None:
         kernels = problem.kernels
         names = list(problem.parameters)
@@ -151,7 +157,8 @@ class LocusProblem(ProblemDefaults):
                 f"{type(problem).__name__} has no kernels for loci (assign, flip, transpose, column)"
             )
         self.base, self.kind, self.over, self.index = problem, kind, over, int(index)
-        self.condition = condition(problem, kind)
+        self.own_kind = own_kind
+        self.condition = condition(problem, kind) if own_kind is None else OWN
         if self.condition == FLIP and problem.movable:
             raise ValueError(
                 "symmetric motions without impacts may be moved as a whole; their symmetry breaking is not isolated and "
@@ -176,17 +183,34 @@ class LocusProblem(ProblemDefaults):
         self.borders = fresh_borders(self.size) if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
-        self.compiled = bool(kernels.compiled)
-        self.kernels = TableKernels(native_table(TABLE)) if self.compiled else IN_PYTHON
+        self.compiled = bool(kernels.compiled) and own_kind is None
+        self.kernels = TableKernels(native_table("core_loci_table")) if self.compiled else IN_PYTHON
         self.natural = has_natural_units(problem)
         about = self.tested, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit
-        self.data = Data(self.first.data, self.second.data, self.first.kernels, *about)
-        if isinstance(kernels, TableKernels):
+        own = None if own_kind is None else self._own
+        self.data = Data(self.first.data, self.second.data, self.first.kernels, *about, own=own)
+        if isinstance(kernels, TableKernels) and self.compiled:
             places = memory_of(self.first.data), memory_of(self.second.data)
             self.data = self.data._replace(memory=pack(kernels.table, *places, *about))
         shift = problem.period_shift
         if shift is not None and np.any(shift):
             self.period_shift = np.append(shift, np.zeros(self.dimension - self.size))
+
+    def _own(self, u: np.ndarray, p: float, q: float, work: object, row: np.ndarray) -> float:
+        """The condition of the user's kind at a solution; a workspace and a row are filled."""
+        first, kind = self.first, self.own_kind
+        assert kind is not None and callable(kind.locus)
+        first.kernels.inspect(first.data, u, p, work, row)
+
+        def jacobian() -> np.ndarray:
+            if first.kernels.matrix is None:
+                raise ValueError(f"a {type(first).__name__} does not tell its Jacobian")
+            first.kernels.linearise(first.data, u, p, work)
+            return first.kernels.matrix(first.data, work)
+
+        place = {self.inner: float(p), self.over: float(q)}
+        point = PointOfLocus(lambda: self.at(q), self.base.parameters, place, u, row, jacobian)
+        return number_of(kind, "locus", kind.locus, point, place)
 
     @property
     def tested(self) -> int:
@@ -250,7 +274,17 @@ class LocusProblem(ProblemDefaults):
         """The same locus, with the borders that belong to one of its points, and the pair at a position there."""
         problem = self.at(q)
         borders = borders_at(problem, self.condition, u, p)
-        about = self.kind, self.over, self.index, self.bounds, borders, reference, self.masked, self.unit
+        about = (
+            self.kind,
+            self.over,
+            self.index,
+            self.bounds,
+            borders,
+            reference,
+            self.masked,
+            self.unit,
+            self.own_kind,
+        )
         return type(self)(problem, *about)
 
     def margin_kind(self, j: int) -> str:
@@ -316,7 +350,9 @@ class LocusProblem(ProblemDefaults):
             **({"unit": self.unit} if self.unit != 1.0 else {}),
             "borders": self.borders.tolist(),
             "problem": about,
-            "factory": "contvines.loci.problem:from_description" if about.get("factory") else None,
+            "factory": "contvines.loci.problem:from_description"
+            if about.get("factory") and self.own_kind is None
+            else None,
         }
 
     @classmethod

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..bifurcation.kind import Kind
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
@@ -14,7 +15,7 @@ from ..problems.protocol import Problem
 from .adaptive import AdaptiveLocus
 from .borders import borders_at
 from .kinds import condition
-from .layout import APART, MARGIN, PAIR, PERIOD
+from .layout import APART, MARGIN, OWN, PAIR, PERIOD
 from .linear import Linearisation
 from .on_mesh import on_mesh
 from .probing import pair_of, position_of
@@ -32,6 +33,7 @@ def begin(
     over: str,
     index: int = 0,
     bounds: tuple[float, float] = (-np.inf, np.inf),
+    own_kind: Kind | None = None,
 ) -> LocusProblem:
     """The problem of the locus through a special point, with borders and the pair that belong to that point.
 
@@ -48,8 +50,10 @@ def begin(
         Which margin, at a border.
     bounds : (float, float)
         Of the first parameter.
+    own_kind : Kind, optional
+        Of a user's, whose condition is followed.
     """
-    wanted = condition(problem, kind)
+    wanted = condition(problem, kind) if own_kind is None else OWN
     if wanted == MARGIN:
         index = problem.smooth_margin(index)
     reference = 0.0
@@ -58,7 +62,7 @@ def begin(
         reference = float(u[index])
     make = AdaptiveLocus if isinstance(problem, Adaptive) else LocusProblem
     unit = unit_of(problem, bounds, p)
-    locus = make(problem, kind, over, index, bounds, reference=reference, unit=unit)
+    locus = make(problem, kind, over, index, bounds, reference=reference, unit=unit, own_kind=own_kind)
     locus.borders = borders_at(problem, wanted, u, p)
     line = Linearisation(problem)
     line.at(u, p)

@@ -30,7 +30,7 @@ from .layout import BRANCH, MARGIN, PERIOD
 from .locus import Locus, Turn
 from .long_period import lengthened, limit_of, with_suited_period
 from .on_mesh import on_mesh
-from .own_test import of_own_kind, with_condition
+from .own_test import condition_of, of_own_kind
 from .plane_point import PlanePoint
 from .problem import LocusProblem
 from .settings import VANISHING
@@ -76,7 +76,8 @@ def locus(
         Of a homoclinic end: the period of the cycles that stand for the homoclinic orbits along the locus; the one at the end of
         the branch if it is left out, of a heteroclinic cycle a shorter one, at a Bogdanov-Takens point one that suits the first orbit.
     kinds : iterable of Kind, optional
-        As in :func:`contvines.diagram`: zeros of the tests of kinds of your own along the locus are among its points, too.
+        As in :func:`contvines.diagram`: zeros of the tests of kinds of your own along the locus are among its points, too. A special
+        point of such a kind from a file needs it again.
 
     Returns
     -------
@@ -113,15 +114,15 @@ def locus(
     motion = point.attached
     known = motion.parameters
     own = of_own_kind(point)
-    base: Any = with_condition(motion, point.own_kind, point.label) if own else motion
     problem = begin(
-        base,
+        motion,
         point.kind,
         point.u,
         point.value,
         over,
-        int(motion.n_margins) if own else point.margin_index or 0,
+        point.margin_index or 0,
         (-np.inf, np.inf) if bounds is None else check_interval(bounds),
+        condition_of(point, own_kinds) if own else None,
     )
     q = known[over]
     if not within[0] <= q <= within[1]:

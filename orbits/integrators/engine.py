@@ -5,12 +5,16 @@ from __future__ import annotations
 import os
 import sys
 from functools import cache
+from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
 
 from contvines.shared.extras import pip_install
 
 HOW = "{0} (Linux), or conda install heyoka.py -c conda-forge (macOS, Windows)"
+
+MODULES = {"heyoka": "heyoka", "scipy": "solve_ivp"}
+"""Names of the integrators, as `CONTVINES_PAGES` says them, and their files."""
 
 
 class EngineMissing(ImportError):
@@ -27,22 +31,17 @@ def engine() -> ModuleType:
         If `CONTVINES_PAGES` names an integrator that is not installed, or none.
     """
     asked = os.environ.get("CONTVINES_PAGES", "")
-    if asked not in ("", "heyoka", "scipy"):
-        raise EngineMissing(f"CONTVINES_PAGES={asked}: say heyoka or scipy, or leave it out")
+    if asked and asked not in MODULES:
+        raise EngineMissing(f"CONTVINES_PAGES={asked}: say {' or '.join(MODULES)}, or leave it out")
     there = find_spec("heyoka") is not None
     if asked == "heyoka" and not there:
         raise EngineMissing(
             f"CONTVINES_PAGES=heyoka, which is not installed: {HOW.format(pip_install('machines'))}"
         )
-    if there and asked != "scipy":
-        from orbits.integrators import heyoka
-
-        return heyoka
-    if not asked:
+    if not (asked or there):
         print(
             f"heyoka is not installed: SciPy integrates the motions, about fifty times slower; {HOW.format(pip_install('machines'))}",
             file=sys.stderr,
         )
-    from orbits.integrators import solve_ivp
-
-    return solve_ivp
+    chosen = asked or ("heyoka" if there else "scipy")
+    return import_module(f"orbits.integrators.{MODULES[chosen]}")

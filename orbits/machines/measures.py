@@ -18,7 +18,9 @@ LOADS = (
     "mean_force",
     "work_rate",
     "peak_force",
-)  # nothing without impacts
+)
+WITHOUT_IMPACTS = (*LOADS, "impact_loss", "impact_speed", "impact_speed_min")
+"""Measures that are 0 without impacts; others of impacts are not a number there."""
 COMMON = (
     *("B", "B_post", "B_pre", "B_mean", "C2", "phase", "impact_speed", "impact_speed_min"),
     *("impact_loss", "friction_loss", "max_abs_w"),

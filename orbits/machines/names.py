@@ -7,6 +7,8 @@ PLACES = {
 }
 """Module and class of each machine."""
 NAMES = tuple(PLACES)
+NATIVE = ("absorber", "cavity", "coupled")
+"""Machines of the native core, in the order of native/machines.hpp; others compute with their reference."""
 STRUCTURE = "structure"
 """What studies call a machine of matrices (`orbits.machines.structure`)."""
 PAGES = {"coupled_two": "orbits.machines.coupled_two"}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from orbits.machines.names import NATIVE
 from orbits.machines.stepping import PAUSED, TURNS
 from orbits.settings import STEPPING
 
@@ -15,8 +16,10 @@ if TYPE_CHECKING:
 
     from orbits.machines.reference.machine import Reference
 
-NUMBERS = {"absorber": 0, "cavity": 1, "coupled": 2}
-"""Numbers of the machines in the native core."""
+
+def number(name: str) -> int | None:
+    """The number of a machine in the native core; None if its reference computes."""
+    return NATIVE.index(name) if native() and name in NATIVE else None
 
 
 def floats(array: np.ndarray) -> np.ndarray:
@@ -43,21 +46,22 @@ def written(array: np.ndarray) -> int:
 
 
 class NativeStepper:
-    """Launch, advance, sample, works and energies of one machine.
+    """Launch, advance, sample, works, shapes and energies of one machine.
 
     Parameters
     ----------
-    name : str
-        A key of `NUMBERS`.
+    machine : int
+        Its number in the native core.
     """
 
-    def __init__(self, name: str) -> None:
-        self.number = NUMBERS[name]
+    def __init__(self, machine: int) -> None:
+        self.number = machine
         self._launch = function("simulation_launch", NOTHING, WHOLE, POINTER, POINTER)
         self._advance = function(
             "simulation_advance", WHOLE, WHOLE, POINTER, POINTER, NUMBER, POINTER, POINTER, POINTER, WHOLE
         )
         states = (WHOLE, WHOLE, POINTER, POINTER)
+        self._shapes = function("simulation_shapes", NOTHING, *states, POINTER, POINTER)
         self._sample = function("simulation_sample", NOTHING, *states, POINTER, POINTER)
         self._works = function("simulation_works", NOTHING, *states, POINTER, POINTER)
         self._energies = function("simulation_energies", NOTHING, *states, POINTER)
@@ -106,6 +110,10 @@ class NativeStepper:
         """Works inside pieces of segments; contract, item 5."""
         self._each(self._works, states, params, ahead, out)
 
+    def shapes(self, states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
+        """See `orbits.machines.reference.motion.shapes`."""
+        self._each(self._shapes, states, params, lengths, out)
+
     def energies(self, states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
         """Energies of states; contract, item 5."""
         states, params = floats(states), floats(params)
@@ -120,8 +128,9 @@ class NativeStepper:
 
 def stepper_functions(name: str) -> NativeStepper | Reference:
     """The functions of the contract for the machine called `name`: the native core's, or those of its reference in plain Python."""
-    if native():
-        return NativeStepper(name)
+    machine = number(name)
+    if machine is not None:
+        return NativeStepper(machine)
     from orbits.machines.reference.machine import reference
 
     return reference(name)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
-from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
+from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
+from orbits.machines.native_stepper import bytes_of, floats, number
 from orbits.machines.stepping import MODE, PSI, RATE, TURNS, V_RATE, Machine, V, W
 
 TWO_PI = 2.0 * np.pi
@@ -17,13 +17,14 @@ def states_of(
     """The states, shape (n, S), just after events, from their nodes (Psi, B+ or w(, v, v'))."""
     left, right = engine.walls(params)
     states = np.zeros((len(nodes), engine.state))
-    if native():
+    machine = number(engine.name)
+    if machine is not None:
         codes, modes, nodes, params = bytes_of(codes), bytes_of(modes), floats(nodes), floats(params)
         work = function(
             "simulation_states", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, POINTER
         )  # fmt: skip
         events = address(codes), address(modes), address(nodes)
-        work(NUMBERS[engine.name], address(params), len(nodes), *events, left, right, address(states))
+        work(machine, address(params), len(nodes), *events, left, right, address(states))
         return states
     turns = np.floor(nodes[:, 0] / TWO_PI)
     psi = nodes[:, 0] - turns * TWO_PI

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from contvines.shared.motions import mean_of_blocks
 from orbits.flows.protocol import Outcome
 from orbits.machines.catalogue import stepper as machine
-from orbits.machines.native_stepper import NUMBERS, floats, written
+from orbits.machines.native_stepper import floats, number, written
 from orbits.machines.stepping import (
     EVENTS_FULL,
     FAILED,
@@ -77,25 +77,25 @@ class Settling(NamedTuple):
         stopped : Event, optional
             Ends the work with `Interrupted` when it is set.
         """
-        begin, fast = 0, native()
+        begin, machine = 0, number(self.engine.name)
         while begin < len(states):
             if stopped is not None and stopped.is_set():
                 raise Interrupted
-            if fast:
-                begin = self._natively(begin, states, found)
+            if machine is not None:
+                begin = self._natively(machine, begin, states, found)
                 continue
             if found["outcome"][begin] == WANDERING:
                 self._one(states[begin], begin, found)
             begin += 1
 
-    def _natively(self, begin: int, states: np.ndarray, found: dict[str, np.ndarray]) -> int:
+    def _natively(self, machine: int, begin: int, states: np.ndarray, found: dict[str, np.ndarray]) -> int:
         """Some motions from number `begin` on; the number of the next one."""
         work = function(
             "simulation_settle", WHOLE, WHOLE, WHOLE, WHOLE, POINTER, POINTER, NUMBER, WHOLE, NUMBER, *[POINTER] * 5, NUMBER
         )  # fmt: skip
-        number, results = NUMBERS[self.engine.name], [written(found[name]) for name in RESULTS]
+        results = [written(found[name]) for name in RESULTS]
         how = address(self.params), self.transient, self.longest, self.tolerance
-        return work(number, begin, len(states), written(states), *how, *results, WORK)
+        return work(machine, begin, len(states), written(states), *how, *results, WORK)
 
     def _one(self, state: np.ndarray, i: int, found: dict[str, np.ndarray]) -> None:
         """Motion number i in plain Python: the reference of `native/many_starts.hpp`."""
@@ -145,7 +145,8 @@ def growth(engine: Machine, state: np.ndarray, params: np.ndarray, count: int) -
     """Follow a motion and a neighbour between the walls, drawn back to it once a forcing period; growth factors, shape (count,)."""
     ratios, other, distance = np.empty(count), state.copy(), SIMULATING.nudge
     left, right = (float(wall) for wall in engine.walls(params))
-    if native():
+    machine = number(engine.name)
+    if machine is not None:
         work = function(
             "simulation_growth", NOTHING, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, WHOLE, WHOLE, NUMBER, POINTER
         )  # fmt: skip
@@ -153,7 +154,7 @@ def growth(engine: Machine, state: np.ndarray, params: np.ndarray, count: int) -
         arrays = written(state), written(other), address(params)
         for begin in range(0, count, BUFFER):
             end = min(begin + BUFFER, count)
-            work(NUMBERS[engine.name], *arrays, left, right, begin, end, distance, address(ratios))
+            work(machine, *arrays, left, right, begin, end, distance, address(ratios))
         return ratios
     # the reference of `native/many_starts.hpp`
     room = buffers(engine, BUFFER)

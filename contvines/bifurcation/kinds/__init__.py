@@ -93,7 +93,9 @@ def checked(kinds: Iterable[Kind] | None) -> tuple[Kind, ...]:
         If they are no list, one is no :class:`~contvines.Kind`, has no test function, or two share a name or a label.
     """
     if not (kinds is None or isinstance(kinds, Iterable)):
-        raise ValueError(f"kinds = {kinds!r}: a list is asked for; use kinds=[*contvines.KINDS, yours]")
+        raise ValueError(
+            f"kinds is a {type(kinds).__name__}; a list is asked for, kinds=[*contvines.KINDS, yours]"
+        )
     chosen = KINDS if kinds is None else tuple(kinds)
     names: dict[str, Kind] = {}
     for kind in chosen:

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from contvines.core.library import NOTHING, POINTER, WHOLE, address, function, native
 from orbits.machines.base import Model
 from orbits.machines.events import event_table
-from orbits.machines.native_stepper import floats, stepper_functions, written
+from orbits.machines.native_stepper import stepper_functions
 from orbits.machines.rest import share_of_the_base
 from orbits.words import Word
 
@@ -46,9 +45,10 @@ def own_measures(
     shape = np.empty((length, 4))
     work = np.empty((length, 3))
     functions = stepper_functions(model.name)
+    eps = np.asarray(model.column(params, "mass_ratio"))
     power = any(name in POWERS for name in wanted)
     for i in range(count):
-        _shapes(states[i], params[i], spans[i], shape)
+        functions.shapes(states[i], params[i], spans[i], shape)
         sine, cosine = 2.0 / turn * shape[:, 1].sum(), 2.0 / turn * shape[:, 2].sum()
         values: dict[str, float] = {
             "max_abs_q1": shape[:, 0].max(),
@@ -58,7 +58,7 @@ def own_measures(
         }
         if power:
             functions.works(states[i], params[i], spans[i], work)
-            force, ground = work[:, 0].sum() / params[i, 3], work[:, 1].sum() / params[i, 3]
+            force, ground = work[:, 0].sum() / eps[i], work[:, 1].sum() / eps[i]
             more = share_of_the_base(model.rest.law(params[i]), periods, shape[:, 3].sum())
             values |= {
                 "force_work": force,
@@ -69,15 +69,3 @@ def own_measures(
         for name in wanted:
             result[name][i] = values[name]
     return result
-
-
-def _shapes(states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
-    """`orbits.machines.reference.motion.shapes`, by the native core where there is one."""
-    if not native():
-        from orbits.machines.reference.machine import reference
-
-        reference("coupled").shapes(states, params, lengths, out)
-        return
-    states, params, lengths = floats(states), floats(params), floats(lengths)
-    work = function("simulation_shapes", NOTHING, WHOLE, POINTER, POINTER, POINTER, POINTER)
-    work(len(states), address(states), address(params), address(lengths), written(out))

@@ -10,16 +10,13 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING
 
-from contvines.core.library import native
 from contvines.core.table import TableKernels, native_table
 from orbits.flows.native import rearranged
 from orbits.machines.base import Model
+from orbits.machines.native_stepper import number
 
 if TYPE_CHECKING:
     from orbits.flows.native.reference_kernels import ReferenceKernels
-
-TABLES = {"absorber": 0, "cavity": 1, "coupled": 2}
-"""Places of the models' tables in the native core."""
 
 
 class NativeKernels(TableKernels):
@@ -30,9 +27,9 @@ class NativeKernels(TableKernels):
 
 
 @cache
-def _assembled(name: str, in_native: bool) -> NativeKernels | ReferenceKernels:
-    if in_native:
-        return NativeKernels(native_table(TABLES[name]))
+def _assembled(name: str, machine: int | None) -> NativeKernels | ReferenceKernels:
+    if machine is not None:
+        return NativeKernels(native_table("core_machine_table", machine))
     from orbits.flows.native.reference_kernels import ReferenceKernels
     from orbits.machines.reference.machine import reference
 
@@ -41,4 +38,4 @@ def _assembled(name: str, in_native: bool) -> NativeKernels | ReferenceKernels:
 
 def assemble(model: Model) -> NativeKernels | ReferenceKernels:
     """The kernels for `model`, made once per process."""
-    return _assembled(model.name, native())
+    return _assembled(model.name, number(model.name))

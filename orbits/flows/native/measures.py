@@ -18,7 +18,7 @@ from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table
 from orbits.machines.measures import ANGLES as ANGLES
-from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, loads, names, way_out
+from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, WITHOUT_IMPACTS, loads, names, way_out
 from orbits.words import Word
 
 
@@ -102,7 +102,7 @@ def dimensionless(
         elif name == "max_abs_w":
             result[name] = np.abs(table.w).max(axis=1)
         elif not hits.any():
-            result[name] = np.full(m, np.nan) if not name.startswith("impact_speed") else np.zeros(m)
+            result[name] = np.zeros(m) if name in WITHOUT_IMPACTS else np.full(m, np.nan)
         else:
             post, pre = table.B_post[:, hits] * away, -table.B_pre[:, hits] * away
             speed = np.abs(table.rate_pre[:, hits])
@@ -120,14 +120,7 @@ def dimensionless(
 def _at_rest(model: Model, name: str, params: np.ndarray) -> np.ndarray:
     """A measure of the absorber at rest; velocities at impacts are not a number."""
     name = MEANS.get(name, name)  # its period is the forcing's
-    if name in (
-        *LOADS,
-        "impact_loss",
-        "friction_loss",
-        "impact_speed",
-        "impact_speed_min",
-        "max_abs_w",
-    ):
+    if name in (*WITHOUT_IMPACTS, "friction_loss", "max_abs_w"):
         return np.zeros(len(params))
     rest = model.rest
     return np.array([rest.measure(name, row, rest.solved(row)) for row in params])

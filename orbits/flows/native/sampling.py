@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
+from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from orbits.flows.protocol import Motion
 from orbits.machines.base import Model
 from orbits.machines.catalogue import stepper
-from orbits.machines.native_stepper import NUMBERS, bytes_of, floats
+from orbits.machines.native_stepper import bytes_of, floats, number
 from orbits.machines.states import state_of, states_of
 
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
@@ -84,7 +84,8 @@ def positions(motion: Motion[Model], instants: int) -> np.ndarray:
         return np.zeros(count)
     engine, params, length = stepper(motion.model.name), motion.params, 2.0 * np.pi * motion.periods
     codes, modes, nodes = motion.word.codes, motion.word.mode_codes, motion.nodes
-    if native():
+    machine = number(engine.name)
+    if machine is not None:
         left, right = engine.walls(params)
         codes, modes, nodes, params, w = (
             bytes_of(codes),
@@ -97,9 +98,7 @@ def positions(motion: Motion[Model], instants: int) -> np.ndarray:
             "simulation_positions", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, NUMBER, WHOLE, POINTER
         )  # fmt: skip
         events = address(codes), address(modes), address(nodes)
-        work(
-            NUMBERS[engine.name], address(params), len(codes), *events, left, right, length, count, address(w)
-        )
+        work(machine, address(params), len(codes), *events, left, right, length, count, address(w))
         return w
     begins = np.maximum.accumulate(nodes[:, 0] - nodes[0, 0])
     wanted = (np.arange(count) * (length / count) - nodes[0, 0]) % length

@@ -146,3 +146,10 @@ def test_a_kind_with_a_condition_is_followed_in_two_parameters():
     # both ways from the start: saddles at one end of the interval of delta, Hopf points at the other
     assert sorted(values[[0, -1], 1]) == pytest.approx([0.05, 0.05])
     assert values[:, 1].max() > 0.2
+
+
+def test_a_test_that_is_nowhere_a_number_is_told():
+    problem = cv.AlgebraicProblem(lambda u, p: u - p, [0.5], 0.5)
+    nothing = cv.Kind("nothing", "NO", test=lambda point: float("nan"))
+    with pytest.warns(UserWarning, match="kind nothing: its test is a number on no branch"):
+        cv.diagram(problem, within=(0.0, 1.0), kinds=[*cv.KINDS, nothing])

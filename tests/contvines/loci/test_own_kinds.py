@@ -1,10 +1,14 @@
 """Points of users' kinds on a locus."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
 import contvines as cv
+from orbits import Absorber
 
 
 def predators(u, p):
@@ -32,3 +36,55 @@ def test_a_zero_trace_on_a_locus_of_folds_is_a_bogdanov_takens_point():
     assert found.points["ZT1"].value == pytest.approx((alpha, delta), rel=1e-10)
     assert found.points["BT1"].value == pytest.approx((alpha, delta), rel=1e-10)
     assert {"ZT1", "BT1"} == set(found.points)
+
+
+def test_a_limit_of_the_impact_speed_is_followed_as_the_closed_form_has_it():
+    fast = cv.Kind(
+        "fast", "FA", test=lambda point: point.measure("impact_speed") - 1.0, locus=lambda point: point.measure("impact_speed") - 1.0
+    )  # fmt: skip
+    machine = Absorber(restitution=0.76, friction=0.3, gravity=0.2, mass_ratio=0.006)
+    seed = machine.symmetric_orbit(amplitude=0.6)
+    graph = cv.diagram(seed, over="amplitude", within=(0.4, 0.6), depth=0, kinds=[*cv.KINDS, fast])
+    found = cv.locus(graph["FA1"], over="friction", within=(0.1, 0.5))
+    assert found.values[[0, -1], 1] == pytest.approx([0.1, 0.5])
+    speeds = [
+        machine.changed(friction=q).symmetric_orbit(amplitude=p).measure("impact_speed")
+        for p, q in found.values
+    ]
+    assert speeds == pytest.approx(np.ones(len(speeds)), abs=1e-9)
+
+
+def test_cycles_of_a_given_period_are_followed_on_their_mesh():
+    def rates(x, p):
+        return [x[1], p.mu * (1 - x[0] ** 2) * x[1] - p.stiffness * x[0]]
+
+    slow = cv.Kind(
+        "slow",
+        "SLW",
+        test=lambda point: point.measure("period") - 8.0,
+        locus=lambda point: point.measure("period") - 8.0,
+    )
+    flow = cv.FlowProblem(rates, [0.0, 0.0], {"mu": 1.0, "stiffness": 1.0})
+    graph = cv.diagram(flow.attractor([1.0, 0.0]), over="mu", within=(1.0, 4.0), kinds=[*cv.KINDS, slow])
+    found = cv.locus(graph["SLW1"], over="stiffness", within=(0.8, 1.3))
+    for mu, stiffness in found.values[[0, len(found) // 2, -1]]:
+        assert period(rates, SimpleNamespace(mu=mu, stiffness=stiffness)) == pytest.approx(8.0, abs=1e-6)
+
+
+def period(rates, parameters):
+    """Of the cycle to which an integration settles."""
+
+    def up(t, x):
+        return x[0]
+
+    up.direction = 1.0
+    run = solve_ivp(
+        lambda t, x: rates(x, parameters),
+        (0.0, 100.0),
+        [1.0, 0.0],
+        "DOP853",
+        events=up,
+        rtol=1e-11,
+        atol=1e-12,
+    )
+    return np.diff(run.t_events[0])[-1]

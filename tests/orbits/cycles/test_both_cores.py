@@ -6,19 +6,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contvines.core.library import native
-from contvines.core.table import native_table
 from orbits import arguments
 from orbits.flows.native.cycle_equations import Equations
-from orbits.flows.native.kernels import TABLES, NativeKernels
+from orbits.flows.native.kernels import assemble
 from orbits.flows.native.reference_kernels import ReferenceKernels
 from orbits.machines.catalogue import usual
+from orbits.machines.names import NAMES, NATIVE
 from orbits.machines.reference.machine import reference
 from orbits.words import Word
 
 pytestmark = pytest.mark.skipif(not native(), reason="no native core")
 
 WORDS = ["LR", "LLR", "tt", "ss", "susu", "LRtt", "LRts", "LsuR", "LtR", "Lsu", "LR" * 5, "LR" * 20 + "L"]
-MACHINES = {name: usual(name) for name in TABLES}
+MACHINES = {name: usual(name) for name in NAMES}
+
+
+def test_all_machines_are_in_the_native_core():
+    assert sorted(NATIVE) == sorted(NAMES)
 
 
 def drawn(name, text, seed, symmetric, without_friction):
@@ -43,7 +47,7 @@ def drawn(name, text, seed, symmetric, without_friction):
     nodes[:, 0] = draw.uniform(0.0, system.shift, system.length)
     if seed % 3:  # else durations of both signs, as on virtual branches
         nodes[:, 0].sort()
-    return system, nodes.ravel(), NativeKernels(native_table(TABLES[name])), ReferenceKernels(reference(name))
+    return system, nodes.ravel(), assemble(model), ReferenceKernels(reference(name))
 
 
 def close(one, other, tolerance=1e-12):
@@ -55,7 +59,7 @@ def close(one, other, tolerance=1e-12):
 
 
 cases = given(
-    name=st.sampled_from(sorted(TABLES)),
+    name=st.sampled_from(sorted(NAMES)),
     text=st.sampled_from(WORDS),
     seed=st.integers(0, 2**32 - 1),
     symmetric=st.booleans(),
@@ -122,7 +126,7 @@ def test_numbers_that_follow_powers_of_amounts(seed):
         path = np.array([params / amounts[active] ** powers[active], powers[active]])
         return arguments.cycle_data([0], [1], params, path, 1.0, 6.0, 0, active, amounts, law)
 
-    value, kernels = float(draw.uniform(0.5, 2.0)), NativeKernels(native_table(0))
+    value, kernels = float(draw.uniform(0.5, 2.0)), assemble(MACHINES["absorber"][0])
     first, other = data(0), data(2)
     kernels.assign(first, other, value)
     again = data(0)
@@ -137,7 +141,7 @@ def test_newton_finds_what_the_reference_finds():
     system = Equations(model, Word.parse("LR"), 1, "amplitude", params, False)
     guess = system.reduce(next(model.start_nodes(Word.parse("LR"), 1, params))) + 0.03
     found = []
-    for kernels in (NativeKernels(native_table(0)), ReferenceKernels(reference("absorber"))):
+    for kernels in (assemble(MACHINES["absorber"][0]), ReferenceKernels(reference("absorber"))):
         u, border = guess.copy(), np.zeros(system.dimension + 1)
         border[-1] = 1.0
         work, step, tangent = system.workspace(), np.zeros_like(border), np.zeros_like(border)

@@ -22,7 +22,7 @@ def kernels_of(core):
         return ReferenceKernels(reference("absorber"))
     if not native():
         pytest.skip("no native core")
-    return TableKernels(native_table(0))
+    return TableKernels(native_table("core_machine_table", 0))
 
 
 both_cores = pytest.mark.parametrize("core", ["reference", "native"])
