@@ -75,7 +75,7 @@ class SegmentSearch:
     def search(self, segment: Segment, real: bool = True, depth: int = 0) -> list[Located]:
         """The special points of one segment (positions in [0, 1])."""
         self.parts += depth > 0
-        place, start = self._beside_infinity(segment)
+        place, start = self._beside_infinity(segment, real)
         if start is not None:
             rest = self.search(Segment(self.engine, start, segment.b, segment.turns), real, depth)
             return [replace(e, position=place + (1.0 - place) * e.position) for e in rest]
@@ -99,13 +99,18 @@ class SegmentSearch:
             return [*found, *self._own(segment), replace(unresolved(segment, middle), name="parts")]
         return [*found, *self._own(segment), unresolved(segment, middle)]
 
-    def _beside_infinity(self, segment: Segment) -> tuple[float, Solved | None]:
-        """A point close behind the beginning of a segment at a border where a multiplier is infinite but for rounding, and drowns the others."""
+    def _beside_infinity(self, segment: Segment, real: bool) -> tuple[float, Solved | None]:
+        """A point close behind the beginning of a segment at a border where a multiplier is infinite but for rounding, and drowns the others.
+
+        None, too, where the border is passed at the beginning itself.
+        """
         engine, place = self.engine, self.engine.settings.close / max(segment.length, TINY)
         if engine.detection != "map" or not place < 1.0 or not _drowned(engine, segment.a):
             return place, None
         start = segment.at(place)
-        return place, None if start is None or _drowned(engine, start) else start
+        if start is None or _drowned(engine, start) or (engine.smallest_margin(start.row) >= MARGIN) != real:
+            return place, None
+        return place, start
 
     def _of_kind(self, kind: Kind, segment: Segment, found: Sequence[Located]) -> list[Located]:
         """The special points of a kind: its own search, or the zeros of its test functions that it verifies."""

@@ -271,7 +271,7 @@ class Engine(Rows):
         return self.solve(u, p, self.at_parameter, p, along)
 
     def start(self, u: np.ndarray, p: float, tangent: np.ndarray | None = None) -> Solved | None:
-        """A first point near (u, p): at fixed p within the interval, or, where that fails (at a fold), nearest to the guess."""
+        """A first point near (u, p): at fixed p within the interval, or, where that fails or leads away (at a fold), nearest to the guess."""
         u = np.asarray(u, dtype=float)
         if tangent is not None and np.any(tangent):
             tangent = self.unit(np.asarray(tangent, dtype=float))
@@ -285,15 +285,18 @@ class Engine(Rows):
             near = approach(self.problem, u, p)
             found = None if near is None else self.at_value(near, p)
         found = found or self.at_value(u, p)
-        for i in range(min(self.n, 8)):
-            if found is not None:
-                break
-            border = np.zeros(self.n + 1)
-            border[i] = 1.0
-            found = self.solve(u, p, border, float(u[i]))
-            if found is not None and not self.lower <= found.p <= self.upper:
-                found = None
-        return found
+        if found is not None and (self._near(u, found) or self.residual(u, p) >= SOLUTION.solved):
+            return found
+        fixed = np.eye(min(self.n, 8), self.n + 1)
+        others = [self.solve(u, p, border, float(u[i])) for i, border in enumerate(fixed)]
+        inside = [
+            other for other in (found, *others) if other is not None and self.lower <= other.p <= self.upper
+        ]
+        return min(inside, key=lambda other: self.norm(self.join(other.u - u, other.p - p)), default=None)
+
+    def _near(self, u: np.ndarray, found: Solved) -> bool:
+        """Whether a solution at fixed p is no further away than that of a guess that is one, too, may be: as far as the square root of a residual, beside a fold."""
+        return self.norm(self.join(found.u - u, 0.0)) <= math.sqrt(SOLUTION.solved)
 
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual; linearises."""

@@ -31,6 +31,18 @@ class Orbit(Protocol):
     def seed(self, problem: Problem, /) -> tuple[np.ndarray, float]: ...
 
 
+@runtime_checkable
+class PointOfBranch(Protocol):
+    """A special point, of a graph that has its problems."""
+
+    @property
+    def attached(self) -> Problem: ...
+    @property
+    def u(self) -> np.ndarray: ...
+    @property
+    def value(self) -> float: ...
+
+
 def check_interval(within: Iterable[float]) -> tuple[float, float]:
     """The interval as two floats.
 
@@ -57,7 +69,11 @@ def check_interval(within: Iterable[float]) -> tuple[float, float]:
 def problem_and_start(
     seed: object, over: str | None, u: ArrayLike | None = None, p: float | None = None
 ) -> tuple[Problem, ArrayLike, float]:
-    """(problem, u, p) from an orbit object, or from a problem with ``u0`` and ``p0``; u and p win where they are given."""
+    """(problem, u, p) from an orbit object, a special point, or a problem with ``u0`` and ``p0``; u and p win where they are given."""
+    if isinstance(seed, PointOfBranch):
+        u, p, seed = seed.u if u is None else u, seed.value if p is None else p, seed.attached
+        if over not in (None, seed.parameter) and over in seed.parameters:
+            p, seed = seed.parameters[over], seed.against(over, {seed.parameter: float(p)})
     if hasattr(seed, "kernels") and hasattr(seed, "dimension"):
         problem = complete(seed)
         if over is not None and over != problem.parameter and over in problem.parameters:
@@ -73,7 +89,9 @@ def problem_and_start(
             u, p = (problem.u0 if u is None else u), (problem.p0 if p is None else p)
         return problem, u, float(p)
     if not isinstance(seed, Orbit):
-        raise TypeError(f"the seed must be an orbit or a problem with u0 and p0, not {type(seed).__name__}")
+        raise TypeError(
+            f"the seed must be an orbit, a special point or a problem with u0 and p0, not {type(seed).__name__}"
+        )
     if over is None:
         known = ", ".join(map(repr, getattr(seed, "parameters", None) or ("amplitude",)))
         raise ValueError(f"over = None: name the parameter to continue in, one of {known}")

@@ -43,8 +43,8 @@ def diagram(
 
     Parameters
     ----------
-    seed : orbit or Problem
-        An object with ``problem(parameter)`` and ``seed(problem) -> (u, p)``, or a problem with ``u0`` and ``p0``.
+    seed : orbit, SpecialPoint or Problem
+        An object with ``problem(parameter)`` and ``seed(problem) -> (u, p)``, a special point of another graph, or a problem with ``u0`` and ``p0``.
     over : str, optional
         Name of the continuation parameter; may be left out for a problem, which has its own.
     within : (float, float)

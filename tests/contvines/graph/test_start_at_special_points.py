@@ -1,0 +1,53 @@
+"""Diagrams that begin at a special point of another diagram: equations for the unknowns alone are singular there, and margins are zero."""
+
+import numpy as np
+import pytest
+
+import contvines as cv
+import orbits
+
+FRICTION = 0.5
+
+
+@pytest.fixture(scope="module")
+def graph():
+    absorber = orbits.Absorber(restitution=0.76, friction=FRICTION, gravity=0.211, mass_ratio=0.006)
+    return cv.diagram(absorber.symmetric_orbit(amplitude=0.55), over="amplitude", within=(0.17, 1.2), depth=2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("over", ["amplitude", "friction"])
+def test_begun_at_each_special_point_of_an_absorber(graph, over):
+    borders = {"wall-graze", "velocity-graze", "stick", "vanishing-event"}
+    points = [point for point in graph.special.values() if point.kind != "end"]
+    assert {point.kind for point in points} >= {"fold", "symmetry-breaking", "period-doubling", "wall-graze"}
+    for point in points:
+        start, reach = (point.value, 0.03) if over == "amplitude" else (FRICTION, 0.02)
+        begun = cv.diagram(point.orbit, over=over, within=(start - reach, start + reach), depth=0)
+        kinds = borders if point.kind in borders else {point.kind}
+        found = [p.value for p in begun.special.values() if p.kind in kinds]
+        assert min(abs(np.array(found) - start), default=1.0) < 1e-7, point.label
+
+
+def test_begun_at_a_fold_from_which_newtons_method_leads_to_a_solution_far_away():
+    """p = 2 x^3 - 3 x^2 has a fold at (1, -1), and at p = -1 the solution x = -1/2, too."""
+    # 1e-13 off, where a Newton step at fixed p is as long as rounding has it
+    for off in np.linspace(-1e-13, 1e-13, 9):
+        problem = cv.AlgebraicProblem(lambda x, p: 2.0 * x**3 - 3.0 * x**2 - p, [1.0 + off], -1.0)
+        graph = cv.diagram(problem, within=(-1.5, -0.5))
+        assert [p.value for p in graph.of_kind("fold")] == pytest.approx([-1.0], abs=1e-12)
+        assert graph["B1"].points[:, 0].min() > 0.4
+
+
+def test_begun_at_special_points_against_another_parameter():
+    """x' = r + q x - s x^2 folds at r = -q^2 / (4 s)."""
+    flow = cv.FlowProblem(
+        lambda x, p: [p.r + p.q * x[0] - p.s * x[0] ** 2], [1.0], {"r": 1.0, "s": 1.0, "q": 1.0}
+    )
+    fold = cv.diagram(flow, over="r", within=(-1.0, 2.0)).of_kind("fold")[0]
+    assert fold.value == pytest.approx(-0.25, abs=1e-12)
+    again = cv.diagram(fold, over="q", within=(0.5, 1.5))
+    assert [p.value for p in again.of_kind("fold")] == pytest.approx([1.0], abs=1e-12)
+    x, q = again["B1"].points[:, 0], again["B1"].values
+    assert -0.25 + q * x - x**2 == pytest.approx(0.0, abs=1e-9)
+    assert cv.diagram(fold, within=(-1.0, 2.0)).of_kind("fold")[0].value == pytest.approx(-0.25, abs=1e-12)
