@@ -28,8 +28,10 @@ def example_of(name):
 
 
 @needed
-def test_a_table_of_c_functions_is_followed(tmp_path):
-    """Against the solves in thirty digits of the same equations (folds with a singular Jacobian, Hopf with zero trace)."""
+@pytest.mark.parametrize("in_native", [True, False])
+def test_a_table_of_c_functions_is_followed(tmp_path, monkeypatch, in_native):
+    """Against the solves in thirty digits of the same equations (folds with a singular Jacobian, Hopf with zero trace); without the native core, too."""
+    monkeypatch.setattr("contvines.continuation.engine.native", lambda: in_native)
     example = example_of("reaction")
     graph = cv.diagram(example.Reaction(example.compiled(tmp_path)), within=(0.0, 0.15))
     table = ROOT / "tools" / "demos" / "table.json"

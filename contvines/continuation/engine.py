@@ -9,6 +9,7 @@ import numpy as np
 
 from contvines.shared.floating_point import EPSILON
 
+from ..core.library import native
 from ..core.table import TableKernels
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Adaptive, Moving, Nearing, Rough
@@ -54,7 +55,7 @@ class Engine(Rows):
         self.within = (self.lower, self.upper)
         n = self.n = int(problem.dimension)
         kernels = self.kernels = problem.kernels
-        self.compiled = kernels.compiled
+        self.compiled = kernels.compiled and native()
         self.section = HELD if self.compiled else OPEN
         self.data = problem.data
         self.work = problem.workspace()
@@ -103,9 +104,9 @@ class Engine(Rows):
         self.loop = self.loop_with(self.metric)
 
     def loop_with(self, metric: Metric) -> InterpretedLoop | NativeLoop:
-        """March and single points, in the native core for compiled problems."""
+        """March and single points, in the native core for compiled problems where there is one."""
         kernels, rest = self.kernels, (metric, self.noise, self.known, self.scratch, self.settings.step_rule)
-        if isinstance(kernels, TableKernels):
+        if self.compiled and isinstance(kernels, TableKernels):
             from .native import NativeLoop
 
             return NativeLoop(kernels.table, self.data, self.work, (self.n, self.row_size), *rest)

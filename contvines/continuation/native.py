@@ -6,6 +6,7 @@ import ctypes
 from collections.abc import Callable
 from dataclasses import astuple
 from functools import cache
+from time import perf_counter
 
 import numpy as np
 
@@ -18,8 +19,7 @@ from .layout import RUNNING, Control, Found, Metric, Points, Scratch, Way
 from .settings import SOLUTION
 from .step_rule import BY_ANGLE, StepRule
 
-AT_ONCE = 50_000  # unknowns times points of one call: between calls an interrupt is seen
-FEWEST = 8  # points of one call
+BRIEF, LONG = 0.01, 0.04  # seconds of one call, between which it may take: between calls an interrupt is seen
 
 LIMITS = np.array(astuple(SOLUTION))
 
@@ -88,7 +88,6 @@ class NativeLoop:
         rule: StepRule,
     ) -> None:
         self.kept = data, work, known, scratch
-        self.n, self.row_size = sizes
         self.frame = pack(
             table,
             memory_of(data),
@@ -103,19 +102,20 @@ class NativeLoop:
         )
         self.at = address(self.frame)
         self.judge = None if rule is BY_ANGLE else Judge(rule)
+        self.at_once = 1  # points of one call
 
     def march(self, chunk: Points, first: int, h: float, control: Control) -> tuple[int, float, int]:
         """See :func:`contvines.continuation.loop.march`."""
         step, filled, status = NUMBER(h), WHOLE(first), RUNNING
         arrays, size, settings = [place(array) for array in chunk], len(chunk.points), np.array(control)
-        slice_ = max(FEWEST, AT_ONCE // self.n)
         judge = None if self.judge is None else self.judge.address
         while status == RUNNING and filled.value < size and not wanted():
+            begun = perf_counter()
             status = _march()(
                 self.at,
                 *arrays,
                 filled.value,
-                min(filled.value + slice_, size),
+                min(filled.value + self.at_once, size),
                 ctypes.addressof(step),
                 address(settings),
                 judge,
@@ -123,6 +123,11 @@ class NativeLoop:
             )
             if self.judge is not None:
                 self.judge.raise_again()
+            seconds = perf_counter() - begun
+            if seconds < BRIEF:
+                self.at_once *= 2
+            elif seconds > LONG:
+                self.at_once = max(self.at_once // 2, 1)
         return filled.value, step.value, status
 
     def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:

@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from .build import SOURCES, digest, path_of, variants
@@ -71,14 +72,30 @@ def _open(variant: str) -> ctypes.CDLL:
     again = "run python -m contvines.core.build" if checkout else "install contvines again"
     if not path.exists():
         raise Unusable(f"{path} is missing; {again}")
+    if not _whole(path):
+        raise Unusable(f"{path} is cut short; {again}")
     try:
         found = ctypes.CDLL(str(path))
-    except OSError as error:
+        assert found.core_digest
+    except (OSError, AttributeError) as error:
         raise Unusable(f"{path} cannot be loaded ({error}); {again}") from error
     found.core_digest.restype = ctypes.c_char_p
     if checkout and found.core_digest().decode() != digest():
         raise Unusable(f"{path} is older than its sources; {again}")
     return found
+
+
+def _whole(path: Path) -> bool:
+    """Whether an ELF file is as long as it says, with its table of sections at the end.
+
+    The loaders of macOS and Windows look themselves; that of Linux maps what is missing, and a touch of it kills the process.
+    """
+    with path.open("rb") as file:
+        head = file.read(64)
+    if len(head) < 64 or head[:4] != b"\x7fELF":
+        return True  # for the loader to say
+    table, size, count = (int.from_bytes(head[i:j], sys.byteorder) for i, j in ((40, 48), (58, 60), (60, 62)))
+    return path.stat().st_size >= table + size * count
 
 
 def variant() -> str:

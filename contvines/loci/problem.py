@@ -12,6 +12,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.critical import critical
 from ..bifurcation.kind import Kind
 from ..bifurcation.kind_answers import number_of
+from ..core.library import native
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
@@ -183,7 +184,7 @@ class LocusProblem(ProblemDefaults):
         self.borders = fresh_borders(self.size) if borders is None else np.array(borders, dtype=float)
         self.n_multipliers = int(problem.n_multipliers)
         self.n_margins = int(problem.n_margins) + 3
-        self.compiled = bool(kernels.compiled) and own_kind is None
+        self.compiled = bool(kernels.compiled) and native() and own_kind is None
         self.kernels = TableKernels(native_table("core_loci_table")) if self.compiled else IN_PYTHON
         self.natural = has_natural_units(problem)
         about = self.tested, self.index, self.n_multipliers, problem.spectrum == "flow", self.unit

@@ -1,5 +1,6 @@
 """Which core computes: chosen, and as a fallback."""
 
+import _ctypes
 import os
 import subprocess
 import sys
@@ -28,11 +29,19 @@ def test_an_unknown_choice_is_refused():
     assert "CONTVINES_CORE='fast' is unknown" in run(ASK, CONTVINES_CORE="fast").stderr
 
 
-@pytest.mark.parametrize("content", [None, b"no library"])
+def cut_short():
+    return build.path_of("baseline").read_bytes()[:100_000]
+
+
+def of_somebody_else():
+    return Path(_ctypes.__file__).read_bytes()
+
+
+@pytest.mark.parametrize("content", [None, lambda: b"no library", cut_short, of_somebody_else])
 def test_a_library_that_cannot_be_loaded_is_said_in_one_line(tmp_path, content):
     path = build.path_of("baseline", tmp_path)
     if content is not None:
-        path.write_bytes(content)
+        path.write_bytes(content())
     code = f"from contvines.core import library; library.path_of = lambda v: __import__('pathlib').Path({str(path)!r}); "
     done = run(code + "print(library.native(), library.native())", CONTVINES_CORE="")
     assert done.stdout.strip() == "False False"
