@@ -30,6 +30,8 @@ BEYOND = (
     0.1 * MARGIN
 )  # a branch whose margins are less all along is none, though they are no less than what counts as rounding
 
+OFF = 0.7  # first steps between a fold or branch point at which a diagram is begun and its first point
+
 
 def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) -> None:
     """Put the start into the queue; its branch counts as one that so many others lie before.
@@ -279,8 +281,8 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 margin = float(engine.smallest_margin(first.row))
                 side = margin >= MARGIN if abs(margin) > run.settings.inside else None
             elif abs(first.tangent[-1]) <= run.settings.stationary * run.unit(first.p) or first.sign == 0.0:
-                # off a fold or branch point, which would else lie on neither of the two halves
-                step = run.settings.first_step
+                # off a fold or branch point, which would else lie on neither of the two halves; nor is it to be the second point of one
+                step = OFF * run.settings.first_step
             if step > 0.0:
                 first = off(engine, first, step, side)
     if first is None and pending.point is not None:
