@@ -245,12 +245,14 @@ def _limit(problem: LocusProblem, u: np.ndarray, q: float) -> str:
 
 
 def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoint) -> None:
-    """Let a locus end at the point of a shorter or more symmetric motion that is its end."""
-    nothing = np.zeros(len(end.u) + 1)
+    """Let a locus end at the point of a shorter or more symmetric motion that is its end, or of one that is both."""
     if isinstance(problem.base, Adaptive):
         u = on_mesh(problem.base).resting(problem.split(branch.points[index])[0], end.u)
     else:
-        u = end.attached.offspring(end.attached.flip_kind, end.u, end.value[0], nothing, -1.0 + 0.0j)[0].u
+        motion, u = end.attached, end.u
+        while motion.dimension < problem.base.dimension:
+            nothing = np.zeros(len(u) + 1)
+            motion, u, *_ = motion.offspring(motion.flip_kind, u, end.value[0], nothing, -1.0 + 0.0j)[0]
     branch.points, branch.values = branch.points.copy(), branch.values.copy()
     branch.points[index] = problem.joined(np.asarray(u, dtype=float), end.value[0])
     branch.values[index] = end.value[1]

@@ -1,5 +1,6 @@
 """A short search, and forged graphs that every check must notice; ``python -m tools.fuzz absorber 150 1`` asks for more."""
 
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import contvines as cv
 from orbits import Absorber, Coupled
 from tests.machines import ABSORBER
-from tools.fuzz import finer, neighbours, simulated, structure
+from tools.fuzz import finer, loci, neighbours, simulated, structure
 from tools.fuzz.approached import comes_to, grow_without_bound
 from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact
@@ -25,6 +26,13 @@ def test_a_short_search_finds_nothing(kind, seed):
     assert not tally.findings
     assert tally.counts["diagrams"] == 1
     assert tally.counts["orbits simulated"] > 0
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("absorber", 23), ("coupled", 10)])
+def test_diagrams_begun_on_loci_have_the_special_points(kind, seed):
+    done = Counter()
+    assert not loci.judge(kind, 553, seed, done)
+    assert done["places"] > 1
 
 
 def test_the_same_seed_draws_the_same_machine():

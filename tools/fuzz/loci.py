@@ -1,0 +1,105 @@
+"""Loci of drawn machines against diagrams: ``python -m tools.fuzz.loci KIND COUNT SALT [--first SEED]``.
+
+At places of a locus a diagram is begun from its motion: it must have the special point there, at the same value of the parameter.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+import contvines as cv
+from tools.fuzz.drawing import KINDS, draw
+
+RANGES = {
+    "restitution": (0.05, 0.95),
+    "friction": (0.0, 1.0),
+    "gravity": (0.02, 1.0),
+    "frequency": (0.6, 1.6),
+    "damping": (0.1, 3.0),
+    "forcing": (0.3, 6.0),
+}
+"""Second parameters, and how far they may go."""
+REACH = 0.2  # part by which they vary
+BORDERS = (
+    "wall-graze",
+    "velocity-graze",
+    "stick",
+    "vanishing-event",
+)  # one border has another name from each of its sides
+FOLLOWED = ("fold", "branch-point", "period-doubling", "symmetry-breaking", "neimark-sacker", *BORDERS)
+POINTS, PLACES = 3, 2  # special points of each diagram, and places of each locus
+WIDTH = 0.05  # of the interval of a diagram, relative to its middle
+AGREE = 1e-6  # difference of values of the parameter
+
+
+def second_parameter(
+    orbit: Any, over: str, rng: np.random.Generator
+) -> tuple[str, tuple[float, float]] | None:
+    """A second parameter and its interval; None if there is none that may vary."""
+    known = orbit.parameters
+    names = [name for name in RANGES if name != over and known.get(name, 0.0) != 0.0]
+    if not names:
+        return None
+    name = str(rng.choice(names))
+    value, (least, most) = known[name], RANGES[name]
+    low, high = max(least, (1.0 - REACH) * value), min(most, (1.0 + REACH) * value)
+    return (name, (low, high)) if low < value < high else None
+
+
+def judge(kind: str, salt: int, seed: int, done: Counter[str]) -> list[str]:
+    """What is found to be false for the machine of a seed; what was tried is counted."""
+    drawn, found = draw(kind, salt, seed), []
+    if drawn.orbit is None:
+        return []
+    rng, over = np.random.default_rng([salt, seed]), drawn.options["over"]
+    graph = cv.diagram(drawn.orbit, **drawn.options)
+    points = [point for point in graph.special.values() if point.kind in FOLLOWED]
+    rng.shuffle(points)
+    for point in points[:POINTS]:
+        second = second_parameter(point.orbit, over, rng)
+        if second is None:
+            continue
+        where = f"{kind} {seed} (salt {salt}) {point.label} {point.kind} over {second[0]}"
+        try:
+            locus = cv.locus(point, over=second[0], within=second[1])
+        except ValueError as error:
+            found.append(f"{where}: {error}")
+            continue
+        done["loci"] += 1
+        for i in rng.choice(len(locus), size=min(PLACES, len(locus)), replace=False).tolist():
+            value, other = map(float, locus.values[i])
+            done["places"] += 1
+            width = WIDTH * max(abs(value), 0.2)
+            again = cv.diagram(
+                locus.orbit(i), over=over, within=(value - width, value + width), depth=0, virtual=True
+            )
+            kinds = BORDERS if point.kind in BORDERS else (point.kind,)
+            off = [abs(p.value - value) for p in again.special.values() if p.kind in kinds]
+            if min(off, default=np.inf) > AGREE:
+                found.append(f"{where}: nothing at {value:.12g}, {other:.12g} (place {i} of {len(locus)})")
+    return found
+
+
+def main() -> int:
+    """Search; 1 if something was found."""
+    parser = argparse.ArgumentParser(prog="python -m tools.fuzz.loci", description="Search for false loci.")
+    parser.add_argument("kind", choices=KINDS)
+    parser.add_argument("count", type=int, help="machines")
+    parser.add_argument("salt", type=int, help="another salt draws other machines")
+    parser.add_argument("--first", type=int, default=0, metavar="SEED")
+    asked = parser.parse_args()
+    done, findings = Counter[str](), 0
+    for seed in range(asked.first, asked.first + asked.count):
+        for finding in judge(asked.kind, asked.salt, seed, done):
+            findings += 1
+            print(finding, flush=True)
+    print(f"{done['loci']} loci, {done['places']} places, {findings} findings")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
