@@ -98,7 +98,7 @@ class Orbit(Cycle):
         return found
 
     def critical(self, near: float) -> Self:
-        """The same orbit as that of a special point, where a multiplier is on the unit circle by definition: the nearest, if it is so near."""
+        """The same orbit as one of a special point: the multiplier nearest to the unit circle, if it is within `near` of it, is put onto it."""
         found = self.with_multipliers(onto_circle(self.multipliers, near))
         vars(found)["marginal"] = True
         return found
@@ -117,7 +117,7 @@ class Orbit(Cycle):
 
     @property
     def approaches(self) -> np.ndarray:
-        """The margins of the impacts, their speeds, in units of the machine's own size."""
+        """The margins of the impacts, which are their speeds, in units of the machine's own size."""
         return approaches_of(self.word, self._examined[2])
 
     @property
@@ -173,7 +173,7 @@ class Orbit(Cycle):
         return self.flow.sample(self, points)
 
     def positions(self, instants: int) -> np.ndarray:
-        """What no impulse moves, at so many equal phases of each forcing period, shape (m, c); kept: distances to several other orbits ask for it."""
+        """Positions, which no impact changes at once, at so many equal phases of each forcing period, shape (instants * periods, c). They are remembered."""
         known = vars(self).setdefault("_tracks", {})
         if instants not in known:
             known[instants] = self.flow.positions(self, instants)

@@ -22,7 +22,7 @@ LARGEST_PRODUCT = 64  # whole powers up to this are written as products
 
 
 class NotAnalytic(TypeError):
-    """A page asks of a symbol what has no single analytic formula."""
+    """A formula of a machine file asks of a symbol what has no single analytic expression, as a comparison."""
 
 
 def _refuse(what: str) -> NoReturn:

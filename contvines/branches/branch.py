@@ -167,7 +167,7 @@ class Branch:
 
     @property
     def default_measure(self) -> str:
-        """What is shown of it unless something else is asked for; nothing where that is not known."""
+        """Name of the measure that pictures show if none is named; empty where the problem is not known."""
         if self.problem is not None:
             return self.problem.default_measure
         return "" if self._bare is None else f"max {self._bare.states[0]}"
@@ -219,7 +219,7 @@ class Branch:
         ----------
         within : (float, float), optional
         bits : int, optional
-            Of no account: stretches are proved with a fixed precision.
+            Not used: stretches are proved with a fixed precision.
         special : dict, optional
             The graph's special points by label: stretches then go up to the points themselves.
 

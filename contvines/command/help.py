@@ -39,7 +39,7 @@ FILE.vines LABEL` lists the events of an orbit with their times."""
 def help(
     name: Annotated[
         str | None,
-        argument("[COMMAND|TOPIC]", f"A command, or a topic: {', '.join(TOPICS)}. Without: all commands."),
+        argument("COMMAND|TOPIC", f"A command, or a topic: {', '.join(TOPICS)}. Without: all commands."),
     ] = None,
 ) -> None:
     """List the commands by task, or explain one command or topic.

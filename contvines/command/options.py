@@ -80,7 +80,9 @@ def inches(size: tuple[float, float] | None) -> tuple[float, float] | None:
 
 
 StudyArgument = Annotated[Path, argument("STUDY.toml", "A study: model, start, what to continue.")]
-FileArgument = Annotated[Path, argument("FILE.vines", "A file that diagram or trace has made.")]
+FileArgument = Annotated[
+    Path, argument("FILE.vines", "A result: a .vines file of diagram, atlas, trace or chart.")
+]
 LabelArgument = Annotated[str, argument("LABEL", "A special point, for example SB1.")]
 PlotOption = Annotated[
     Path | None, option("--plot FILE.png", "Draw the result (png, pdf or svg).", callback=picture)
@@ -97,7 +99,9 @@ QuietOption = Annotated[bool, option("--quiet, -q", "No progress, no table.")]
 JsonOption = Annotated[bool, option("--json", "Print one JSON object with all digits.")]
 FreshOption = Annotated[
     bool,
-    option("--fresh", "Begin again; an existing file is renamed, FILE.vines to FILE.old.vines."),
+    option(
+        "--fresh", "Begin again; an existing result is renamed, for example FILE.vines to FILE.old.vines."
+    ),
 ]
 MANY = 30  # branches or loci; of a larger result a summary is printed alone
 DetailsOption = Annotated[
@@ -124,6 +128,6 @@ YOption = Annotated[
     str | None,
     option(
         "-y",
-        "Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem (--help behind the file names it).",
+        "Measure on the y axis; by default B (velocity at the first impact), max_abs_q1 of the coupled machine, else the first measure of the problem (`contvines plot FILE.vines --help` says which).",
     ),
 ]

@@ -23,7 +23,7 @@ def orbit(
     ],
     label: Annotated[
         str | None,
-        argument("[LABEL]", "With FILE.vines: a special point (SB1), or a point of a branch (B1:12)."),
+        argument("LABEL", "With FILE.vines: a special point (SB1), or a point of a branch (B1:12)."),
     ] = None,
     json: JsonOption = False,
     plot: PlotOption = None,

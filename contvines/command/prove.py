@@ -23,7 +23,7 @@ def prove(
     labels: Annotated[
         list[str] | None,
         argument(
-            "[LABEL]...",
+            "LABEL",
             "With FILE.vines: special points (PD1), orbits (B1:12), branches (B1); by default all special points.",
         ),
     ] = None,

@@ -56,7 +56,7 @@ def random(
     size: SizeOption = None,
     json_: JsonOption = False,
 ) -> None:
-    """The answer to a random base motion with a spectral density: statistics with error bars, densities.
+    """Response to a random excitation of given spectral density: statistics with error bars.
 
     [random] psd = [[2, 0.1], [20, 0.1]] are frequencies [Hz] and densities of the base's acceleration [(m/s^2)^2/Hz], linear between; of a study without units
     frequencies in omega_0 and densities per omega_0. Of a declared machine name the parameter that is random, too. The same seed gives the same numbers.

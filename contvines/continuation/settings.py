@@ -34,14 +34,15 @@ class Settings:
     max_points : int
         Ends: points per branch and direction.
     first_chunk, chunk : int
-        Steps: points per call of the compiled loop: the first call, later calls.
+        Steps: points that are computed, searched for special points and kept together: at first, and later.
     amplitude : float
         Switching: distance from a special point at which the branch that leaves it is first corrected.
     crooked : float
-        Switching: part of what a side of a branch lacks of proportion that is left at half the distance, above which it turns round: a quarter of
-        a smooth one, seven tenths of a root.
+        Switching: how much of a new branch's deviation from a straight line may be left at half the distance from the special point: a quarter
+        on a smooth branch, seven tenths on one that begins like a root and turns round there.
     null : float
-        Switching: a bordered system with a smaller singular direction (relative) is singular, and null vectors whose growth differs by more are none.
+        Switching: relative size of a bordered system's smallest singular value below which it is singular; of several null vectors each has
+        at least this part of the first one's growth.
     isolated : float
         Switching: the same beside a branch point, where isolated solutions are nearly singular.
     creep : float
@@ -61,27 +62,27 @@ class Settings:
     upright : float
         Special points: the parameter's part of a unit tangent, in its unit, below which the branch stands upright and has no folds.
     rounding : float
-        Special points: changes of the parameter, in its unit, that are none.
+        Special points: changes of the parameter, in its unit, up to which they are rounding.
     aside : float
-        Special points: part of a segment, either side of a place, by which signs and tangents there are read.
+        Special points: part of a segment, how far on either side of a place signs and tangents are read.
     close : float
-        Special points: distance from a border (in the metric) of the point that tells one-sided slopes and limits.
+        Special points: distance from a border (in the metric) of the point from which one-sided slopes and limits are taken.
     near : float
         Special points: part of a segment below which two places on it are one; distance from a meeting (in the metric) within which tangents
         and multipliers are those of its singular equations.
     shown : float
-        Special points: margins that are certainly positive where a virtual branch is real between two points: where a doubled branch passes
-        through the border of its root, as one round gets what another one loses, margins are known to half their digits.
+        Special points: margins above which a virtual branch is certainly real between two points. They are known to half their digits where a
+        doubled branch passes the border of the branch that it leaves, as one round gains what the other one loses.
     inside : float
         Special points: margins of a special point above which it lies at no border.
     sliver : float
         Special points: length (in the metric) beside a point at which stability is lost, down to which a stable stretch is looked for.
     exact : float
-        Special points: residual of a branch point, in units of the rows; halfway between two branches it is larger.
+        Special points: largest residual of a located branch point, in units of the rows; between two branches that pass each other it is larger.
     together : float
-        Special points: distance from the circle (the axis) within which multipliers cross at once, double ones, known to half of their digits, included.
+        Special points: distance from the circle (the axis) within which multipliers count as crossing at once; double ones are known to half their digits.
     steep : float
-        Special points: part of the slope at first by which the sides of a kink are at least as steep when looked at nearer.
+        Special points: how much of the first slope the sides of a kink must keep when they are looked at more closely.
     tied : float
         Special points: margins that differ by less vanish together.
     at_end : float

@@ -65,12 +65,18 @@ def up_to_date(folder: Path = HERE) -> bool:
 
 
 def compiler() -> list[str] | None:
-    """Command of the system's C++ compiler: ``CXX``, c++, g++ or clang++; None if there is none."""
-    given = os.environ.get("CXX")
-    if given and shutil.which(shlex.split(given)[0]):
-        return shlex.split(given)
-    found = next((path for name in ("c++", "g++", "clang++") if (path := shutil.which(name))), None)
-    return [found] if found else None
+    """Command of the system's C++ compiler: ``CXX``, c++, g++ or clang++, the first that knows the flags; None if there is none."""
+    given = shlex.split(os.environ.get("CXX", ""))
+    named = [given, *([name] for name in ("c++", "g++", "clang++"))]
+    return next(
+        (command for command in named if command and shutil.which(command[0]) and _knows(command)), None
+    )
+
+
+def _knows(command: list[str]) -> bool:
+    """Whether a compiler is young enough for the flags; that of some long-lived systems is not."""
+    done = subprocess.run([*command, *FLAGS, "-fsyntax-only", "-x", "c++", os.devnull], capture_output=True)
+    return done.returncode == 0
 
 
 def zig(target: str = "") -> list[str] | None:

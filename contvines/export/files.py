@@ -88,7 +88,7 @@ def check_target(path: Path, ending: str) -> None:
         raise ValueError(
             f"{path}: this file exists and is no .{ending} file, it is left untouched; use -o {other}."
             if own != f".{ending}"
-            else f"{path}: this file is a database, it is left untouched; choose another name with -o."
+            else f"{path}: this file is a database, it is left untouched; choose another name (option -o)."
         )
     refuse_ending(path, ending)
     if ending == "nc":

@@ -190,7 +190,15 @@ class Graph(Resumable):
         return notation_of(*(branch.problem for branch in self.branches.values()))
 
     def on(self, branch: str) -> list[SpecialPoint]:
-        """The special points of a branch, in order along it."""
+        """The special points of a branch, in order along it.
+
+        Raises
+        ------
+        KeyError
+            If there is no such branch.
+        """
+        if branch not in self.branches:
+            raise KeyError(f"the graph has no branch {branch!r}; it has {', '.join(self.branches) or 'none'}")
         return [self.special[label] for _, label in self.branches[branch].marks if label in self.special]
 
     def of_kind(self, kind: str) -> list[SpecialPoint]:

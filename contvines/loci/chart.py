@@ -40,7 +40,7 @@ class Chart(Resumable):
     Attributes
     ----------
     parameters : (str, str)
-        The parameter of the diagrams (drawn across) and the second one (drawn upright).
+        The parameter of the diagrams, on the x axis, and the second one, on the y axis.
     within : ((float, float), (float, float))
         Their intervals.
     loci : dict of Locus

@@ -82,7 +82,7 @@ class Locus:
 
     @property
     def sort(self) -> str:
-        """What people are told that it is: its kind, or what its cycles of a long period become."""
+        """As tables and pictures name it: its kind, or what its cycles of a long period become."""
         return self.limit or self.kind
 
     @property

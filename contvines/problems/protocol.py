@@ -85,7 +85,7 @@ def array_of(work: object, place: int = 0) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Kernels:
-    """The functions of a problem, in Python (see the contract at the top).
+    """The functions of a problem, in Python; the contract is at the top of :mod:`contvines.problems.protocol`.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class Kernels:
         False.
     assign, flip, transpose, matrix : callable, optional
     column : int
-        For loci against a second parameter; see the contract.
+        For loci against a second parameter.
     """
 
     linearise: Callable[..., float]
@@ -315,7 +315,10 @@ class Solution:
 
 
 class ProblemDefaults:
-    """Default answers of a problem without symmetries, margins, larger problems and further parameters, and with unknowns of order 1."""
+    """Default answers of a problem without symmetries, margins, larger problems and further parameters, and with unknowns of order 1.
+
+    A problem of your own derives from it and adds its equations. What each method is asked is said in :mod:`contvines.problems.protocol`.
+    """
 
     parameter = "p"
     spectrum = "none"

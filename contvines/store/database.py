@@ -78,7 +78,7 @@ class Store:
         try:
             _make(path, fingerprint, study)
         except FileExistsError:
-            raise StoreError(f"{path}: this file exists already; choose another name with -o.") from None
+            raise StoreError(f"{path}: this file exists already; choose another name (option -o).") from None
         return cls(_connected(path, write=True), path)
 
     @classmethod

@@ -19,7 +19,7 @@ def check_header(path: Path, *, reading: bool = False) -> None:
     other = (
         "give one that `contvines diagram` or `trace` has made"
         if reading
-        else "choose another name with -o, it is left untouched"
+        else "choose another name (option -o), it is left untouched"
     )
     try:
         with path.open("rb") as file:
@@ -40,7 +40,7 @@ def check_header(path: Path, *, reading: bool = False) -> None:
     if version > VERSION:
         raise StoreError(
             f"{path}: this file has format {version}, written by a newer contvines; this one knows format {VERSION}: "
-            f"update contvines, or {'give another file' if reading else 'choose another name with -o'}."
+            f"update contvines, or {'give another file' if reading else 'choose another name (option -o)'}."
         )
 
 

@@ -42,7 +42,7 @@ class Figure(NamedTuple):
 
 @dataclass(frozen=True)
 class Design:
-    """A linear oscillator with an impact absorber, in SI units; the paper's machine by default.
+    """A linear oscillator with an impact absorber, in SI units; by default the machine of Youssef, Karoui and Leine.
 
     Parameters
     ----------
@@ -118,14 +118,15 @@ class Design:
         """
         if half_width is not None and cavity is not None:
             raise ValueError("half_width and cavity say the same thing twice; leave cavity out.")
+        width = "half_width" if cavity is None else "cavity"  # in the user's word
         cavity = half_width if cavity is None else cavity
         if (cavity is None) == (natural_frequency is None):
             raise ValueError(
-                "give exactly one of cavity [m] and natural_frequency [Hz]; gravity fixes the other."
+                "give exactly one of half_width [m] and natural_frequency [Hz]; gravity fixes the other."
             )
         if not gravity > 0:
             raise ValueError(f"gravity = {gravity} must be positive to fix a scale.")
-        name, unit = ("natural_frequency", "Hz") if cavity is None else ("cavity", "m")
+        name, unit = ("natural_frequency", "Hz") if cavity is None else (width, "m")
         value = float(natural_frequency if cavity is None else cavity)  # type: ignore[arg-type]
         if not SCALE[0] <= value <= SCALE[1]:
             raise ValueError(
@@ -138,7 +139,9 @@ class Design:
             else:
                 natural_frequency = other = float(np.sqrt(np.float64(g) / gravity / cavity) / (2.0 * np.pi))
         if not SCALE[0] <= other <= SCALE[1]:
-            follows = "cavity = {:.6g} m" if name == "natural_frequency" else "natural_frequency = {:.6g} Hz"
+            follows = (
+                "half_width = {:.6g} m" if name == "natural_frequency" else "natural_frequency = {:.6g} Hz"
+            )
             raise ValueError(
                 f"gravity = {gravity!r} with {name} = {value!r} {unit} means {follows.format(other)}, which lies outside "
                 f"{SCALE[0]:g} to {SCALE[1]:g}; change one of the two."

@@ -1,1 +1,1 @@
-"""Machines: one folder each, `base` with what they all offer, `catalogue` with their names."""
+"""Machines: one file each; `base` has what they all offer, `names` their names, `catalogue` finds them."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class PageError(ValueError):
-    """A page that is no machine; the sentence names the contact or field, what is wrong with it, and the way out."""
+    """A declaration that is no machine; the sentence names the contact or field, what is wrong with it, and the way out."""
 
 
 class States(Sequence["Plain"]):

@@ -55,7 +55,6 @@ class Machine(Varying):
     units : mapping of str to str, optional
         Units of parameters and states by name, ``{"gap": "mm", "frequency": "Hz"}``: in them they are given (a text such as "1.2 mm" in any of
         its kind) and shown. The formulas of the file see SI units; what has no unit here they see as it is.
-
     energy : callable, optional
         ``(state, phase, p)`` -> kinetic and potential energy of all bodies, in joules: with it impacts have masses, and orbits and transients the
         measures ``impulse``, ``impact_energy``, ``impact_loss``, ``friction_loss``, ``mean_force``, ``work_rate`` and, where a parameter is called
@@ -181,7 +180,7 @@ class Machine(Varying):
         return Compiled(self.equations)
 
     def vector(self, values: Mapping[str, float] | None = None) -> np.ndarray:
-        """The parameter vector, shape (P,), with `values` in place of the page's own.
+        """The parameter vector, shape (P,), with `values` in place of the machine's own.
 
         Raises
         ------
@@ -253,7 +252,7 @@ class Machine(Varying):
         return frozenset(j for j, column in zip(frictions, values.T) if np.all(column == 0.0))
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
-        """What a file keeps of the machine, ready for JSON: where its page is, the page's text and digest, and parameters."""
+        """What a file keeps of the machine, ready for JSON: where its machine file is, that file's text and digest, and parameters."""
         values = self.parameters if params is None else self.named(params)
         return {"name": self.name, **self.page.describe(self), **values}
 
@@ -290,7 +289,7 @@ class Machine(Varying):
         return iter(())
 
     def unshaken(self, params: np.ndarray) -> None:
-        """What shakes a page is not known."""
+        """None: what shakes a declared machine is not known."""
 
     def random_nodes(
         self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator

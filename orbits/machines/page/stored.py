@@ -23,7 +23,7 @@ def page_changed(settings: dict[str, Any]) -> str:
     if _comes_along(settings):
         return ""
     if not settings["page"]:
-        return "the machine was declared at a prompt, so its page cannot be found again: declare it in a file"
+        return "the machine was declared at a prompt, so that it cannot be found again: declare it in a file"
     try:
         text = path.read_text(encoding="utf-8")
     except OSError:

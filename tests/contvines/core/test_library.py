@@ -94,3 +94,12 @@ print(interrupted > 10, library_is)
 def test_interrupted_at_any_call_of_its_loading_it_is_loaded_by_the_next():
     """Nothing stays half registered: after an interrupt the process uses the same core as one left alone."""
     assert run(INTERRUPTED).stdout.split() == ["True", run(ASK).stdout.strip()]
+
+
+def test_a_compiler_that_does_not_know_the_flags_is_passed_over(tmp_path, monkeypatch):
+    old = tmp_path / "c++"
+    old.write_text("#!/bin/sh\nexit 1\n")
+    old.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    assert build.compiler() is None
