@@ -132,10 +132,6 @@ class OrbitProblem(Simulated, Relatives, Answers):
         """The value of the parameter that varies in a parameter vector."""
         return self.equations.value(params)
 
-    def smooth_margin(self, j: int) -> int:
-        """The margin to follow where margin `j` vanishes."""
-        return self.equations.smooth_margin(j)
-
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value that a parameter of the machine cannot have; see `Model.check_value`."""
         self.model.check_value(name, value)

@@ -22,6 +22,8 @@ from .probing import pair_of, position_of
 from .problem import LocusProblem, has_natural_units
 from .settings import VANISHING
 
+BESIDE = 1e-4  # distance from a border (in the metric) at which it is seen how its margins pass zero
+STRAIGHT = 0.1  # part of their changes on both sides by which smooth ones may differ
 PLAIN = 16.0  # parameters up to this size, and down to its inverse, are counted as they are
 
 
@@ -55,7 +57,7 @@ def begin(
     """
     wanted = condition(problem, kind) if own_kind is None else OWN
     if wanted == MARGIN:
-        index = problem.smooth_margin(index)
+        index = smooth_margin(problem, index, u, p)
     reference = 0.0
     if wanted == PERIOD:
         index = on_mesh(problem).period_place
@@ -80,6 +82,27 @@ def begin(
         pair_of(row, int(problem.n_multipliers), problem.spectrum == "flow", nearest, found)
         locus.reference = float(found[1])
     return locus
+
+
+def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
+    """Of the margins that vanish at a border the one that passes zero most smoothly, to follow along a locus.
+
+    Some jump there, as the time to a slip where a stick vanishes; others only touch zero, as the distance kept from a wall where an impact on it
+    has lost its speed.
+    """
+    wide, m = 1.0 + abs(p), 2 * int(problem.n_multipliers)
+    engine = Engine(problem, (p - wide, p + wide), Settings())
+    here = engine.start(u, p)
+    around = [] if here is None else [engine.beside(here, step) for step in (BESIDE, -BESIDE)]
+    if here is None or any(point is None for point in around):
+        return index
+    with np.errstate(invalid="ignore"):
+        rises = np.array([point.row[m:] - here.row[m:] for point in around if point is not None])
+        bent = np.abs(rises.sum(axis=0)) / np.abs(rises).sum(axis=0)  # 0 of a straight line, 1 of a touch
+    smooth = (np.abs(here.row[m:]) < VANISHING.margin) & (bent <= STRAIGHT)
+    return (
+        index if bent[index] <= STRAIGHT or not smooth.any() else int(np.where(smooth, bent, np.inf).argmin())
+    )
 
 
 def unit_of(problem: Problem, bounds: tuple[float, float], p: float) -> float:

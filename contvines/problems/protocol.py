@@ -45,8 +45,7 @@ The contract, in words:
    refuses a value that a parameter cannot have, with a ValueError.
 8. ``scale_within`` returns typical sizes of unknowns and parameter, ``amplitude`` the length of a direction of the unknowns
    as normal forms measure it. Equations without a scale of their own (``scales``, learned or given) have residuals of order 1.
-9. ``movable`` solutions are not isolated: they may be shifted as a whole. ``smooth_margin`` names the margin to follow along
-   a locus where that of a border jumps.
+9. ``movable`` solutions are not isolated: they may be shifted as a whole.
 10. ``uncertainty`` is the relative accuracy of the equations; ``check`` a sentence on derivatives that disagree with them;
     ``explain_end`` one on why Newton's method fails at the end of a branch. ``at_each_point`` has a measure at each point of a
     cycle, shape (m, n), or None.
@@ -275,7 +274,6 @@ class Borders(Protocol):
     @property
     def n_margins(self) -> int: ...
     def margin_kind(self, j: int) -> str: ...
-    def smooth_margin(self, j: int) -> int: ...
     def beyond(self, point: BorderPoint) -> Sequence[Any]: ...  # seeds
     def dead_end(self, point: BorderPoint) -> str: ...
 
@@ -356,9 +354,6 @@ class ProblemDefaults:
 
     def margin_kind(self, j: int) -> str:
         raise IndexError(f"this problem has no margins, so there is no margin {j}")
-
-    def smooth_margin(self, j: int) -> int:
-        return j
 
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         return np.asarray(spectrum, dtype=complex)

@@ -41,10 +41,6 @@ class Against(Generic[ModelOf]):
     def _began(self) -> float:
         return self.value(self.params)
 
-    def smooth_margin(self, j: int) -> int:
-        """The margin to follow where margin `j` vanishes: itself."""
-        return j
-
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the full period from those of the closure map (half maps: squared)."""
         spectrum = np.asarray(spectrum, dtype=complex)

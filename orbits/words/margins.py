@@ -44,12 +44,6 @@ def place_of(word: Word, index: int) -> tuple[int, int]:
     return place if len(word) else 0, word.alphabet.columns[column]
 
 
-def index_of(word: Word, place: int, watch: int) -> int:
-    """The margin of an event that watches this."""
-    columns = word.alphabet.columns
-    return place * len(columns) + columns.index(watch)
-
-
 def margin_name(word: Word, index: int) -> str:
     """What margin `index` of an orbit with this word watches; see `Margin`."""
     if not word.modes:

@@ -17,8 +17,7 @@ from orbits.flows.native.kernels import assemble
 from orbits.flows.protocol import PLAIN, Approach
 from orbits.machines.base import Model
 from orbits.words import Word
-from orbits.words.alphabet import LEFT, Watch
-from orbits.words.margins import index_of, margin_name
+from orbits.words.alphabet import LEFT
 
 if TYPE_CHECKING:
     from orbits.flows.native.kernels import NativeKernels
@@ -112,12 +111,6 @@ class Equations(Against[Model]):
     def scratch(self) -> Workspace:
         """A workspace for single calls, whose contents nobody relies on; cycles of one length share it."""
         return _shared(self.length, self.model.node, self.params.size)
-
-    def smooth_margin(self, j: int) -> int:
-        """The margin to follow where margin `j` vanishes: the time to a slip jumps, the duration of the stick does not."""
-        if margin_name(self.word, j) != "hold":
-            return j
-        return index_of(self.word, j // len(self.word.alphabet.columns), Watch.DURATION)
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
         """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N).

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from orbits import Absorber
+from orbits import Absorber, Cavity
 
 MACHINE = {"restitution": 0.76, "friction": 0.5, "gravity": 0.211, "mass_ratio": 0.006}
 
@@ -59,3 +59,23 @@ def test_a_border_that_jumps_is_followed_by_its_smooth_margin(graph):
     locus = cv.locus(graph["ST2"], over="friction", within=(0.3, 0.7))
     assert locus.ended[0].startswith("reaches the end of the interval, friction = 0.3")
     assert locus.ended[1].startswith("reaches the end of the interval, friction = 0.7")
+
+
+def test_a_border_whose_first_margin_only_touches_zero_is_followed_by_another():
+    """An impact that loses its speed: the distance kept from the wall grows with the square of what is missing.
+
+    Without friction time has no unit but the period, so that the amplitude at which it happens is the same at all frequencies.
+    """
+    cavity = Cavity(
+        restitution=0.148,
+        friction=0.0,
+        gravity=0.277,
+        distance_left=0.758,
+        distance_right=0.918,
+        mass_ratio=0.0,
+    )
+    graph = cv.diagram(cavity.attractor(amplitude=1.15).orbit, over="amplitude", within=(0.73, 1.53), depth=1)
+    border = next(p for p in graph.of_kind("wall-graze") if str(p.orbit.word) == "LLRR")
+    locus = cv.locus(border, over="frequency", within=(0.8, 1.2))
+    assert len(locus) < 100 and locus.values[:, 0] == pytest.approx(border.value, abs=1e-10)
+    assert locus.values[[0, -1], 1] == pytest.approx([0.8, 1.2])
