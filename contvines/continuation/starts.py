@@ -92,9 +92,11 @@ def problem_and_start(
         raise TypeError(
             f"the seed must be an orbit, a special point or a problem with u0 and p0, not {type(seed).__name__}"
         )
-    if over is None:
-        known = ", ".join(map(repr, getattr(seed, "parameters", None) or ("amplitude",)))
+    names = list(getattr(seed, "parameters", None) or ("amplitude",))
+    if over is None and len(names) > 1:
+        known = ", ".join(map(repr, names))
         raise ValueError(f"over = None: name the parameter to continue in, one of {known}")
+    over = over or names[0]
     problem = seed.problem(over)
     own_u, own_p = seed.seed(problem)
     return problem, own_u if u is None else u, float(own_p if p is None else p)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS
+from ..bifurcation.multiplier_counts import counts, sizes_by_sort
+from ..bifurcation.settings import LOCATING
 from ..branches.assembly import filled, make_branch
 from ..branches.half_branch import HalfBranch
 from ..branches.opening import on_this_side
@@ -30,7 +32,7 @@ BEYOND = (
     0.1 * MARGIN
 )  # a branch whose margins are less all along is none, though they are no less than what counts as rounding
 
-OFF = 0.7  # first steps between a fold or branch point at which a diagram is begun and its first point
+OFF = 0.7  # first steps between a special point at which a diagram is begun and its first point
 
 
 def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) -> None:
@@ -280,14 +282,25 @@ def first_point(run: Run, engine: Engine, pending: Pending) -> Solved | None:
                 step = run.settings.amplitude
                 margin = float(engine.smallest_margin(first.row))
                 side = margin >= MARGIN if abs(margin) > run.settings.inside else None
-            elif abs(first.tangent[-1]) <= run.settings.stationary * run.unit(first.p) or first.sign == 0.0:
-                # off a fold or branch point, which would else lie on neither of the two halves; nor is it to be the second point of one
+            elif at_special_point(run, engine, first):
+                # it would else lie on neither of the two halves; nor is it to be the second point of one
                 step = OFF * run.settings.first_step
             if step > 0.0:
                 first = off(engine, first, step, side)
     if first is None and pending.point is not None:
         run.remark(pending.point, "no branch could be started from here inside the interval")
     return first
+
+
+def at_special_point(run: Run, engine: Engine, first: Solved) -> bool:
+    """Whether a branch is begun at a fold, at a branch point or where a multiplier passes the circle."""
+    if abs(first.tangent[-1]) <= run.settings.stationary * run.unit(first.p) or first.sign == 0.0:
+        return True
+    if not (np.abs(sizes_by_sort(engine, first.row)) <= LOCATING.past).any():
+        return False
+    sides = [beside(engine, first, step) for step in (run.settings.first_step, -run.settings.first_step)]
+    before, after = (None if side is None else counts(engine, side.row).tolist() for side in sides)
+    return before != after
 
 
 def _bring_near(engine: Engine, pending: Pending) -> None:

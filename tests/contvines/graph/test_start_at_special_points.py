@@ -51,3 +51,28 @@ def test_begun_at_special_points_against_another_parameter():
     x, q = again["B1"].points[:, 0], again["B1"].values
     assert -0.25 + q * x - x**2 == pytest.approx(0.0, abs=1e-9)
     assert cv.diagram(fold, within=(-1.0, 2.0)).of_kind("fold")[0].value == pytest.approx(-0.25, abs=1e-12)
+
+
+def rotated(x, p):
+    """Multipliers (1 + p) exp(+-i)."""
+    c, s = np.cos(1.0), np.sin(1.0)
+    return (1.0 + p.p - x @ x) * np.array([c * x[0] - s * x[1], s * x[0] + c * x[1]])
+
+
+@pytest.mark.parametrize("start", [0.0, 1e-16, -1e-13])
+@pytest.mark.parametrize(
+    ("kind", "problem"),
+    [
+        ("neimark-sacker", lambda p: cv.MapProblem(rotated, [0.0, 0.0], {"p": p})),
+        ("period-doubling", lambda p: cv.MapProblem(lambda x, q: [-(1 + q.p) * x[0] + x[0] ** 3], [0.0], {"p": p})),
+        ("branch-point", lambda p: cv.MapProblem(lambda x, q: [(1 + q.p) * x[0] - x[0] ** 3], [0.0], {"p": p})),
+        ("branch-point", lambda p: cv.AlgebraicProblem(lambda x, q: q * x - x**3, [0.0], p)),
+        ("hopf", lambda p: cv.FlowProblem(lambda x, q: [q.p * x[0] - x[1], x[0] + q.p * x[1] - x[1] ** 3], [0.0, 0.0], {"p": p})),
+        ("fold", lambda p: cv.FlowProblem(lambda x, q: [q.p - x[0] ** 2], [0.0], {"p": p})),
+    ],
+)  # fmt: skip
+def test_begun_where_it_is_known_to_lie(kind, problem, start):
+    graph = cv.diagram(problem(start), within=(-0.2, 0.3), depth=1)
+    assert [p.value for p in graph.of_kind(kind)] == pytest.approx([0.0], abs=1e-12)
+    assert not graph.unresolved
+    assert len(graph) == (1 if kind in ("fold", "neimark-sacker") else 2)
