@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from contvines.command.measured import Rows
 from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
@@ -51,9 +49,9 @@ def of_page(
         lasts = None if within is None else counted("--time", within, second)
         seen = page_transient(machine, params, start, time=lasts, **rising)
     rows: Rows = []
-    for name, values in seen.states.items():
+    for name in seen.states:
         unit = shown.get(name, "")
-        rows.append((f"largest_{name}", float(np.abs(values).max()), unit, f"largest size of {name}"))
+        rows.append((f"largest_{name}", seen.largest[name], unit, f"largest size of {name}"))
         if release is None:
             words = "time to settle to 5 % (no number: it does not)"
             rows.append((f"settled_{name}", seen.settled[name], second, words))

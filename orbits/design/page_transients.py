@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -32,6 +33,8 @@ class PageTransient:
     times : float array (n,)
     states : dict of float array (n,)
         By name.
+    largest : dict of float
+        The largest size of each state, at impacts and between the samples, too.
     impact_times, impact_speeds, impulses : float array (k,)
         Speeds in m/s and impulses in N s (of a declared machine without units in its own numbers); impulses only of a declared machine with an energy.
     settled : dict of float
@@ -44,6 +47,7 @@ class PageTransient:
 
     times: np.ndarray
     states: dict[str, np.ndarray]
+    largest: dict[str, float]
     impact_times: np.ndarray
     impact_speeds: np.ndarray
     impulses: np.ndarray
@@ -117,6 +121,7 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
     """Runs one after the other; the number is to be added to each run's time."""
     times, states, energy, taken = [], [], [], []
     hits: list[tuple[float, float, float]] = []
+    largest = np.zeros(machine.size)
     known = machine.equations.energy is not None
     for own, run, shift in legs:
         speed = float(own.phase_speed(run.params))
@@ -141,6 +146,8 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
                 impact = Impacts(own, wall, run.states[i : i + 1], clock, run.params[None])
                 hits.append((begin / speed + shift, float(impact.speeds[0]), float(impact.impulses[0])))
                 lost = float(impact.losses[0])
+            sizes = _sizes(own, run.modes[i], run.states[i], *here, run.params)
+            largest = np.maximum(largest, sizes[: machine.size])
             rubbed = (
                 friction_work(own, run.modes[i], run.states[i], *here, run.params)
                 if known and own.equations.limit
@@ -162,6 +169,7 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
     return PageTransient(
         time,
         dict(zip(machine.states, table.T)),
+        dict(zip(machine.states, largest.tolist())),
         impacts[:, 0],
         impacts[:, 1],
         impacts[:, 2] if known else np.zeros(0),
@@ -171,3 +179,18 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
         np.cumsum(parts[:, 1]),
         np.cumsum(parts[:, 2]),
     )
+
+
+def _sizes(
+    machine: Machine, mode: tuple[int, ...], state: np.ndarray, begin: float, end: float, params: np.ndarray
+) -> np.ndarray:
+    """Largest size of every state on a flight, shape (n,): at its ends, and where a rate is zero in between."""
+    watch = machine.compiled.extremes(machine.equations.pattern_key(mode))
+    numbers = machine.compiled.numbers(params, mode)
+    found = np.abs(state)
+    clocks = np.linspace(begin, end, max(1, math.ceil((end - begin) / TWO_PI)) + 1)
+    for one, other in pairwise(clocks.tolist() if end > begin else ()):
+        rows = [row for _, _, row in watch(state, one, other, numbers)]
+        state = watch.final
+        found = np.maximum(found, np.abs([*rows, state]).max(axis=0))
+    return found

@@ -97,7 +97,10 @@ def test_transients_of_pages(run, tmp_path):
     )
     told = json.loads(done[1])
     rows = np.genfromtxt(tmp_path / "o.csv", delimiter=",", skip_header=1)
-    assert told["largest_q"] == pytest.approx(np.abs(rows[:, 1]).max()) and told["units"]["peak_force"] == "N"
+    assert (
+        told["largest_q"] == pytest.approx(np.abs(rows[:, 1]).max(), rel=1e-3)
+        and told["units"]["peak_force"] == "N"
+    )
     assert told["peak_force"] == pytest.approx(told["impulse"] * np.pi / 1e-3, rel=1e-12)
     risen = json.loads(
         run("transient", tmp_path / "two.toml", "--start-up", "--from", "4 Hz", "--over", "3 s", "--json")[1]

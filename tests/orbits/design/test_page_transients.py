@@ -46,6 +46,26 @@ def test_the_built_in_machine_runs_up_as_its_page_starts():
     np.testing.assert_allclose(bare, plain.bare, atol=5e-3)  # between samples
 
 
+def test_the_largest_sizes_are_met_between_samples_and_at_impacts():
+    """A ball thrown up from 1 at 0.1 rises to 1.005 and hits the floor at sqrt 2.01; the sizes of a chirp by solve_ivp."""
+    ball = Machine(
+        name="ball", states=("y", "v"), parameters={"r": 0.5}, motion=lambda s, phase, p, c: (s.v, -1.0),
+        contacts=[Wall("B", lambda s, phase, p: s.y, {"v": 1.0}, "r")],
+    )  # fmt: skip
+    seen = page_transient(ball, ball.vector(), {"y": 1.0, "v": 0.1}, time=3.0)
+    assert seen.largest == pytest.approx({"y": 1.005, "v": np.sqrt(2.01)}, rel=1e-9)
+    risen = page_transient(LINEAR, LINEAR.vector(), run_up_from=0.9, run_up_time=0.1, time=60.0)
+
+    def rates(t, x):
+        omega = min(0.9 + 2.0 * t, 1.1)
+        phase = 0.9 * t + t * t if t < 0.1 else 0.1 + 1.1 * (t - 0.1)
+        return [x[1], 0.3 * omega * np.cos(phase) - 0.1 * x[1] - x[0]]
+
+    run = solve_ivp(rates, (0.0, 60.1), [0.0, 0.0], rtol=1e-11, atol=1e-12, max_step=0.05, dense_output=True)
+    dense = np.abs(run.sol(np.linspace(0.0, 60.1, 600_000))).max(axis=1)
+    assert list(risen.largest.values()) == pytest.approx(dense, abs=1e-7)
+
+
 def test_a_bouncing_ball_takes_its_energy_in_powers():
     """Dropped from 1 with r = 0.5: the n-th impact is at sqrt(2)(1 + 2(r + ... + r^(n-1))) and leaves r^(2n) of the energy."""
     ball = Machine(
