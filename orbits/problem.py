@@ -227,6 +227,9 @@ class OrbitProblem(Simulated, Relatives, Answers):
             nodes[self.word.codes > 1, 1] -= middle  # from where an image has the opposite sign
         if self.units != PLAIN:
             nodes = nodes / self.equations.unit
+        sizes = self.model.sizes(self.values(p))
+        if sizes is not None:
+            nodes = nodes / sizes
         mirrored, same = self._mirrored_at(p), size_of_one(nodes)
         return canonical(self.word, self.periods, nodes, mirrored, forced=self.forced, same=same)
 

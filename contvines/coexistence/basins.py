@@ -12,7 +12,8 @@ from ..continuation.settings import hinted, hinting
 from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..graph.shortening import short_word
-from ..problems.abilities import Gauged, notation_of
+from ..problems.abilities import Gauged, Sectioned, notation_of
+from ..shared.motions import Motion
 from ..shared.number_text import figures
 from ..shared.plot_options import PlotOptions
 from .census import attractors_of
@@ -96,7 +97,10 @@ class Basins:
         alike = [a for a in self.attractors if (a.name, a.periods) == (about.name, about.periods)]
         if state is None or len(alike) < 2:
             return name
-        places = (f"{name} = {figures(float(x))}" for name, x in zip(self.axes, state, strict=True))
+        places = (
+            f"{axis} = {figures(float(self.shown(axis, x)))} {self.gauges.get(axis, (1.0, ''))[1]}".rstrip()
+            for axis, x in zip(self.axes, state, strict=True)
+        )
         return f"{name} through {', '.join(places)}"
 
     def shown(self, name: str, values: Numbers) -> Numbers:
@@ -297,15 +301,22 @@ def basins(
         getattr(population, "leftward", ""),
         getattr(population, "units", {}).get(population.parameter, ""),
         population.gauges(names, float(at)) if isinstance(population, Gauged) else {},
-        [_on_plane(m, names, (across, up)) for m in motions],
+        [_on_plane(motion, names, (across, up), float(at)) for motion in motions],
     )
 
 
-def _on_plane(motion: object, names: Sequence[str], axes: tuple[str, str]) -> np.ndarray | None:
-    """A state on a motion of a flow, as the plane has it; None of others, which have words."""
-    if not isinstance(motion, OnCurve) or motion.curve is None:
-        return None
-    return motion.curve[0][[names.index(name) for name in axes]]
+def _on_plane(motion: object, names: Sequence[str], axes: tuple[str, str], p: float) -> np.ndarray | None:
+    """A state on a motion, as the plane has it; None of one that does not recur or does not meet the plane's section."""
+    if isinstance(motion, OnCurve):
+        states = motion.curve
+    else:
+        assert isinstance(motion, Motion)
+        if not isinstance(motion.problem, Sectioned) or motion.u is None:
+            return None
+        section = motion.problem.section(p)
+        names = section.names
+        states = section.rounds(motion.u) if {*axes} <= {*names} else None
+    return None if states is None else states[0][[names.index(name) for name in axes]]
 
 
 def _cells(low: float, high: float, count: int) -> np.ndarray:

@@ -13,6 +13,7 @@ from ..circles.section import section_of
 from ..continuation.settings import hinting
 from ..graph.shortening import short_word
 from ..problems.abilities import Gauged
+from ..shared.motions import called
 from ..shared.number_text import figures
 from ..text_table import fitted
 from .basins import wilson
@@ -197,7 +198,7 @@ def robustness(
     return Robustness(
         branch.parameter,
         float(at),
-        str(branch.description.get("word", branch.label)),
+        str(branch.description.get("word") or branch.description.get("name", branch.label)),
         int(branch.description.get("periods", 1)),
         tuple(section.names),
         place,
@@ -329,7 +330,7 @@ class _Kicked:
         """Which starts do not reach the motion, and the names of what they reach; starts inside a wall are not lost."""
         own = self._starts(self.places[:1])
         motions, index, mirrored = self.population.settle(np.concatenate([own, starts]), self.p)
-        names = np.array([m.word or m.kind for m in motions], dtype=object)
+        names = np.array([called(m.word, m.kind) for m in motions], dtype=object)
         possible = np.array([m.kind != "impossible" for m in motions])
         lost = ((index != index[0]) | (mirrored != mirrored[0])) & possible[index]
         return lost[1:], np.where(index == index[0], MIRRORED, names[index])[1:]

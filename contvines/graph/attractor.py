@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from ..shared.motions import called
+
 
 @dataclass
 class Attractor:
@@ -44,7 +46,7 @@ class Attractor:
     @property
     def name(self) -> str:
         """Name that is shown: its word, or what kind of motion has none."""
-        return self.word or ("no events" if self.kind == "periodic" else self.kind)
+        return called(self.word, self.kind)
 
     def to_dict(self) -> dict[str, Any]:
         """The entry in the JSON of a graph."""

@@ -33,13 +33,13 @@ Form = tuple[Hashable, np.ndarray]
 def distance(one: np.ndarray, other: np.ndarray, scale: np.ndarray | None = None) -> float:
     """Largest difference of two canonical vectors, in units of a scale of the entries, relative to 1 + the largest entry of the second one.
 
-    Where all units are 1 a vector may have more entries than there are unknowns: a whole cycle's.
+    A vector that has more entries than there are unknowns, a whole cycle's, is in units of its own.
     """
     if one.shape != other.shape:
         return float("inf")
     both = np.array([one - other, other])
-    if scale is not None and not (scale[:-1] == 1.0).all():
-        both = both / scale[: both.shape[-1]]
+    if scale is not None and one.size < scale.size:
+        both = both / scale[: one.size]
     apart, size = np.abs(both).max(axis=1, initial=0.0).tolist()
     return apart / (1.0 + size)
 

@@ -107,16 +107,25 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
     last = np.flatnonzero(np.diff(group))
     edges = np.concatenate([[low], 0.5 * (values[last] + values[last + 1]), [high]])
     weights = starts / np.bincount(group, weights=starts)[group]
-    total: defaultdict[tuple[str, int], float] = defaultdict(float)
+    at_once = Counter((about.value, about.name, about.periods) for about in met)
+    many = {key[1:] for key, count in at_once.items() if count > 1}
+
+    def key_of(about: Attractor) -> tuple[str, int, str]:
+        """Its name and period; where motions that coexist have both, its branch, too."""
+        own = about.name, about.periods
+        return *own, (about.branch or "") if own in many else ""
+
+    total: defaultdict[tuple[str, int, str], float] = defaultdict(float)
     for about in met:
-        total[about.name, about.periods] += about.share
+        total[key_of(about)] += about.share
     shown = sorted(total, key=lambda key: -total[key])[:most]
-    order: list[tuple[str, int] | None] = [*(key for key in total if key in shown), None]  # and others
+    order: list[tuple[str, int, str] | None] = [*(key for key in total if key in shown), None]  # and others
     heights = {key: np.zeros(len(edges) - 1) for key in order}
     for about in met:
-        key, i = (about.name, about.periods), int(np.searchsorted(values, about.value))
+        key, i = key_of(about), int(np.searchsorted(values, about.value))
         heights[key if key in shown else None][group[i]] += about.share * weights[i]
-    named = Counter(name for name, _ in shown)
+    periods = {(name, count) for name, count, _ in shown}
+    named = Counter(name for name, _ in periods)
     short = told_apart([key[0] for key in order if key], 14)
     bottoms = np.zeros(len(edges) - 1)
     for k, key in enumerate(order):
@@ -125,6 +134,8 @@ def draw_shares(axes: Axes, graph: Graph, most: int = MOST) -> None:
         name = "others" if key is None else short[key[0]]
         if key is not None and named[key[0]] > 1:
             name = f"{name}, k={key[1]}"
+        if key is not None and key[2]:
+            name = f"{name} ({key[2]})"
         color, hatch = ("0.8", None) if key is None else (COLORS[k % len(COLORS)], HATCHES[k % len(HATCHES)])
         look = {"align": "edge", "facecolor": color, "hatch": hatch, "edgecolor": "white", "linewidth": 0}
         axes.bar(edges[:-1], heights[key], np.diff(edges), bottoms, label=name, **look)

@@ -76,9 +76,10 @@ def plot_basins(
         if legend:
             entries = []
             for k, about in enumerate(basins.attractors):
-                name = basins.told(k, 20)
+                name, _, state = basins.told(k, 20).partition(" through ")
+                through = f"\nthrough {state}".replace(", ", ",\n") if state else ""
                 cycles = f", k={about.periods}" if about.periods > 1 else ""
-                entries.append(Patch(color=base[k], label=f"{name}{cycles}: {about.share:.1%}"))
+                entries.append(Patch(color=base[k], label=f"{name}{cycles}: {about.share:.1%}{through}"))
                 if 0.0 < about.mirror_share < about.share:
                     entries.append(Patch(color=light[k], label=f"{name}, mirror image"))
             if basins.manifolds:

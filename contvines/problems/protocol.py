@@ -35,7 +35,8 @@ The contract, in words:
    may still have real eigenvalues watched for branch points: ``detection`` is then "real".
    ``flip_kind`` says what a raw multiplier -1 means: "period-doubling" or "symmetry-breaking".
 5. Solutions may be equal up to ``period_shift`` and ``symmetries``; ``canonical(u, p)`` returns a hashable key and a
-   vector which are the same for solutions that are one and the same thing. ``root(u, p)`` returns the smaller problem
+   vector which are the same for solutions that are one and the same thing; the vector is counted as the unknowns are or, where
+   it has more entries than these, so that all are of order one. ``root(u, p)`` returns the smaller problem
    and its unknowns for a solution that only repeats a shorter one (a cycle run through twice), else None.
    ``same_motion(u, p, other, v)`` tells whether a solution of another problem is this one where ``canonical`` cannot (None:
    neither can it).

@@ -41,6 +41,11 @@ class Motion(Generic[P]):
     state: np.ndarray | None = field(default=None, repr=False)
 
 
+def called(word: str, kind: str) -> str:
+    """What a motion is called: its word, or what kind of motion has none."""
+    return word or ("no events" if kind == "periodic" else kind)
+
+
 def wandering(exponent: float, error: float, roomy: bool) -> str:
     """The kind of a motion that does not recur, from its largest Lyapunov exponent and the standard error of it.
 

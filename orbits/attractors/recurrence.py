@@ -203,7 +203,7 @@ def plainest(orbit: Orbit) -> Orbit:
     if len(word) > 1:
         places = [i for i in range(len(word)) if word.letter(i).kind != SLIP] or [0]
         orbit = orbit.rotate(min(places, key=lambda i: _writing(orbit, i)))
-    if orbit.forced:
+    if orbit.forced and len(word):  # without events it is read at phase zero
         orbit.nodes[:, 0] -= TWO_PI * np.floor(orbit.nodes[0, 0] / TWO_PI)
     return orbit
 

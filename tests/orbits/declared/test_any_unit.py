@@ -51,3 +51,28 @@ def test_the_branch_ends_where_the_linear_response_reaches_the_wall(length, spee
     square = half - math.sqrt(half**2 - rest)
     assert graph["WG1"].value == pytest.approx(natural * math.sqrt(square) / (2.0 * math.pi), rel=1e-9)
     assert not graph.unresolved and len(graph["B1"]) < 500
+
+
+@pytest.mark.parametrize(("length", "speed"), [("m", "m/s"), ("mm", "mm/s")])
+def test_what_simulation_meets_lies_on_its_branch(length, speed):
+    """At 8.5 Hz, where all starts lead to two impacts in three periods, and far above the resonance, where few lead to the linear response of
+    F/k/sqrt((1 - s)^2 + 4 D^2 s) = 4.6 mm and the others to impacts."""
+
+    def met(at):
+        within = (at - 0.02, at + 0.02)
+        return cv.atlas(
+            machine(length, speed), over="frequency", within=within, values=[at], starts=32, scan=0, depth=0
+        )
+
+    (doubled,) = met(8.5).attractors
+    assert (doubled.word, doubled.periods, doubled.branch) == ("RR", 3, "B1")
+    atlas = met(12.5)
+    assert sorted((about.word, about.branch) for about in atlas.attractors) == [("", "B2"), ("R", "B1")]
+    square = (25.0 * math.pi) ** 2 / (STIFFNESS / MASS)
+    ratio = DAMPING / (2.0 * MASS * math.sqrt(STIFFNESS / MASS))
+    size = FORCE / STIFFNESS / math.sqrt((1.0 - square) ** 2 + 4.0 * ratio**2 * square)
+    smooth = atlas["B2"]
+    near = min(range(len(smooth)), key=lambda i: abs(smooth.values[i] - 12.5))
+    assert smooth.orbit(near).measure("max_x") == pytest.approx(
+        size / {"m": 1.0, "mm": 1e-3}[length], rel=0.02
+    )
