@@ -71,9 +71,6 @@ inline double exponential(double x) {
     return y * from_bits((1023 + first) << 52) * from_bits((1023 + power - first) << 52);
 }
 
-// e^x - 1, without cancellation near 0.
-inline double exponential_less_one(double x) { return fabs(x) < 0.34 ? x + beyond_linear(x) : exponential(x) - 1.0; }
-
 // ln x after fdlibm: x = 2^k (1 + f), a polynomial in f / (2 + f).
 inline double logarithm(double x) {
     constexpr double LN2_HIGH = 6.93147180369123816490e-01, LN2_LOW = 1.90821492927058770002e-10;

@@ -605,9 +605,8 @@ inline bool periodic_multipliers(const double* A, const double* D, whole length,
     return converged;
 }
 
-inline whole multiplier_scratch(whole length, whole n) { return length * (3 * n * n + 4) + 8 * n * n + 8 * n; }
-
 // Descending modulus, then real part; NaN if a D_i is singular. Returns whether they are certain or the iteration has converged.
+// `scratch` has room for length (3 n^2 + 4) + 8 n (n + 1) numbers.
 inline bool multipliers(const double* A, const double* D, whole length, int n, double twist, double* re, double* im, double* scratch) {
     Certainty found;
     if (n == 2) {

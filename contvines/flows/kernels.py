@@ -124,7 +124,7 @@ def bordered(
     with np.errstate(all="ignore"):
         try:
             if work.full is not None:
-                found, sign = _solve_full(data, work, border * columns, column, sides)
+                found, sign = _solve_full(work, border * columns, column, sides)
             else:
                 found, sign = _solve(data, work, border * columns, column, sides)
         except np.linalg.LinAlgError:
@@ -183,7 +183,7 @@ def _placed(data: Collocated, states: np.ndarray, shared: np.ndarray, widths: np
 
 
 def _solve_full(
-    data: Collocated, work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
+    work: CycleWork, border: np.ndarray, column: np.ndarray, sides: np.ndarray
 ) -> tuple[np.ndarray, float]:
     from scipy.sparse import bmat
     from scipy.sparse.linalg import splu

@@ -301,7 +301,7 @@ class FlowPopulation(StartsInBox):
         if not orbit.stable:
             return None
         problem = orbit.problem(self.parameter)
-        return self._cycle(problem, orbit, p)
+        return self._cycle(problem, orbit)
 
     def _recurring(self, way: Sequence[Place], p: float) -> CycleOrbit | None:
         """The stable cycle along which a motion has gone round already; None if it has not."""
@@ -314,7 +314,7 @@ class FlowPopulation(StartsInBox):
             return None
         return orbit if orbit.stable else None
 
-    def _cycle(self, problem: CycleMesh, orbit: CycleOrbit, p: float) -> Settled:
+    def _cycle(self, problem: CycleMesh, orbit: CycleOrbit) -> Settled:
         rounds = problem.rounds if self.field.forced else 0
         curve, image = curves(self.flow, orbit, rounds)
         return Settled(

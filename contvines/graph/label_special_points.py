@@ -49,7 +49,7 @@ def mark(
     if not branch.closed:
         for index, side in ((0, 0), (last, 1)):
             if branch.endings[side].reason is Reason.LEFT_INTERVAL:
-                events.append((index, _end(run, engine, half, index)))
+                events.append((index, _end(engine, half, index)))
     reached = pending.kind in (Origin.SWITCH, Origin.REST) and not branch.closed
     if reached and origin is not None and pending.point is not None:
         marks.append((origin, pending.point))
@@ -190,7 +190,7 @@ def origin_index(half: HalfBranch, pending: Pending) -> int | None:
     return None
 
 
-def _end(run: Run, engine: Engine, half: HalfBranch, index: int) -> Located:
+def _end(engine: Engine, half: HalfBranch, index: int) -> Located:
     u, p, tangent = half.at(index)
     bound = engine.upper if abs(p - engine.upper) < abs(p - engine.lower) else engine.lower
     point = engine.polish(u, p, engine.at_parameter, p, tangent)
