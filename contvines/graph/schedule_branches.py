@@ -61,8 +61,11 @@ def why_nothing_leaves(graph: Graph, label: str) -> str:
     known = [
         end for s in graph.switches if s.point == label for end in (s.source, s.target) if end != point.branch
     ]
-    if (nothing := graph.kind(point.kind).nothing) and not known:
-        return nothing
+    kind = graph.kind(point.kind)
+    if not (kind.leaves or known):
+        return kind.nothing or f"nothing is looked for that leaves a point of kind {point.kind}"
+    if kind.nothing and not known:
+        return kind.nothing
     if known:
         return "the graph has the branches that leave here already: " + ", ".join(dict.fromkeys(known))
     return "; ".join(point.remarks) or "no branch that leaves here was found"

@@ -36,7 +36,7 @@ def chart(
 ) -> Chart:
     """A chart of two parameters: a locus from every special point of a graph, and again from what is found on them.
 
-    The loci at which a real motion gains or loses its stability come first.
+    The loci at which a real motion gains or loses its stability come first. Points of kinds of your own are left out; :func:`locus` follows them.
 
     Parameters
     ----------
