@@ -22,6 +22,7 @@ from .multiplier_counts import counts
 from .scan import Scan, scanner
 from .segment import Segment
 from .segment_search import SegmentSearch
+from .settings import LOCATING
 from .symmetry_test import turns_round
 
 BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
@@ -211,12 +212,20 @@ class Detector(SegmentSearch):
         return len({way > 0.0 for way, least in ways if abs(way) > least}) > 1 or self._passed(origin, start)
 
     def _passed(self, origin: Solved, start: Solved) -> bool:
-        """Whether multipliers (eigenvalues) have passed the circle (the axis) since a branch point, at other places than +1 (zero)."""
+        """Whether multipliers (eigenvalues) have passed the circle (the axis) since a branch point, those that are critical there left out.
+
+        As many are past it as were, and up to those that are critical; fewer or more of them pairs, or past -1, if real ones have met.
+        """
         engine = self.engine
         if engine.detection not in ("map", "flow"):
             return False
-        (_, *before), (_, *after) = counts(engine, np.array([origin.row, start.row])).tolist()
-        return before != after
+        (_, *before), (plus, *after) = counts(engine, np.array([origin.row, start.row])).tolist()
+        spectrum = engine.spectrum(origin.row)
+        gaps = np.abs(spectrum - (1.0 if engine.detection == "map" else 0.0))
+        critical = gaps <= max(engine.settings.critical, float(gaps.min(initial=np.inf)))
+        sizes = np.abs(spectrum) - 1.0 if engine.detection == "map" else spectrum.real
+        others = int((sizes[~critical] > LOCATING.past).sum())
+        return before != after or not 0 <= plus + after[0] + 2 * after[1] - others <= int(critical.sum())
 
     def _meetings_and_landings(self, chunk: Chunk, scanned: Scan) -> tuple[np.ndarray, np.ndarray]:
         """Segments on which the part that a symmetry changes turns round, and those that end next to where it does.

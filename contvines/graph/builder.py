@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS
-from ..bifurcation.multiplier_counts import counts, sizes_by_sort
+from ..bifurcation.multiplier_counts import sizes_by_sort
 from ..bifurcation.settings import LOCATING
 from ..branches.assembly import filled, make_branch
 from ..branches.half_branch import HalfBranch
@@ -296,11 +296,12 @@ def at_special_point(run: Run, engine: Engine, first: Solved) -> bool:
     """Whether a branch is begun at a fold, at a branch point or where a multiplier passes the circle."""
     if abs(first.tangent[-1]) <= run.settings.stationary * run.unit(first.p) or first.sign == 0.0:
         return True
-    if not (np.abs(sizes_by_sort(engine, first.row)) <= LOCATING.past).any():
-        return False
-    sides = [beside(engine, first, step) for step in (run.settings.first_step, -run.settings.first_step)]
-    before, after = (None if side is None else counts(engine, side.row).tolist() for side in sides)
-    return before != after
+
+    def on_circle(point: Solved | None) -> bool:
+        return point is not None and bool((np.abs(sizes_by_sort(engine, point.row)) <= LOCATING.past).any())
+
+    step = run.settings.first_step  # of a conservative system multipliers are on the circle all along
+    return on_circle(first) and not any(on_circle(beside(engine, first, side)) for side in (step, -step))
 
 
 def _bring_near(engine: Engine, pending: Pending) -> None:

@@ -28,6 +28,11 @@ def test_a_short_search_finds_nothing(kind, seed):
     assert tally.counts["orbits simulated"] > 0
 
 
+def test_a_pair_that_passes_the_circle_next_to_the_doubling_from_which_it_comes_about():
+    """The multiplier that has doubled and one beyond +1 become a pair: simulated, the motions are unstable up to where it passes."""
+    assert not search("coupled", 112940, 325).findings
+
+
 @pytest.mark.parametrize(("kind", "seed"), [("absorber", 23), ("coupled", 10)])
 def test_diagrams_begun_on_loci_have_the_special_points(kind, seed):
     done = Counter()
