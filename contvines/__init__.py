@@ -96,7 +96,7 @@ __getattr__ = on_demand(
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "__version__"]
+    return [*__all__, "flows", "__version__"]
 
 
 if TYPE_CHECKING:

@@ -102,7 +102,7 @@ class NativeLoop:
         )
         self.at = address(self.frame)
         self.judge = None if rule is BY_ANGLE else Judge(rule)
-        self.at_once = 1  # points of one call
+        self.at_once = 4  # points of one call
 
     def march(self, chunk: Points, first: int, h: float, control: Control) -> tuple[int, float, int]:
         """See :func:`contvines.continuation.loop.march`."""

@@ -9,3 +9,7 @@ from .problem import FlowProblem
 from .settings import FlowSettings
 
 __all__ = ["AutoSolution", "CompiledRates", "FlowProblem", "FlowSettings", "read_auto", "read_ode"]
+
+
+def __dir__() -> list[str]:
+    return __all__
