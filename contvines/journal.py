@@ -65,7 +65,7 @@ def checked(journal: Journal) -> Journal:
 
 
 class NullJournal:
-    """A :class:`~contvines.journal.Journal` that keeps nothing."""
+    """A ``contvines.journal.Journal`` that keeps nothing."""
 
     def recall(self, key: str) -> dict[str, Any] | None:
         return None
@@ -100,7 +100,7 @@ class Part:
 
 
 class MemoryJournal:
-    """A :class:`~contvines.journal.Journal` in memory, for interactive work: given to the same call again, an interrupted run goes on."""
+    """A ``contvines.journal.Journal`` in memory, for interactive work: given to the same call again, an interrupted run goes on."""
 
     def __init__(self) -> None:
         self.entries: dict[str, dict[str, Any]] = {}
