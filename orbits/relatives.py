@@ -120,7 +120,7 @@ class Relatives:
     ) -> list[Embedding]:
         """The larger problem whose branch point a symmetry breaking or period doubling is, with the point in it."""
         along = np.asarray(tangent[:-1])
-        if kind == "symmetry-breaking" and self.symmetric and len(self.word):
+        if kind == "symmetry-breaking" and self.symmetric:
             full = self.sibling(self.word, self.periods, symmetric=False)
             image = -along.reshape(self.length, -1)
             image[:, 0] *= -1.0

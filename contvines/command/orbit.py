@@ -168,7 +168,10 @@ def _describe(found: object) -> str:
     if nodes:
         names = list(nodes[0])
         units = about.get("units", {})
-        head = tuple(with_unit(name, EVENTS.get(name) and units.get(EVENTS[name])) for name in names)
+        head = tuple(
+            with_unit(name, None if name == "phase" else units.get(name) or units.get(EVENTS.get(name, "")))
+            for name in names
+        )
         rows = [tuple(figures(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names) for n in nodes]
         width = terminal_width()
         lines += [f"  {line}" for line in Table(head, rows, right=head).lines(width and width - 2)]

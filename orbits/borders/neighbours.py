@@ -48,7 +48,9 @@ def turned(
 ) -> tuple[CycleProblem, np.ndarray, int]:
     """The same border read from another event, so that what changes does not straddle the end of the word."""
     place = index // len(problem.word.alphabet.columns)
-    slip = len(problem.word) > 0 and problem.word.letter(place).kind == SLIP
+    if not len(problem.word):
+        return problem, u, index
+    slip = problem.word.letter(place).kind == SLIP
     if 0 < place < problem.length - 1 or (place == 0 and not slip) or problem.length < 2:
         return problem, u, index
     return read_from(problem, u, p, index, place - 1 if slip else place)
@@ -211,8 +213,6 @@ def with_edits(
     """What grows in the new word, and the unknowns of its orbit at the border; None for no word."""
     empty, half = not len(problem.word), problem.length
     halved = problem.symmetric
-    if empty:
-        halved = problem.mirrored and bool(edits[0].change.events) and problem.word.mirror_symmetric_halves
     if halved and not empty:  # edit the half, and mirror it
         if any(edit.change.stop > half and edit.change.start != half for edit in edits):
             return None

@@ -95,6 +95,8 @@ class Cycle:
         """Whether the orbit equals its mirror image after half its period."""
         if not self.model.has_mirror(self.params):
             return False
+        if self._strobed:
+            return self._its_own_image()
         return is_symmetric(
             self.word,
             self.periods,
@@ -163,7 +165,23 @@ class Cycle:
             )
         nodes = self.flow.image(self)
         nodes[:, 0] += np.pi if self.forced else 0.0
-        return replace(self, word=self.word.mirror(), nodes=nodes)
+        image = replace(self, word=self.word.mirror(), nodes=nodes)
+        return replace(image, nodes=self.flow.without_events(image)) if self._strobed else image
+
+    @property
+    def _strobed(self) -> bool:
+        """Whether it is a forced motion without events, whose nodes are those at phase zero."""
+        return self.forced and not len(self.word) and len(self.nodes) > 0
+
+    def _its_own_image(self) -> bool:
+        """The same of a motion without events, whose image is read from any of its forcing periods."""
+        if not (self.word.mirror_symmetric_halves and self.periods % 2):
+            return False
+        image, own = (self.flow.without_events(one) for one in (self.mirror(), self))
+        if image is None or own is None:
+            return False
+        turned = (np.roll(image[:, 1:], places, axis=0) for places in range(self.periods))
+        return any(np.abs(one - own[:, 1:]).max() < size_of_one(self.nodes) for one in turned)
 
     def rotate(self, places: int) -> Self:
         """The same orbit, read from the event `places` further on."""

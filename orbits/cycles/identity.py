@@ -51,7 +51,7 @@ def is_symmetric(
     `image` are the nodes mirrored, at the same phases; by default all states have the opposite sign.
     """
     if not len(word):
-        return not len(nodes)  # at rest; of another motion without events its one node does not tell
+        return not len(nodes)  # at rest; a forced motion without events: `orbits.cycles.cycle`
     if not (word.mirror_symmetric_halves and (periods % 2 == 1 or not forced)):
         return False
     half = len(word) // 2

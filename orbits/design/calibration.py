@@ -27,6 +27,7 @@ CANDIDATES = 8  # of them that are followed
 STARTS = 5  # of a sweep, beside rest
 TRIED = 6  # values of the parameters with which they are tried
 ASTRAY = 0.1  # of the mean time between impacts: data that scatter more are not described by the model
+HALVINGS = 40  # of a default interval, towards what a parameter can be
 SETTLED = 400  # forcing periods before a steady response is read
 
 
@@ -67,7 +68,7 @@ def from_impacts(
 
     measured = _measured(times)
     model = _with_amounts(machine, unknown)
-    bounds = _limits(unknown, limits)
+    bounds = _limits(model, unknown, limits)
     since = measured - measured[0]
     count = measured.size
 
@@ -192,7 +193,7 @@ def from_sweep(
         rows = sweep(model, over, places, start=start, transient=transient, nudge=0.0, **numbers)
         return np.array([row.measures[measure] for row in rows]) - heights
 
-    bounds = _limits(unknown, limits)
+    bounds = _limits(model, unknown, limits)
     known = np.array([*unknown.values()], dtype=float)
     generator = np.random.default_rng(20)
     params = _vector(model, unknown, fixed)
@@ -243,11 +244,37 @@ def _vector(model: Varying, values: Mapping[str, float], fixed: Mapping[str, flo
 
 
 def _limits(
-    unknown: Mapping[str, float], limits: Mapping[str, Sequence[float]] | None
+    model: Varying, unknown: Mapping[str, float], limits: Mapping[str, Sequence[float]] | None
 ) -> dict[str, tuple[float, float]]:
     usual = {"restitution": (0.01, 1.0), "friction": (0.0, 2.0)}
-    found = {name: usual.get(name, (0.2 * value, 5.0 * value)) for name, value in unknown.items()}
-    for name in found.keys() & (limits or {}).keys():
-        low, high = (limits or {})[name]
+    found: dict[str, tuple[float, float]] = {}
+    for name, value in unknown.items():
+        if name in (limits or {}):
+            low, high = (limits or {})[name]
+        elif name in usual:
+            low, high = usual[name]
+        elif value:
+            low, high = sorted(_possible(model, name, value, times * value) for times in (0.2, 5.0))
+        else:
+            raise ParameterError(f"{name} = 0 is no guess; give another one, or limits of the estimate")
         found[name] = (low, high)
     return found
+
+
+def _possible(model: Varying, name: str, value: float, end: float) -> float:
+    """An end of an interval about a value, or the last that the parameter can be on the way there."""
+
+    def can_be(number: float) -> bool:
+        try:
+            model.check_value(name, number)
+        except ParameterError:
+            return False
+        return True
+
+    if can_be(end):
+        return end
+    inside, outside = value, end
+    for _ in range(HALVINGS):
+        middle = 0.5 * (inside + outside)
+        inside, outside = (middle, outside) if can_be(middle) else (inside, middle)
+    return inside

@@ -131,8 +131,8 @@ class Varying:
         return found
 
     def described(self, params: np.ndarray) -> dict[str, Any]:
-        """A parameter vector by name, ready for JSON."""
-        return {"parameters": self.named(params)}
+        """A parameter vector by name, with the units of what is shown, ready for JSON."""
+        return {"parameters": self.named(params), **({"units": self.units} if self.units else {})}
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
         """What one dimensionless unit of a kind of measure ("length", "velocity", "energy", "area") is in `units`."""

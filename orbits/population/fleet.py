@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,13 +45,6 @@ class _Marks:
         rows = [table.get(event, np.empty((0, points.shape[-1]))) for table in (self.own, self.image)]
         gaps = [(np.abs(points[:, None] - known) * self.counted).max(axis=2) for known in rows]
         return np.array([gap.min(axis=1, initial=np.inf) for gap in gaps])
-
-    def alone(self) -> _Marks:
-        """Without an image that lies on the motion itself."""
-        for event, points in self.image.items():
-            if self.distances(event, points)[0].max() > SIMULATING.same * (1.0 + np.abs(points).max()):
-                return self
-        return replace(self, image={})
 
 
 class Fleet:
@@ -245,7 +238,7 @@ class Fleet:
             counted[0] = 0.0  # a motion without impacts may lie anywhere between the walls
         if orbit is not None and not model.forced:
             image = _after_events(orbit.mirror()) if mirrored else {}
-            return _Marks(place, _after_events(orbit), image, counted).alone()
+            return _Marks(place, _after_events(orbit), image, counted)
         state, begun = simulator.state.copy(), simulator.time
         if orbit is not None and self.batch is None:
             simulator.begin(orbit.word, orbit.nodes[0])
@@ -258,7 +251,7 @@ class Fleet:
             simulator.follow(first + k + 1.0)
         simulator.go_on(state)
         self._begun += simulator.time - begun
-        return _Marks(place, {"": np.array(own)}, {"": np.array(image)} if mirrored else {}, counted).alone()
+        return _Marks(place, {"": np.array(own)}, {"": np.array(image)} if mirrored else {}, counted)
 
 
 def _solution(orbit: Orbit | None, parameter: str) -> tuple[Problem | None, np.ndarray | None]:

@@ -9,7 +9,7 @@ import numpy as np
 from contvines.core.library import native
 from orbits.flows.page import flights, sampling
 from orbits.flows.page.margins import fill_margins
-from orbits.flows.page.pieces import Pieces
+from orbits.flows.page.pieces import TURN_OF_PHASE, Pieces
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.flows.protocol import Approach
 from orbits.settings import SOLVING
@@ -117,7 +117,7 @@ class PageEquations(Pieces):
         """Nodes of the whole cycle, shape (..., L, n + 1)."""
         u = np.asarray(u, dtype=float)
         nodes = u.reshape(*u.shape[:-1], self.length, self.size + 1)
-        if not self.symmetric or not len(self.word):
+        if not self.symmetric:
             return nodes
         return np.concatenate([nodes, self._image(nodes)], axis=-2)
 
@@ -128,6 +128,10 @@ class PageEquations(Pieces):
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle; of a motion without events the first node tells the others."""
-        if len(nodes) < self.length:
-            nodes = sampling.strobed(self.machine, self.word, self.periods, nodes[0], self.params)[:-1]
+        often = self.length * (2 if self.symmetric else 1) // self.periods
+        apart = (
+            float(np.ptp(nodes[:2, 0])) * often / TURN_OF_PHASE
+        )  # 1 where they are as far from one another as here
+        if not len(self.word) and self.length > 1 and abs(apart - 1.0) > 0.1:
+            nodes = sampling.strobed(self.machine, self.word, self.periods, nodes[0], self.params, often)
         return np.array(nodes[: self.length], dtype=float, order="C").ravel()

@@ -111,9 +111,11 @@ class Pieces(Against[Machine]):
         self.symmetric, self.forced = bool(symmetric), machine.forced
         self.mirrored = machine.has_mirror(self.params, parameter)
         self.size, self.contacts = machine.size, len(machine.contacts)
-        # a forced motion without events has a node for each of its forcing periods: doubled it is one with twice as many
-        whole = len(word) or (self.periods if self.forced and not symmetric else 1)
-        self.length = whole // 2 if symmetric and len(word) else whole
+        # a forced motion without events has a node for each of its forcing periods: doubled it is one with twice as many; for each half of them
+        # where that is followed by its image
+        halves = 2 if self.mirrored and word.mirror_symmetric_halves else 1
+        whole = len(word) or (halves * self.periods if self.forced else 1)
+        self.length = whole // 2 if symmetric else whole
         self.dimension = self.length * (self.size + 1)
         self.twist = -1.0 if symmetric else 1.0
         self.shift = (0.5 if symmetric else 1.0) * TURN_OF_PHASE * self.periods if self.forced else 0.0

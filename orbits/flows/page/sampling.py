@@ -12,9 +12,11 @@ from orbits.numbers import SMALLEST
 from orbits.words import Word
 
 
-def strobed(machine: Machine, word: Word, periods: int, node: np.ndarray, params: np.ndarray) -> np.ndarray:
-    """Nodes of a motion without events, once per forcing period from one of them on to its return, shape (periods + 1, n + 1)."""
-    clocks, mode = node[0] + 2.0 * np.pi * np.arange(periods + 1), word.entries(0)
+def strobed(
+    machine: Machine, word: Word, periods: int, node: np.ndarray, params: np.ndarray, often: int = 1
+) -> np.ndarray:
+    """Nodes of a motion without events, so often per forcing period from one of them on to its return, shape (often periods + 1, n + 1)."""
+    clocks, mode = node[0] + 2.0 * np.pi / often * np.arange(often * periods + 1), word.entries(0)
     watch = machine.compiled.watch(machine.equations.pattern_key(mode))
     return np.column_stack([clocks, watch.path(node[1:], clocks, machine.compiled.numbers(params, mode))])
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from orbits import Coupled
-from orbits.design.calibration import fit, from_sweep
+from orbits import Coupled, Machine, Wall
+from orbits.design.calibration import fit, from_impacts, from_sweep
+from orbits.machines.parameters import ParameterError
 
 TRUE = {"restitution": 0.63, "friction": 0.12}
 REST = {"gravity": 0.25, "mass_ratio": 0.02, "damping": 1.5, "forcing": 6.0, "frequency": 1.0}
@@ -36,3 +37,16 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     assert found.values["a"] == pytest.approx(known.slope, rel=1e-7)
     reach = t.ppf(0.975, x.size - 2) * known.stderr
     assert found.intervals["a"] == pytest.approx((known.slope - reach, known.slope + reach), rel=1e-6)
+
+
+def test_estimates_of_a_declared_machine_stay_where_its_parameters_can_be():
+    """A ball dropped from 1 under gravity 1 with e = 0.8 hits the floor sqrt 8 e^n apart; five times the guess 0.5 is no restitution."""
+    ball = Machine(
+        name="ball", states=("y", "v"), parameters={"e": 0.5}, motion=lambda s, phase, p, c: (s.v, -1.0),
+        contacts=[Wall("B", lambda s, phase, p: s.y, {"v": 1.0}, "e")],
+    )  # fmt: skip
+    times = np.cumsum(np.sqrt(2.0) * np.array([1.0, *(2.0 * 0.8 ** np.arange(1, 8))]))
+    found = from_impacts(ball, times, {"e": 0.5}, start={"y": 1.0})
+    assert found.values["e"] == pytest.approx(0.8, abs=1e-6)
+    with pytest.raises(ParameterError, match="e = 0 is no guess"):
+        from_impacts(ball, times, {"e": 0.0}, start={"y": 1.0})
