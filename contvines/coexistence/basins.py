@@ -137,14 +137,17 @@ class Basins:
         ValueError
             If all points reach one motion, or there are too few of them.
         """
-        kinds = 2 * self.index + self.mirrored
+        inside = [k for k, about in enumerate(self.attractors) if about.kind == "impossible"]
+        kinds = np.where(np.isin(self.index, inside), -1, 2 * self.index + self.mirrored)
         distances, shares = [], []
         d = 1
         while 4 * d <= min(kinds.shape):
-            other = np.concatenate(
-                [(kinds[:, d:] != kinds[:, :-d]).ravel(), (kinds[d:] != kinds[:-d]).ravel()]
+            pairs = np.hstack(
+                [(kinds[:, d:].ravel(), kinds[:, :-d].ravel()), (kinds[d:].ravel(), kinds[:-d].ravel())]
             )
-            if other.mean() > 0.0:
+            pairs = pairs[:, (pairs >= 0).all(axis=0)]
+            other = pairs[0] != pairs[1]
+            if other.any():
                 distances.append(d)
                 shares.append(other.mean())
             d *= 2

@@ -145,6 +145,13 @@ def _counted(data: dict[str, Any], machine: "Machine") -> dict[str, Any]:
     from orbits.machines.physical.units import QuantityError, counted
 
     units = {name: unit for name, unit in machine.units.items() if name in machine.parameters}
+    said = data.get("units")
+    if said is not None and said != "si":
+        raise StudyError(f'units = {said!r} is unknown; use "si", or leave it out.')
+    if said is not None and not machine.units:
+        raise StudyError(
+            f"units = {said!r}: the machine {machine.name!r} gives no units; leave the line out, or declare it with Machine(..., units=)."
+        )
     if not units:
         return data
 

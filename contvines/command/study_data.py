@@ -209,7 +209,7 @@ def wrong_ends(section: str, within: list[float]) -> list[str]:
     if low == high:
         return [f"[{section}] within = {within!r} is empty; expected low < high."]
     if low > high:
-        return [f"[{section}] within = {within!r} is reversed; use within = [{high!r}, {low!r}]."]
+        return [f"[{section}] within = {within!r} is reversed; give the lower end first."]
     return []
 
 

@@ -143,7 +143,7 @@ def _stable(region: Region, at: Sequence[Callable[[float], str]]) -> str:
 def _word(locus: Locus) -> str:
     """Of the motion; nothing where solutions have no words."""
     about = locus.branch.description
-    return "" if about.get("word") is None else motion_name(about)
+    return "" if about.get("word") is None else motion_name(about.get("problem", about))
 
 
 def _realness(locus: Locus) -> str:

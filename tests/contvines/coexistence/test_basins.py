@@ -11,7 +11,7 @@ from contvines.coexistence.maps import MapPopulation
 
 
 def plane(index, mirrored, shares=()):
-    attractors = [SimpleNamespace(share=share) for share in shares]
+    attractors = [SimpleNamespace(share=share, kind="periodic") for share in shares]
     x = np.arange(index.shape[1], dtype=float)
     return Basins(
         "p", 0.5, ("x", "y"), x, np.arange(index.shape[0], dtype=float), {}, index, mirrored, attractors
@@ -35,6 +35,16 @@ def test_a_motion_and_the_mirror_image_of_another_have_a_boundary():
     assert exponent == pytest.approx(1.0, abs=0.15)
     with pytest.raises(ValueError, match="one motion alone"):
         plane(np.zeros((64, 64), int), np.zeros((64, 64), bool)).uncertainty_exponent()
+
+
+def test_a_wall_is_no_boundary_of_a_basin():
+    """Points inside a wall reach nothing, so beside one motion alone they have no exponent."""
+    index = np.zeros((64, 64), int)
+    index[:, 32:] = 1
+    basins = plane(index, np.zeros((64, 64), bool), [0.5, 0.5])
+    basins.attractors[1].kind = "impossible"
+    with pytest.raises(ValueError, match="one motion alone"):
+        basins.uncertainty_exponent()
 
 
 def test_starts_reach_the_fixed_point_on_their_side():

@@ -272,3 +272,20 @@ def test_quantities_of_a_page_that_has_units_are_numbers_in_these():
 def test_quantities_of_another_kind_are_refused(section, said, sentence):
     with pytest.raises(StudyError, match=re.escape(sentence)):
         check_study({**QUANTITIES, section: said})
+
+
+@pytest.mark.parametrize(
+    ("said", "says"),
+    [("imperial", "units = 'imperial' is unknown; use \"si\""), ("si", "the machine 'bare' gives no units")],
+)
+def test_units_of_a_study_are_those_of_its_machine(tmp_path, said, says):
+    (tmp_path / "bare.py").write_text(
+        "from orbits import Machine\n"
+        "machine = Machine(name='bare', states=('x', 'v'), parameters={'rate': 1.0}, phase_rate='rate',\n"
+        "    motion=lambda s, phase, p, c: (s.v, -s.x - s.v))\n"
+    )
+    data = {
+        "units": said, "model": {"name": "bare.py:machine"}, "continue": {"parameter": "rate", "within": [0.5, 2.0]},
+    }  # fmt: skip
+    with pytest.raises(ValueError, match=re.escape(says)):
+        check_study(data, tmp_path / "study.toml")

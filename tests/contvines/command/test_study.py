@@ -143,7 +143,7 @@ def test_coupled_studies_have_their_own_parameters():
         ({"continue__within": [0.5, 0.5]}, ["[continue] within = [0.5, 0.5] is empty"]),
         (
             {"continue__within": [1.3, 0.2]},
-            ["[continue] within = [1.3, 0.2] is reversed", "use within = [0.2, 1.3]"],
+            ["[continue] within = [1.3, 0.2] is reversed", "give the lower end first"],
         ),
         ({"continue__within": [0.2]}, ["[continue] within = [0.2] has 1 entries", "[low, high]"]),
         (
