@@ -225,7 +225,7 @@ def with_edits(
         alone = orbit.flow.without_events(orbit)
         if alone is None:
             return None
-        nodes, halved = alone, False
+        nodes, halved = alone, halved and word.mirror_symmetric_halves
     elif not problem.forced:
         nodes = durations_after(orbit.durations, nodes, edits[0])
     try:

@@ -253,6 +253,8 @@ class Word:
 
     def with_image(self) -> Word:
         """The word and, after it, its mirror image: the whole of a symmetric cycle from its half."""
+        if not self.events:
+            return self
         image = self.mirror()
         return self.like(self.events + image.events, self.modes + image.modes)
 

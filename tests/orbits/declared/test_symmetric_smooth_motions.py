@@ -3,9 +3,10 @@
 import math
 
 import pytest
+from scipy.optimize import brentq
 
 import contvines as cv
-from orbits import Machine, Wall
+from orbits import DryFriction, Machine, Wall
 from orbits.symbols import cos
 
 
@@ -58,3 +59,27 @@ def test_both_stops_are_met_at_once_and_one_by_a_motion_that_lost_its_symmetry()
     graph = cv.diagram(bent, over="force", within=(2.9, 3.6), depth=1)
     border = next(point for point in graph.special.values() if point.kind == "wall-graze")
     assert border.branch == "B1" and "L" in {b.description["word"] for b in graph.branches.values()}
+
+
+def test_a_body_that_ceases_to_slip_rides_along_without_events():
+    """The body is held while the mass under it moves with no more than mu g: w^2 E k / |k - (M + m) w^2 + i c w| = mu g."""
+    mass, body, stiffness, damping, base, friction = 3.0, 0.1, 4000.0, 8.0, 0.7e-3, 0.12
+    carried = Machine(
+        name="carried", states=("q", "x", "v", "u"), phase_rate="frequency", mirror={}, parameters={"frequency": 29.0},
+        motion=lambda s, phase, p, c: (
+            s.v, s.u, (stiffness * (base * cos(phase) - s.q) - damping * s.v - body * c.floor) / mass, c.floor
+        ),
+        contacts=[DryFriction("floor", lambda s, phase, p: s.u - s.v, lambda s, phase, p: friction * 9.81)],
+    )  # fmt: skip
+    graph = cv.diagram(
+        carried.attractor(frequency=28.0).orbit, over="frequency", within=(26.0, 29.0), depth=1
+    )
+
+    def short(rate):
+        response = stiffness - (mass + body) * rate**2 + 1j * damping * rate
+        return rate**2 * base * stiffness / abs(response) - friction * 9.81
+
+    (border,) = (point for point in graph.special.values() if point.kind == "stick")
+    assert border.value == pytest.approx(brentq(short, 20.0, 30.0), rel=1e-9)
+    (held,) = (branch for branch in graph.branches.values() if not branch.description["word"])
+    assert held.description["name"] == "no events" and held.description["symmetric"]
