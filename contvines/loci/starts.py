@@ -15,7 +15,7 @@ from ..problems.protocol import Problem
 from .adaptive import AdaptiveLocus
 from .borders import borders_at
 from .kinds import condition
-from .layout import APART, MARGIN, OWN, PAIR, PERIOD
+from .layout import APART, FLIP, MARGIN, OWN, PAIR, PERIOD
 from .linear import Linearisation
 from .on_mesh import on_mesh
 from .probing import pair_of, position_of
@@ -114,16 +114,16 @@ def unit_of(problem: Problem, bounds: tuple[float, float], p: float) -> float:
 
 
 def regular_side(point: SpecialPoint) -> SpecialPoint:
-    """A border as the motion on its other side has it, where its own equations are singular; else the point itself.
+    """A border as the motion on its other side has it, where its own equations are singular, and a doubling that was met from the side of the doubled
+    motion as the one that doubles has it; else the point itself.
 
     A stick that shrinks to nothing leaves two events at one place, and equations that are singular all along the border. The motion behind it has
     no such stick, and grazes there.
     """
-    problem = point.attached
-    if (
-        condition(problem, point.kind) != MARGIN
-        or singularity(problem, point.u, point.value) >= VANISHING.singular
-    ):
+    problem, wanted = point.attached, condition(point.attached, point.kind)
+    if wanted == FLIP and (shorter := problem.root(np.array(point.u), float(point.value))) is not None:
+        return replace(point, problem=shorter[0], u=np.asarray(shorter[1]))
+    if wanted != MARGIN or singularity(problem, point.u, point.value) >= VANISHING.singular:
         return point
     outward = -point.tangent if point.index == 0 else point.tangent
     p = float(point.value)
@@ -158,5 +158,6 @@ def first_point(
     found = engine.start(U, float(q))
     if found is None:
         return engine, None
-    gap = np.abs(found.u - U) / (engine.scale[:-1] + np.abs(U))
-    return engine, found if gap.max() < 0.05 else None
+    there, here = engine.join(found.u, found.p), engine.join(U, q)
+    gap = np.abs(there - here) / (engine.scale + np.abs(here))
+    return engine, found if gap.max() < VANISHING.loose else None

@@ -216,3 +216,22 @@ def test_two_conditions_of_a_map_at_once(kind, n, g, along):
             found = [(met.kind, *met.value) for _, met in find(locus)]
             assert [which for which, *_ in found] == [kind]
             assert found[0][1:] == pytest.approx((0.5, 0.5), abs=1e-9)
+
+
+def test_a_doubling_that_was_met_from_the_doubled_side():
+    """The Henon map's 2-cycle was born at 4 a = 3 (1 - b)^2; the diagram begins on it and does not go beyond."""
+    x, a, b = np.array([1.0, 0.0]), 0.6, 0.3
+    for _ in range(400):
+        x = np.array([1.0 - a * x[0] ** 2 + x[1], b * x[0]])
+    other = np.array([1.0 - a * x[0] ** 2 + x[1], b * x[0]])
+    problem = cv.MapProblem(
+        lambda x, p: [1.0 - p.a * x[0] ** 2 + x[1], p.b * x[0]],
+        [x, other],
+        {"a": a, "b": b},
+        parameter="a",
+        cycle=2,
+    )
+    graph = cv.diagram(problem, within=(0.3, 0.7), depth=0)
+    assert graph["PD1"].multipliers.real.max() == pytest.approx(1.0, abs=1e-6)  # of both iterations
+    locus = cv.locus(graph["PD1"], over="b", within=(0.0, 0.6))
+    assert locus.values[:, 0] == pytest.approx(0.75 * (1.0 - locus.values[:, 1]) ** 2, abs=1e-9)
