@@ -114,14 +114,17 @@ def unit_of(problem: Problem, bounds: tuple[float, float], p: float) -> float:
 
 
 def regular_side(point: SpecialPoint) -> SpecialPoint:
-    """A border as the motion on its other side has it, where its own equations are singular, and a doubling that was met from the side of the doubled
-    motion as the one that doubles has it; else the point itself.
+    """A border as the motion on its other side has it, where its own equations are singular, a doubling that was met from the side of the doubled
+    motion as the one that doubles has it, and a Hopf point met by cycles as the equilibrium has it; else the point itself.
 
     A stick that shrinks to nothing leaves two events at one place, and equations that are singular all along the border. The motion behind it has
     no such stick, and grazes there.
     """
     problem, wanted = point.attached, condition(point.attached, point.kind)
-    if wanted == FLIP and (shorter := problem.root(np.array(point.u), float(point.value))) is not None:
+    if (
+        wanted in (FLIP, PAIR)
+        and (shorter := problem.root(np.array(point.u), float(point.value))) is not None
+    ):
         return replace(point, problem=shorter[0], u=np.asarray(shorter[1]))
     if wanted != MARGIN or singularity(problem, point.u, point.value) >= VANISHING.singular:
         return point

@@ -323,3 +323,17 @@ def test_neimark_sacker_points_of_cycles_begin_at_equilibria(f, x0, cycle, exact
     assert set(places) == set(resonances)
     for name, value in resonances.items():
         assert places[name] == pytest.approx(value, abs=1e-8)
+
+
+def test_a_hopf_point_met_by_cycles_is_followed_as_that_of_the_equilibrium():
+    """FitzHugh and Nagumo: 1 - v^2 = 0.8 eps at rest with w = (v + 0.7) / 0.8 and I = w - v + v^3 / 3."""
+    flow = cv.FlowProblem(
+        lambda x, p: [x[0] - x[0] ** 3 / 3 - x[1] + p.I, p.eps * (x[0] + 0.7 - 0.8 * x[1])],
+        [-1.2, -0.6],
+        {"I": 0.0, "eps": 0.08},
+    )
+    graph = cv.diagram(flow.attractor(I=0.8), over="I", within=(0.0, 1.0), depth=0)
+    locus = cv.locus(graph["HB1"], over="eps", within=(0.04, 0.12))
+    v = -np.sqrt(1.0 - 0.8 * locus.values[:, 1])
+    assert locus.values[:, 0] == pytest.approx((v + 0.7) / 0.8 - v + v**3 / 3.0, abs=1e-9)
+    assert locus.values[[0, -1], 1] == pytest.approx([0.04, 0.12])
