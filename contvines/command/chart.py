@@ -71,9 +71,13 @@ def locus(
     graph = load_file(file, trust)
     check_special(graph, file, label)
     refuse_detached(graph, label)
-    ends = interval("--within", within, over, graph.units)
+    ends, kinds = interval("--within", within, over, graph.units), None
+    if graph.special[label].kind in graph.own_kinds:  # its condition is a function of the study's
+        from contvines.command.kept_study import kept_kinds
+
+        kinds = kept_kinds(file, trust)
     with working("nothing new is kept; run the same command again", quiet) as progress:
-        found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress)
+        found = chart_of_one(graph, label, over, ends, virtual=virtual, progress=progress, kinds=kinds)
     with held(target, quiet, fresh):
         found.save(target)
     _tell(found, target, plot, quiet)

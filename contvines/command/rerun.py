@@ -1,15 +1,15 @@
 """`contvines rerun`: a result computed again from the study that its file keeps, and what differs."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from contvines.command.chart import Plane, chart_of
 from contvines.command.frame import held, place_of, refuse_unfinished, say, tell
+from contvines.command.kept_study import kept_study
 from contvines.command.options import FileArgument, FreshOption, JsonOption, QuietOption, TrustOption, option
 from contvines.command.run import graph_of
-from contvines.command.study_data import Study
 
 if TYPE_CHECKING:
     from contvines.graph.graph import Graph
@@ -50,7 +50,7 @@ def rerun(
             f"{file}: this file keeps no study to run again, as it was saved from Python (graph.save): the script that made it computes it anew. "
             "Files that contvines diagram, atlas and chart write keep theirs; a study may name a flow or a machine in a Python file."
         )
-    study, source = _study(file, kept.get("source"), trust)
+    study, source = kept_study(file, kept.get("source"), trust)
     target = place_of(output, file, "-rerun.vines")
     command = source["command"]
     if command == "atlas" and not isinstance(before, Chart) and "budget" in before.settings:
@@ -100,29 +100,3 @@ def _size(result: "Graph | Chart") -> str:
         return f"{len(result.loci)} loci and {len(result.points)} points of codimension two compared"
     counts = len(result.branches), len(result.special), len(result.switches)
     return "{} branches, {} special points and {} switches compared".format(*counts)
-
-
-def _study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str, Any]]:
-    """The study that a file keeps, read as if it stood where it stood.
-
-    Raises
-    ------
-    ValueError
-        If the file keeps none, or one that names Python files while it is not trusted.
-    """
-    from contvines.command.study import study_of
-    from contvines.command.toml_text import toml_data
-
-    if not isinstance(source, dict) or not source.get("text"):
-        raise ValueError(
-            f"{file}: this file keeps no study to run again: it was saved by a version that kept none, or from something else than a study; "
-            f"contvines diagram STUDY.toml -o {file.stem}-again.vines computes the study anew."
-        )
-    data, place = toml_data(source["text"]), (file.absolute().parent / str(source["study"])).resolve()
-    named = [str(data.get(part, {}).get(key, "")) for part, key in (("model", "name"), ("continue", "kinds"))]
-    if not trust and any(".py" in name for name in named):
-        code = next(name for name in named if ".py" in name)
-        raise ValueError(
-            f"{file}: its study runs the code of {code!r} beside {place}; --trust allows it, for a file whose maker you trust."
-        )
-    return study_of(source["text"], place), source

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from ..bifurcation.kind import Kind
 from ..branches.special_point import SpecialPoint
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
@@ -113,6 +114,7 @@ def chart_of_one(
     within: tuple[float, float],
     virtual: bool = False,
     progress: Callable[[ChartProgress], None] | None = None,
+    kinds: Iterable[Kind] | None = None,
 ) -> Chart:
     """The locus of one special point of a graph with the points of codimension two on it, as a chart.
 
@@ -123,6 +125,8 @@ def chart_of_one(
         Of the special point.
     over, within, virtual, progress
         As for :func:`chart`.
+    kinds
+        As for :func:`locus`.
 
     Raises
     ------
@@ -146,6 +150,7 @@ def chart_of_one(
         bounds=graph.within,
         virtual=virtual,
         progress=lambda name, count, value: run.tell(f"{name}: {count} points"),
+        kinds=kinds,
     )
     run.chart.loci[label] = found
     run.mark(found)

@@ -7,6 +7,7 @@ import sqlite3
 import pytest
 
 from contvines.store import load, save
+from orbits import Absorber
 from tests.contvines import fakes
 from tests.contvines.studies import PAPER_MACHINE
 
@@ -83,3 +84,33 @@ def test_files_without_a_study_and_studies_with_code_are_refused(run, folder):
     (folder / "evil.py").write_text("raise SystemExit(99)")
     status, _, err = run("rerun", "s.vines")
     assert status == 1 and "--trust" in err
+
+
+FAST = """import contvines as cv
+
+
+def too_fast(point):
+    return point.measure("impact_speed") - 0.9
+
+
+fast = cv.Kind("fast", "FA", test=too_fast, locus=too_fast)
+"""
+
+
+def test_a_point_of_a_kind_of_the_study_is_followed_in_a_second_parameter(run, folder):
+    (folder / "fast.py").write_text(FAST)
+    (folder / "s.toml").write_text(STUDY.replace("depth = 0\n", 'depth = 0\nkinds = "fast.py:fast"\n'))
+    assert run("diagram", "s.toml", "-q", "--no-look")[0] == 0
+    line = ("locus", "s.vines", "FA1", "--over", "friction", "--within", "0.4", "0.55", "-q")
+    status, _, err = run(*line)
+    assert status and "--trust allows it" in err
+    assert run(*line, "--trust")[0] == 0
+    machine, found = (
+        Absorber(restitution=0.76, friction=0.5, gravity=0.211, mass_ratio=0.006),
+        load("s-FA1.vines"),
+    )
+    speeds = [
+        machine.changed(friction=q).symmetric_orbit(amplitude=p).measure("impact_speed")
+        for p, q in found.loci["FA1"].values
+    ]
+    assert len(speeds) > 2 and speeds == pytest.approx([0.9] * len(speeds), abs=1e-9)
