@@ -33,14 +33,14 @@ class Orbit(Protocol):
 
 @runtime_checkable
 class PointOfBranch(Protocol):
-    """A special point, of a graph that has its problems."""
+    """A special point, of a graph that has its problems, or of a locus, with the values of both parameters."""
 
     @property
     def attached(self) -> Problem: ...
     @property
     def u(self) -> np.ndarray: ...
     @property
-    def value(self) -> float: ...
+    def value(self) -> float | tuple[float, float]: ...
 
 
 def check_interval(within: Iterable[float]) -> tuple[float, float]:
@@ -71,7 +71,8 @@ def problem_and_start(
 ) -> tuple[Problem, ArrayLike, float]:
     """(problem, u, p) from an orbit object, a special point, or a problem with ``u0`` and ``p0``; u and p win where they are given."""
     if isinstance(seed, PointOfBranch):
-        u, p, seed = seed.u if u is None else u, seed.value if p is None else p, seed.attached
+        value = seed.value[0] if isinstance(seed.value, tuple) else seed.value
+        u, p, seed = seed.u if u is None else u, value if p is None else p, seed.attached
         if over not in (None, seed.parameter) and over in seed.parameters:
             p, seed = seed.parameters[over], seed.against(over, {seed.parameter: float(p)})
     if hasattr(seed, "kernels") and hasattr(seed, "dimension"):

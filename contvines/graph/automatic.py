@@ -44,7 +44,7 @@ def diagram(
     Parameters
     ----------
     seed : orbit, SpecialPoint or Problem
-        An object with ``problem(parameter)`` and ``seed(problem) -> (u, p)``, a special point of another graph, or a problem with ``u0`` and ``p0``.
+        An object with ``problem(parameter)`` and ``seed(problem) -> (u, p)``, a special point of another graph or of a locus, or a problem with ``u0`` and ``p0``.
     over : str, optional
         Name of the continuation parameter; may be left out for a problem that has its own, and where there is one parameter only.
     within : (float, float)

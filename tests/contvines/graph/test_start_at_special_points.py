@@ -76,3 +76,16 @@ def test_begun_where_it_is_known_to_lie(kind, problem, start):
     assert [p.value for p in graph.of_kind(kind)] == pytest.approx([0.0], abs=1e-12)
     assert not graph.unresolved
     assert len(graph) == (1 if kind in ("fold", "neimark-sacker") else 2)
+
+
+def test_begun_at_a_cusp_on_a_locus():
+    """x' = b + (a - 1/3) x - x^3: at the cusp a = 1/3, b = 0; against a a pitchfork, against b nothing."""
+    flow = cv.FlowProblem(
+        lambda x, p: [p.b + (p.a - 1 / 3) * x[0] - x[0] ** 3], [-1.0], {"b": -0.5, "a": 1.0}
+    )
+    locus = cv.locus(cv.diagram(flow, over="b", within=(-1, 1))["LP1"], over="a", within=(0, 2))
+    cusp = locus.points["CP1"]
+    across = cv.diagram(cusp, over="a", within=(0.0, 1.0))
+    assert [p.value for p in across.of_kind("branch-point")] == pytest.approx([1 / 3], abs=1e-9)
+    along = cv.diagram(cusp, within=(-0.5, 0.5))
+    assert {p.kind for p in along.special.values()} == {"end"} and len(along) == 1
