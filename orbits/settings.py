@@ -63,6 +63,8 @@ class Events:
         Rate below which a surface is touched, not crossed; an impact that is slower vanishes.
     slow : float
         Speed at a wall, squared where it is compared with a height, below which impacts may be piling up.
+    hop : float
+        Clock to the top of a hop whose end may be lost beside its beginning; on a longer one other events may come first.
     leave : float
         Clock after which a quantity that starts from zero without a rate has grown out of rounding.
     at_end : float
@@ -75,6 +77,7 @@ class Events:
     together: float = 1e-11
     touch: float = 1e-7
     slow: float = 1e-6
+    hop: float = 1e-2
     leave: float = 1e-5
     at_end: float = 1e-9
     still: float = 1e-8

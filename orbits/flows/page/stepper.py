@@ -192,7 +192,8 @@ class Stepper:
         if push < 0.0:
             if before * before < EVENTS.together * abs(push) * size:
                 return self._hold(wall)
-            self._hop = -after / push
+            rise = -after / push
+            self._hop = rise if rise * self.clock_rate < EVENTS.hop else 0.0
         return HIT
 
     def _struck(self, wall: int) -> int:
