@@ -83,10 +83,10 @@ def picture(
     """The attractors of a sweep as dots, over a graph if there is one."""
     from contvines.plots.sweep import plot_sweep
 
-    model, page = study.model, study.sort is Sort.PAGE
+    model = study.model
     look: dict[str, Any] = {
         "units": model.units,
-        **({} if page else {"notation": model.notation}),
+        "notation": model.notation,
         "figsize": size,
     }
     wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
