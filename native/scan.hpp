@@ -35,7 +35,7 @@ struct Scanned : Scanner {
     double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *past = near + count, *reached = past + 3 * count,
            *low = reached + count - 1, *sizes = low + row - 2 * multipliers, *turns = sizes + symmetries * count;
     Place* places = (Place*)(turns + symmetries * (count - 1));  // (count, multipliers)
-    double* near_both = (double*)(places + count * multipliers);  // (4, count): of the distances from 1 and from -1 (from 0) products and the nearest, as logarithms
+    double* gaps = (double*)(places + count * multipliers);  // (4, count): of the distances from 1 and from -1 (from 0) the products, and the nearest
 };
 
 // Terms joined in four parts, so that the order is that of vector instructions whether there are any or not.
@@ -53,15 +53,16 @@ template <class Term> inline double sum(whole n, Term term) {
 
 // How many of each sort (near 1, near -1, pairs) are past the circle, and how far all are from 1 and from -1.
 inline void multipliers_of(const Scanned& s, const double* row, whole i) {
-    double near[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, past[3] = {}, products[2] = {};
+    double near[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, past[3] = {}, products[2] = {1.0, 1.0};
     Place* place = s.places + i * s.multipliers;
     for (whole k = 0; k < s.multipliers && s.kind != NONE; k++) {
         const double re = row[2 * k], im = row[2 * k + 1];
         const bool real = im == 0.0, map = s.kind == MAP;
         const int sort = s.kind == REAL ? 0 : !real ? 2 : map && !(re > 0.0) ? 1 : 0;
+        const double by_size = 1.0 / (1.0 + (real ? fabs(re) : hypotenuse(re, im)));
         for (int side = 0; side < (map ? 2 : 1); side++) {
-            const double part = hypotenuse(re - (map ? 1.0 - 2.0 * side : 0.0), im) / (1.0 + hypotenuse(re, im));
-            if (part > PAST) products[side] += logarithm(part);
+            const double along = map ? re - 1.0 + 2.0 * side : re, part = (real ? fabs(along) : hypotenuse(along, im)) * by_size;
+            products[side] *= part > PAST ? part : 1.0;
         }
         place[k] = {NAN, NAN, NAN, {HUGE_VAL, 0.0, 0, k}, {HUGE_VAL, 0.0, 0, k}};
         if (s.kind != REAL && !real && !(im > 0.0)) continue;
@@ -74,7 +75,7 @@ inline void multipliers_of(const Scanned& s, const double* row, whole i) {
     for (int sort = 0; sort < 3; sort++) s.past[sort * s.count + i] = past[sort];
     for (int side = 0; side < 2; side++) {
         near[side] = near[side] > PAST && near[side] < HUGE_VAL ? near[side] : NAN;
-        s.near_both[side * s.count + i] = products[side], s.near_both[(2 + side) * s.count + i] = logarithm(near[side]);
+        s.gaps[side * s.count + i] = products[side], s.gaps[(2 + side) * s.count + i] = near[side];
     }
     s.near[i] = near[0];
 }
@@ -97,11 +98,11 @@ inline bool dips(const Scanned& s, whole i) {
     if (i == 0 || i + 1 == s.count) return false;
     const double h1 = s.lengths[i - 1], h2 = s.lengths[i];
     for (int side = 0; side < 4; side++) {
-        const double *logs = s.near_both + side * s.count + i, *past = s.past + side % 2 * s.count + i;
+        const double *gap = s.gaps + side * s.count + i, *past = s.past + side % 2 * s.count + i;
         if (past[-1] != past[0] || past[1] != past[0]) continue;
-        const double before = (1.0 - exponential(logs[-1] - logs[0])) / h1, after = (exponential(logs[1] - logs[0]) - 1.0) / h2;
-        const double bend = (after - before) / (h1 + h2), slope = (before * h2 + after * h1) / (h1 + h2), vertex = -0.5 * slope / bend;
-        if (bend > 0.0 && -h1 < vertex && vertex < h2 && 1.0 - 0.25 * slope * slope / bend < 0.0) return true;
+        const double before = (gap[0] - gap[-1]) / h1, after = (gap[1] - gap[0]) / h2;
+        const double bend = (after - before) / (h1 + h2), slope = (before * h2 + after * h1) / (h1 + h2);
+        if (bend > 0.0 && -2.0 * bend * h1 < -slope && -slope < 2.0 * bend * h2 && 4.0 * bend * gap[0] < slope * slope) return true;
     }
     return false;
 }
