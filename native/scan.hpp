@@ -27,15 +27,15 @@ struct Place {
     double size, x, y;
     Link ahead, back;
 };
-// A chunk, and what is found: one array after the other from `lengths` on.
+// A chunk, and what is found: one array after the other from `lengths` on. Of the distances from 1 and from -1 (from 0) gaps, (4, count), are the
+// nearest ones, then the products.
 struct Scanned : Scanner {
     whole count;
     double flat;  // slopes up to this are rounding
     const double *points, *values, *tangents, *rows, *determinants;
-    double *lengths, *smallest = lengths + count - 1, *near = smallest + count, *past = near + count, *reached = past + 3 * count,
+    double *lengths, *smallest = lengths + count - 1, *gaps = smallest + count, *past = gaps + 4 * count, *reached = past + 3 * count,
            *low = reached + count - 1, *sizes = low + row - 2 * multipliers, *turns = sizes + symmetries * count;
     Place* places = (Place*)(turns + symmetries * (count - 1));  // (count, multipliers)
-    double* gaps = (double*)(places + count * multipliers);  // (4, count): of the distances from 1 and from -1 (from 0) the products, and the nearest
 };
 
 // Terms joined in four parts, so that the order is that of vector instructions whether there are any or not.
@@ -74,10 +74,9 @@ inline void multipliers_of(const Scanned& s, const double* row, whole i) {
     }
     for (int sort = 0; sort < 3; sort++) s.past[sort * s.count + i] = past[sort];
     for (int side = 0; side < 2; side++) {
-        near[side] = near[side] > PAST && near[side] < HUGE_VAL ? near[side] : NAN;
-        s.gaps[side * s.count + i] = products[side], s.gaps[(2 + side) * s.count + i] = near[side];
+        s.gaps[side * s.count + i] = near[side] > PAST && near[side] < HUGE_VAL ? near[side] : NAN;
+        s.gaps[(2 + side) * s.count + i] = products[side];
     }
-    s.near[i] = near[0];
 }
 
 // The nearest multiplier at the next point of each one of point i - 1, and at the point before of each one of point i.
@@ -157,7 +156,7 @@ inline bool open_at(const Scanned& s, whole i) {
         if (s.past[sort * s.count + i] != s.past[sort * s.count + i - 1]) return true;
     if (i < 2) return false;
     const double part = fall(s.lengths[i - 2], length), slopes[] = {slope[-2 * n - 2], here, there};
-    return may_fall(slopes + 2, part) || may_fall(s.near + i, STRAIGHT * part);
+    return may_fall(slopes + 2, part) || may_fall(s.gaps + i, STRAIGHT * part);
 }
 
 // Returns whether nothing is open.

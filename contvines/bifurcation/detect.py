@@ -214,7 +214,7 @@ class Detector(SegmentSearch):
     def _passed(self, origin: Solved, start: Solved) -> bool:
         """Whether multipliers (eigenvalues) have passed the circle (the axis) since a branch point, those that are critical there left out.
 
-        As many are past it as were, and up to those that are critical; fewer or more of them pairs, or past -1, if real ones have met.
+        None has if as many are past it as were, up to those that are critical more, and as many of them are pairs, or past -1.
         """
         engine = self.engine
         if engine.detection not in ("map", "flow"):

@@ -129,9 +129,8 @@ def _dips(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
 def _pairs_reached(engine: Engine, rows: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """Segments on which one of a pair may have reached the line.
 
-    A multiplier is the nearest one at the next point, be
-    that real or one of a pair. It may have reached the line if it goes as far as both its places at the ends of the segment are from the line, together;
-    on two sides it has passed. It goes as far as from one place to the other, or as `Locating.faster` times the largest of its rates on this segment and those
+    A multiplier is the nearest one at the next point, be that real or one of a pair. It may have reached the line if it goes as far as both its
+    places at the ends of the segment are from the line, together; on two sides it has passed. It goes as far as from one place to the other, or as `Locating.faster` times the largest of its rates on this segment and those
     beside it have it: rates towards the line, or, where two real ones become a pair on one of these, in any direction. On the line to rounding nothing tells.
     """
     m, kind = engine.m, engine.detection
@@ -216,18 +215,18 @@ class NativeScan:
     def __call__(self, chunk: Chunk) -> Scan:
         """Scan a chunk."""
         n, k, w = len(chunk), self.symmetries, self.margins
-        places = 11 * n * self.engine.m + 4 * n  # room for those of multipliers, and of all together
-        found = np.empty(7 * n - 2 + w + k * (2 * n - 1) + places)
+        places = 11 * n * self.engine.m  # room for those of multipliers
+        found = np.empty(10 * n - 2 + w + k * (2 * n - 1) + places)
         quiet = _native()(
             address(self.frame), n, self.engine.upright(float(chunk.values[0])), place(chunk.points), place(chunk.values),
             place(chunk.tangents), place(chunk.rows), place(chunk.signs), address(found),
         )  # fmt: skip
-        past, low = 3 * n - 1, 7 * n - 2
+        near, past, low = 2 * n - 1, 6 * n - 1, 10 * n - 2
         sizes, turns = low + w, low + w + k * n
         return Scan(
             found[: n - 1],
             found[n - 1 : 2 * n - 1],
-            Spectra(found[2 * n - 1 : past], found[past : past + 3 * n].reshape(3, n)),
+            Spectra(found[near : near + n], found[past : past + 3 * n].reshape(3, n)),
             found[past + 3 * n : low],
             found[low:sizes],
             found[sizes:turns].reshape(k, n),

@@ -293,11 +293,19 @@ class Engine(Rows):
         inside = [
             other for other in (found, *others) if other is not None and self.lower <= other.p <= self.upper
         ]
-        return min(inside, key=lambda other: self.norm(self.join(other.u - u, other.p - p)), default=None)
+        return min(inside, key=lambda other: self._off(u, p, other), default=None)
 
     def _near(self, u: np.ndarray, found: Solved) -> bool:
-        """Whether a solution at fixed p is no further away than that of a guess that is one, too, may be: as far as the square root of a residual, beside a fold."""
-        return self.norm(self.join(found.u - u, 0.0)) <= math.sqrt(SOLUTION.solved)
+        """Whether a solution is as near to a guess as one that has the guess's parameter may be where the guess is a solution, too.
+
+        Beside a fold that is the square root of a residual.
+        """
+        return self._off(u, found.p, found) <= math.sqrt(SOLUTION.solved)
+
+    @np.errstate(all="ignore")  # what Newton's method has run away to may be larger than all numbers
+    def _off(self, u: np.ndarray, p: float, found: Solved) -> float:
+        """Length of the way from a guess to a solution."""
+        return self.norm(self.join(found.u - u, found.p - p))
 
     def residual(self, u: np.ndarray, p: float) -> float:
         """Largest absolute residual; linearises."""

@@ -19,7 +19,10 @@ from .layout import RUNNING, Control, Found, Metric, Points, Scratch, Way
 from .settings import SOLUTION
 from .step_rule import BY_ANGLE, StepRule
 
-BRIEF, LONG = 0.01, 0.04  # seconds of one call, between which it may take: between calls an interrupt is seen
+BRIEF, LONG = (
+    0.01,
+    0.04,
+)  # seconds: shorter calls get more points the next time, longer ones fewer; between calls an interrupt is seen
 
 LIMITS = np.array(astuple(SOLUTION))
 

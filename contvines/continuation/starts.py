@@ -80,7 +80,8 @@ def problem_and_start(
         if over is not None and over != problem.parameter and over in problem.parameters:
             problem = problem.against(over)
         if over is not None and over != problem.parameter:
-            raise ValueError(f"over = {over!r}, but this problem continues in {problem.parameter!r}")
+            known = f"; its parameters are {', '.join(problem.parameters)}" if problem.parameters else ""
+            raise ValueError(f"over = {over!r}, but this problem continues in {problem.parameter!r}{known}")
         if u is None or p is None:
             if not isinstance(problem, Started):
                 raise ValueError(

@@ -40,6 +40,9 @@ class Vanishing:
         A test that is less than this part of its terms, or of what it is at the ends of its segment, is zero.
     nothing : float
         A test that is less at both ends of a segment is zero all along, but for rounding.
+    beside, straight : float
+        Distance from a border (in the metric) at which it is seen how its margins pass zero, and part of their changes on both sides by which those
+        of one that passes it smoothly may differ.
     image, loose : float
         Relative distance of a motion from its image under a symmetry up to which it is its own; of one on a mesh, or from one that was simulated.
     """
@@ -50,6 +53,8 @@ class Vanishing:
     double: float = 1e-4
     zero: float = 1e-6
     nothing: float = 1e-9
+    beside: float = 1e-4
+    straight: float = 0.1
     image: float = 1e-5
     loose: float = 1e-3
 

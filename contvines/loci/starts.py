@@ -22,8 +22,6 @@ from .probing import pair_of, position_of
 from .problem import LocusProblem, has_natural_units
 from .settings import VANISHING
 
-BESIDE = 1e-4  # distance from a border (in the metric) at which it is seen how its margins pass zero
-STRAIGHT = 0.1  # part of their changes on both sides by which smooth ones may differ
 PLAIN = 16.0  # parameters up to this size, and down to its inverse, are counted as they are
 
 
@@ -93,15 +91,19 @@ def smooth_margin(problem: Problem, index: int, u: np.ndarray, p: float) -> int:
     wide, m = 1.0 + abs(p), 2 * int(problem.n_multipliers)
     engine = Engine(problem, (p - wide, p + wide), Settings())
     here = engine.start(u, p)
-    around = [] if here is None else [engine.beside(here, step) for step in (BESIDE, -BESIDE)]
+    around = (
+        [] if here is None else [engine.beside(here, step) for step in (VANISHING.beside, -VANISHING.beside)]
+    )
     if here is None or any(point is None for point in around):
         return index
     with np.errstate(invalid="ignore"):
         rises = np.array([point.row[m:] - here.row[m:] for point in around if point is not None])
         bent = np.abs(rises.sum(axis=0)) / np.abs(rises).sum(axis=0)  # 0 of a straight line, 1 of a touch
-    smooth = (np.abs(here.row[m:]) < VANISHING.margin) & (bent <= STRAIGHT)
+    smooth = (np.abs(here.row[m:]) < VANISHING.margin) & (bent <= VANISHING.straight)
     return (
-        index if bent[index] <= STRAIGHT or not smooth.any() else int(np.where(smooth, bent, np.inf).argmin())
+        index
+        if bent[index] <= VANISHING.straight or not smooth.any()
+        else int(np.where(smooth, bent, np.inf).argmin())
     )
 
 
