@@ -249,7 +249,7 @@ class Orbit(Cycle):
         return of_orbit(self, bits, **parameters)
 
     def _repr_html_(self) -> str:
-        from orbits.plots.page import page
+        from orbits.plots.portrait import page
 
         return page(self)
 
@@ -269,8 +269,8 @@ class Orbit(Cycle):
         return animate(self, path, **options)
 
     def scene(self, points: int = 120) -> dict[str, Any]:
-        """The orbit as plain numbers for a page that draws it; see `orbits.plots.scene.scene`."""
-        from orbits.plots.scene import scene
+        """The orbit as plain numbers for a page that draws it; see `orbits.plots.shown.scene`."""
+        from orbits.plots.shown import scene
 
         return scene(self, points)
 

@@ -25,7 +25,7 @@ from orbits.machines.physical.units import counted
 if TYPE_CHECKING:
     import numpy as np
 
-    from orbits.design.estimates import Calibration
+    from orbits.design.calibration import Calibration
     from orbits.machines.base import Model
 
 INEXACT = 0.01  # of the time between impacts: clocks are better, so that data that scatter more are told to be doubtful

@@ -95,7 +95,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Start:
-    """The start-up at the choice, in the study's units; see `orbits.design.start_up`."""
+    """The start-up at the choice, in the study's units; see `orbits.design.transients.start_up`."""
 
     peak: Number
     bare_peak: Number
@@ -129,7 +129,7 @@ class Recommendation:
     cost : float
         As a share.
     theory : dict
-        `orbits.design.first_clearance`; empty where there is none.
+        `orbits.design.references.first_clearance`; empty where there is none.
     places : list of Place
         All that was looked at, ascending; those of the first look are of the study's own machine.
     compared : dict

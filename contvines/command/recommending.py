@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from contvines.survey import Survey
     from contvines.survey.completion import Unbranched
     from contvines.survey.outcomes import Findings
-    from orbits.design.first_clearance import FirstClearance
+    from orbits.design.references import FirstClearance
     from orbits.machines.varying import Varying
 
 PLACES = 13  # values of the first look
@@ -119,13 +119,13 @@ def recommend(
 ) -> Recommendation:
     """The value of what a study leaves open, its clearance, with which the worst response is lowest.
 
-    1. Theory (`orbits.design.first_clearance`) gives a first value, and the range if the study has none.
+    1. Theory (`orbits.design.references.first_clearance`) gives a first value, and the range if the study has none.
     2. A diagram of the study's own machine at each of some values over the range.
     3. Diagrams of all samples between the neighbours of the best, twice; of a value that costs too much in one sample no others.
     4. Beside a jump of the response another value is taken, if it costs little enough.
     5. At the choice: what simulated starts lead to, loads, start-up, a sweep by simulation up and down.
 
-    Of a machine whose flights are integrated 2. and 3. are simulations up and down and from drawn starts (`orbits.design.swept_responses`). Its choice
+    Of a machine whose flights are integrated 2. and 3. are simulations up and down and from drawn starts (`swept_responses`). Its choice
     is looked at by diagrams of all samples: it stands if these know no larger response, to 1 %.
 
     Parameters
@@ -228,7 +228,7 @@ class _Work:
         self.places: dict[float, Place] = {}  # ascending
 
     def _theory(self) -> FirstClearance | None:
-        from orbits.design.first_clearance import first_clearance
+        from orbits.design.references import first_clearance
 
         if self.name != "half_width" or "damping" not in self.model.parameter_names:
             return None
@@ -623,7 +623,7 @@ class _Work:
 
     def _start_up(self, model: Varying, at: float) -> Start:
         from contvines.command.measured import Scales
-        from orbits.design.start_up import start_up
+        from orbits.design.transients import start_up
 
         params = model.vector_at(self.study.parameter, at, self.study.loose)
         scales = Scales(model, params)

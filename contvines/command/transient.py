@@ -19,7 +19,7 @@ from orbits.machines.physical.units import counted
 
 if TYPE_CHECKING:
     from orbits.design.record import Response
-    from orbits.design.start_up import StartUp
+    from orbits.design.transients import StartUp
 
 FARTHEST = 10.0  # metres that an oscillator is pulled aside
 HARDEST = 100_000.0  # m/s^2 that a base is accelerated by
@@ -157,7 +157,7 @@ def _released(study: Study, text: str, within: str | None) -> Told:
 
 
 def _started(study: Study, begin: str | None, over: str | None) -> Told:
-    from orbits.design.start_up import start_up
+    from orbits.design.transients import start_up
 
     model, params = study.model, study.model.vector(study.loose)
     scales = Scales(model, params)

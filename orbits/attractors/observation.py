@@ -1,19 +1,19 @@
-"""What a motion does in the long run: over one cycle where it recurs, else for as long as its statistics need."""
+"""What a motion does in the long run: over one cycle where it recurs, else for as long as its statistics need, with its modulation."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, modulation_of
+from contvines.shared.modulation import BAND, SILENT, modulation_of
 from contvines.shared.motions import wandering
 from orbits.attractors.attractor import Attractor, Observation
-from orbits.attractors.modulation import modulation
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import Simulator
-from orbits.flows.trajectory import Trajectory
+from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.machines.varying import Varying
 from orbits.settings import SIMULATING
 from orbits.simulation.runs import simulator_of
@@ -149,3 +149,45 @@ class _Tally:
         rate = impacts / periods if periods > 0.0 else 0.0
         self.seen = Observation(periods, extremes, speed, rate, seen.contacts + run.chatters)
         return self.seen
+
+
+SAMPLES = 48  # instants; events come on top
+
+
+class Modulation(NamedTuple):
+    """Of a motion, over forcing periods.
+
+    Attributes
+    ----------
+    low, mean, high : float
+        Of the largest displacement in a period, in the machine's own numbers.
+    silent : float
+        Share of the periods without an impact.
+    """
+
+    low: float
+    mean: float
+    high: float
+    silent: float
+
+    @property
+    def measures(self) -> dict[str, float]:
+        """By name."""
+        return dict(zip((*BAND, SILENT), self))
+
+    @property
+    def kind(self) -> str:
+        """See `contvines.shared.modulation.modulation_of`."""
+        return modulation_of(self.measures)
+
+
+def modulation(run: Trajectory) -> Modulation:
+    """Of the whole forcing periods of a run."""
+    periods = max(1, int(run.lasted + SIMULATING.whole))
+    clocks, sizes = run.responses(SAMPLES)
+    place = ((clocks - run.clocks[0]) / TWO_PI).astype(int)
+    tops = np.full(periods, -np.inf)
+    np.maximum.at(tops, place[place < periods], sizes[place < periods])
+    hits = ((run.clocks[1:][run.hits] - run.clocks[0]) / TWO_PI).astype(int)
+    silent = 1.0 - np.unique(hits[hits < periods]).size / periods
+    return Modulation(float(tops.min()), float(tops.mean()), float(tops.max()), float(silent))

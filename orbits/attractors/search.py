@@ -1,18 +1,22 @@
-"""What a machine settles on from one start or many."""
+"""What a machine settles on from one start or many: simulated until it nearly returns, then solved for."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import described, lasting
-from orbits.attractors.recurrence import attracted
+from orbits.contacts.letters import SLIP
 from orbits.flows.protocol import SimulationError, Simulator
+from orbits.flows.solving import solved_nodes
+from orbits.flows.trajectory import TWO_PI, Trajectory
+from orbits.orbit import Orbit
 from orbits.settings import SIMULATING
 from orbits.simulation.runs import simulator_of
+from orbits.words import Word
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
@@ -83,3 +87,225 @@ def different_attractors(
         if not any(one.distance(known) < SIMULATING.same for known in found):
             found.append(one)
     return found
+
+
+SHORT = 4  # forcing periods of the cycles that are looked for first
+FAR = 0.1  # of a cycle from the simulated motion, relative to 1 + states
+DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed longer; t^(-1/2) gives 8
+MOVES = 8  # times that a creeping motion is moved on
+PLAIN = 40  # events up to which the plainest reading is looked for
+
+
+def attracted(
+    simulator: Simulator, transient: float, max_period: int, tolerance: float, patience: int
+) -> Attractor:
+    """What the motion of a simulator leads to: simulated until it returns to itself; see `orbits.attractors.observation.lasting` for the rest.
+
+    Parameters
+    ----------
+    simulator : Simulator
+        Moved on.
+    transient : float
+        Forcing periods (of a self-excited machine: events) simulated first; more each time nothing has returned.
+    max_period : int
+        Longest period looked for, in forcing periods (events per cycle: 25 times as many).
+    tolerance : float
+        Largest difference of points, relative to 1 + points, that counts as a return; later, and at last, what nearly returns and attracts.
+    patience : int
+        How often the transient is prolonged.
+    """
+    waiting, model, begun = simulator.waiting, simulator.model, simulator.time
+    early = transient // waiting.early if waiting.early else 0
+    if early:
+        simulator.skip(early)
+        for longest in sorted({min(SHORT, max_period), max_period}):
+            run = simulator.look(longest)
+            for found in _candidates(simulator, run, longest, tolerance):
+                if _attracts(found[0]):
+                    return _attractor(simulator, run, *found[:2])
+    attempt, moved, length, before = 0, 0, transient - early, None
+    while True:
+        last = attempt >= patience
+        simulator.skip(length)
+        run = simulator.look(max_period)
+        rests = simulator.rests(run, last)
+        if rests:
+            rest = Orbit.at_rest(model, simulator.params) if model.in_cavity else None
+            periods = 0 if rest is None else rest.periods  # what sticks moves with its cavity
+            return Attractor(
+                model, simulator.params, simulator.resting, periods, rest, run, 0, simulator.state.copy()
+            )
+        if rests is None:
+            attempt, length = attempt + 1, waiting.longer * (length or run.lasted)
+            continue
+        if model.in_cavity and not len(run):  # without friction a free motion between the walls has no events
+            return Attractor(model, simulator.params, "sliding", 1, None, run, 0, simulator.state.copy())
+        if moved < MOVES and simulator.move_on(run, max_period):
+            moved += 1
+            continue
+        # next to a bifurcation a motion may recur but for a drift that fades or grows: it is given time as long as it does; one that
+        # stays as it is belongs to a longer cycle, or to narrow bands
+        now = next(iter(returns(run, max_period, SIMULATING.nearly)), None)
+        drifts, before = _drifts(before, now), now
+        waited = patience > 0 and simulator.time - begun < waiting.slow and drifts
+        last = last and not waited
+        for near in (tolerance, SIMULATING.nearly) if last or attempt else (tolerance,):
+            for found in _candidates(simulator, run, max_period, near):
+                if _attracts(found[0]) or (last and found[2] <= SIMULATING.closed):
+                    return _attractor(simulator, run, *found[:2])
+                simulator.push()
+        if run.held or not (len(run) or model.forced):
+            last = True
+        if last or simulator.count > waiting.events:
+            kind = simulator.resting if run.held else "chatter" if run.chatters else simulator.wandering
+            return Attractor(model, simulator.params, kind, 0, None, run, 0, simulator.state.copy())
+        attempt, length = attempt + 1, waiting.longer * (length or run.lasted)
+
+
+Found = tuple[Orbit | int, int, float]
+"""An orbit, or the events of a cycle that no word describes; its forcing periods; how far the motion is from having returned to it."""
+
+
+def recurring(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Orbit | None:
+    """The shortest cycle at the end of a run that its equations confirm and that attracts, or on which the motion is."""
+    for orbit, _, gap in _candidates(simulator, run, max_period, near):
+        if isinstance(orbit, Orbit) and (gap <= SIMULATING.closed or _attracts(orbit)):
+            return plainest(orbit)
+    return None
+
+
+def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Iterator[Found]:
+    """The cycles at the end of a run, the shortest first, as far as their equations confirm them."""
+    if not len(run):
+        yield from _eventless(simulator, run, max_period, near)
+        return
+    if near >= SIMULATING.nearly and run.piled.any():
+        return  # what nearly returns between two rests on a wall is no cycle
+    tried = 0
+    for length, periods, gap in returns(run, max_period, near):
+        if run.piled[-length:].any():
+            yield length, periods, gap
+            return
+        if tried and length % tried:
+            continue
+        tried = length
+        orbit = _solved(run, len(run) - length, len(run), periods, FAR)
+        if orbit is not None:
+            yield orbit, orbit.periods, gap
+
+
+def _attracts(found: Orbit | int) -> bool:
+    """Whether a cycle does not repel; one without a word is only seen because it attracts."""
+    return isinstance(found, int) or not np.any(np.abs(found.multipliers) > 1.0 + SIMULATING.neutral)
+
+
+def _attractor(simulator: Simulator, run: Trajectory, found: Orbit | int, periods: int) -> Attractor:
+    model, params, state = simulator.model, simulator.params, simulator.state.copy()
+    if isinstance(found, int):
+        return Attractor(model, params, "chatter", periods, None, run, found, state)
+    kind = found.flow.kind(found) if len(found.word) else "periodic"
+    return Attractor(model, params, kind, found.periods, plainest(found), run, len(found.word), state)
+
+
+def returns(run: Trajectory, max_period: int, near: float) -> Iterator[tuple[int, int, float]]:
+    """Candidates (events, forcing periods, largest difference relative to 1 + points), shortest first: the last cycle repeats the one before it."""
+    n, labels = len(run), run.labels
+    if n < 2:
+        return
+    clocks, points, forced = run.clocks[1:], run.points, run.model.forced
+    size = 1.0 + float(np.abs(points).max())
+    alike = labels[: n - 1] == labels[-1]
+    turns = (clocks[-1] - clocks[: n - 1]) / TWO_PI
+    whole = np.round(turns) if forced else np.ones(n - 1)
+    if forced:
+        alike &= (np.abs(turns - whole) * TWO_PI < near * size) & (whole >= 1)
+    for j in np.flatnonzero(alike)[::-1]:
+        length, periods = n - 1 - int(j), int(whole[j])
+        if periods > max_period or 2 * length > n:
+            return
+        here, before = slice(n - length, n), slice(n - 2 * length, n - length)
+        if not np.array_equal(labels[here], labels[before]):
+            continue
+        gap = float(np.abs(points[here] - points[before]).max()) / size
+        if forced:
+            late = clocks[here] - clocks[before] - TWO_PI * periods
+            gap = max(gap, float(np.abs(late).max()) / size)
+        if gap < near:
+            yield length, periods, max(gap, np.finfo(float).tiny)
+
+
+def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] | None) -> bool:
+    """Whether two looks have seen one and the same return, with differences that are not alike."""
+    if before is None or now is None or before[:2] != now[:2]:
+        return False
+    return not 1.0 / DRIFTS < now[2] / before[2] < DRIFTS
+
+
+def solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
+    """Events `first` to `last` - 1 of a run as an orbit, if its equations have a real solution within `far` of them; see `polished`."""
+    orbit = _solved(run, first, last, periods, far)
+    return None if orbit is None else plainest(orbit)
+
+
+def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
+    word, nodes = run.cycle(first, last)
+    if run.model.forced:
+        nodes[:, 0] -= TWO_PI * np.floor(nodes[0, 0] / TWO_PI)
+    return polished(Orbit(run.model, word, periods, nodes, run.params), far)
+
+
+def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:
+    """The real orbit with the same word next to a guess, its shortest form; None if there is none within `far` (relative to 1 + states)."""
+    nodes = solved_nodes(orbit.system(symmetric=False), orbit.nodes, orbit.params)
+    if nodes is None:
+        return None
+    moved = nodes - orbit.nodes
+    for entry in orbit.flow.loose(orbit.model, orbit.word):  # shifted as a whole it is the same motion
+        moved[:, entry] -= moved[:, entry].mean()
+    if np.abs(moved).max() > far * (1.0 + np.abs(orbit.nodes[:, 1:]).max()):
+        return None
+    found = Orbit(orbit.model, orbit.word, orbit.periods, nodes, orbit.params)
+    if not found.real:
+        return None
+    root = found.root()
+    return found if root.periods == found.periods and len(root.nodes) == len(found.nodes) else root
+
+
+def plainest(orbit: Orbit) -> Orbit:
+    """The orbit read from the event from which its word is written shortest, never from a slip, in its first forcing period."""
+    word = orbit.word
+    if len(word) > 1:
+        places = [i for i in range(len(word)) if word.letter(i).kind != SLIP] or [0]
+        orbit = orbit.rotate(min(places, key=lambda i: _writing(orbit, i)))
+    if orbit.forced and len(word):  # without events it is read at phase zero
+        orbit.nodes[:, 0] -= TWO_PI * np.floor(orbit.nodes[0, 0] / TWO_PI)
+    return orbit
+
+
+def _writing(orbit: Orbit, place: int) -> tuple[int, str | tuple[str, ...], float]:
+    """Length and text of the word from an event on, then the phase."""
+    word, phase = orbit.word.rotate(place), float(orbit.nodes[place, 0]) % TWO_PI
+    return (len(word.text), word.text, phase) if len(word) <= PLAIN else (0, word.events, phase)
+
+
+def _eventless(simulator: Simulator, run: Trajectory, max_period: int, near: float) -> Iterator[Found]:
+    """The cycles of a motion without events: forced, once per forcing period at phase zero; self-excited, that on which it settles."""
+    model, params = run.model, run.params
+    word = Word((), (simulator.modes,), model.alphabet)
+    if not model.forced:
+        from orbits.flows.page.smooth import cycle_near
+
+        found = cycle_near(model, word, params, simulator.point)
+        orbit = None if found is None else polished(Orbit(model, word, 1, found[None], params))
+        if orbit is not None:
+            yield orbit, 1, 0.0
+        return
+    times = np.arange(np.ceil(run.clocks[0] / TWO_PI), np.floor(run.finish / TWO_PI) + 1.0)
+    states = run.coordinates(times)
+    size = 1.0 + float(np.abs(states).max())
+    for periods in range(1, min(max_period, len(states) - 1) + 1):
+        gap = float(np.abs(states[-1] - states[-1 - periods]).max()) / size
+        if gap <= near:
+            orbit = polished(Orbit(model, word, periods, np.array([[0.0, *states[-1]]]), params))
+            if orbit is not None:
+                yield orbit, orbit.periods, gap

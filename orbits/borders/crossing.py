@@ -16,22 +16,21 @@ import numpy as np
 
 from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends
-from orbits.borders.holding import parameter_unit
 from orbits.borders.neighbours import (
     Begun,
     Grown,
     Place,
     grown,
     margins_of,
+    parameter_unit,
     place_at,
     placed,
     proposals,
     readings,
     turned,
 )
-from orbits.borders.rewriting import edits_at
+from orbits.borders.rewriting import Edit, edits_at
 from orbits.borders.rounds import derivative, rounds_at
-from orbits.borders.sticking import from_rest, to_rest
 from orbits.contacts.letters import HIT, SLIP
 from orbits.cycles.identity import canonical, size_of_one
 from orbits.cycles.rounds import MOST, choices, escape
@@ -39,11 +38,12 @@ from orbits.flows.solving import newton, solved_at
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem, Seed
 from orbits.settings import BORDERING, REPLAYING, SOLVING
+from orbits.starts.find import StartError, find
 from orbits.words.margins import approaches_of
-from orbits.words.rewriting import Edit
 
 if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
+
 
 LONG_WORD = 60  # letters of a word that a line has room for
 NEARER = (
@@ -231,7 +231,7 @@ def _real_part(
 
 def _simulated(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[tuple[Grown, str]]:
     """Attractors that the simulator reaches from the border orbit, a little to both sides of it."""
-    from orbits.borders.settling import settled
+    from orbits.borders.dead_ends import settled
 
     orbit = problem.orbit(u, p)
     here = _key(orbit)
@@ -321,3 +321,50 @@ def _first_event(orbit: Orbit, before: Orbit) -> int:
     whole = 2.0 * np.pi * before.periods
     phases, first = orbit.nodes[:, 0].tolist(), float(before.nodes[0, 0])
     return min(choices, key=lambda i: abs((phases[i] - first + 0.5 * whole) % whole - 0.5 * whole))
+
+
+def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
+    """The stick-slip motion just beyond the slip of a stuck one: closed form, or what the simulator finds."""
+    p = float(point.value)
+    for away in BORDERING.slipping:
+        for side in (1.0, -1.0):
+            q = p + side * away * parameter_unit(problem, p)
+            if Orbit.at_rest(problem.model, problem.values(q)).real:
+                continue
+            values = problem.model.named(problem.values(q))
+            try:
+                orbit = find(problem.model, "ss", 1, None, values)
+            except (StartError, ValueError):
+                continue
+            other = problem.sibling(orbit.word, orbit.periods, orbit.symmetric)
+            u, q = other.reduce(orbit.nodes), other.value(orbit.params)
+            length = orbit.model.natural_units(orbit.params)[0]
+            if (
+                orbit.real
+                and np.ptp(orbit.sample()["w"]) < CLOSE * length
+                and orbit.replay() < REPLAYING.followed
+            ):
+                sign = np.zeros(other.dimension + 1)
+                sign[-1] = side
+                note = "the stuck absorber begins to slip: persistence, the word becomes ss"
+                return [Seed(other, u, q, sign, "border", note, True)]
+    return []
+
+
+def to_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
+    """The stuck motion on the other side of the border at which stick-slip ends, if that is what ends there."""
+    if not problem.model.in_cavity or sorted(problem.word.events) != ["s", "s", "u", "u"]:
+        return []
+    p = float(point.value)
+    unit = parameter_unit(problem, p)
+    for side in (-1.0, 1.0):
+        q = p + side * BORDERING.away[-1] * unit
+        orbit = Orbit.at_rest(problem.model, problem.values(q))
+        beyond = Orbit.at_rest(problem.model, problem.values(p - side * BORDERING.away[-1] * unit))
+        if orbit.margin > 0.0 >= beyond.margin:  # next to nothing reads as zero
+            other = problem.sibling(orbit.word, 1, orbit.symmetric)
+            direction = np.zeros(other.dimension + 1)
+            direction[-1] = side
+            note = "the slips vanish: persistence, the absorber is stuck"
+            return [Seed(other, other.reduce(orbit.nodes), q, direction, "border", note, True)]
+    return []

@@ -6,16 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.borders.holding import parameter_unit
-from orbits.contacts.letters import HIT, STICK, TURN
+from orbits.attractors.search import goes_on
+from orbits.borders.neighbours import parameter_unit
+from orbits.contacts.letters import HIT, SLIP, STICK, TURN
+from orbits.flows.protocol import SimulationError
 from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, EVENTS
+from orbits.simulation.runs import simulator_of
+from orbits.starts.find import polish
 from orbits.words.margins import border_kind, place_of
 
 if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
+
 
 CREEPS = (
     "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
@@ -85,7 +90,7 @@ def _nearly_vanishing(orbit: Orbit) -> str:
 
 def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
     """Where simulation from the border orbit goes, a little to both sides of it."""
-    from orbits.borders.settling import settled
+    # import of own names
 
     told = {}
     for side, name in ((1.0, "above"), (-1.0, "below")):
@@ -123,3 +128,22 @@ def _gives_way_one_way(orbit: Orbit) -> bool:
         return False
     left, right = model.rest.reserves(orbit.params)
     return bool(abs(left - right) > EVENTS.zero * model.friction_acceleration(orbit.params))
+
+
+TRANSIENT = 60  # forcing periods, or events of a self-excited motion
+
+
+def settled(orbit: Orbit, params: np.ndarray) -> tuple[Orbit | None, str]:
+    """The periodic motion that simulation reaches from an orbit's first event with other parameters; else None and the kind of motion, or why not."""
+    word = orbit.word
+    place = next((i for i in range(len(word)) if word.letter(i).kind != SLIP), 0)
+    most = max(2 * orbit.periods, 4)
+    simulator = simulator_of(orbit.model, params)
+    try:
+        simulator.begin(word.rotate(place), orbit.nodes[place])
+        found = goes_on(simulator, TRANSIENT, most)
+    except SimulationError as error:
+        return None, f"is refused ({error})"
+    if found.word is None or not len(found.found.nodes):
+        return None, found.kind
+    return polish(found.found), found.kind

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.borders.holding import Held, parameter_unit
-from orbits.borders.neighbours import Place
+from orbits.borders.neighbours import Held, Place, parameter_unit
+from orbits.borders.rewriting import Edit
 from orbits.cycles.rounds import Rounds, derived, judged
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING
-from orbits.words.rewriting import Edit
 
 
 def rounds_at(border: Place, edit: Edit, unchanged: list[tuple[np.ndarray, float] | None]) -> Rounds | None:

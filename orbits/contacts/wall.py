@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from contvines.shared.near_names import hinted
-from orbits.contacts.changes import Change, Grows, Site, Spot, What
-from orbits.contacts.letters import HIT, STICK, SWITCH, TURN, Letter
+from orbits.contacts.letters import HIT, STICK, SWITCH, TURN, Change, Grows, Letter, Site, Spot, What
 
 FREE, HELD = 0, 1  # modes
 

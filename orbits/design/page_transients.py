@@ -1,23 +1,38 @@
-"""Transients of declared machines: from a state, or from rest while the excitation begins, at once or with a frequency that runs up."""
+"""Transients of declared machines: from a state, or from rest while the excitation begins, at once or with a frequency that runs up.
+
+`coupled_page` is the coupled machine as a declared one, the bare oscillator beside it, for excitations that closed forms do not know: the equations
+are those of `orbits.machines.coupled`, in its own numbers and counted as it counts; the bare oscillator is two further states.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.letters import HIT
-from orbits.design.settling import settled
+from orbits.contacts.wall import Wall
+from orbits.design.record import settled
 from orbits.flows.page.loads import Impacts, friction_work
 from orbits.flows.page.stepper import TWO_PI
 from orbits.flows.protocol import SimulationError
+from orbits.machines.catalogue import usual
+from orbits.machines.page.formulas import Named, States
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.run_up import phase_at_end, run_up
 from orbits.simulation.page import PageTrajectory
 from orbits.simulation.runs import simulator_of
+from orbits.symbols import cos, sin
+
+if TYPE_CHECKING:
+    from orbits.symbols import Plain
+
 
 FIRST, LONGEST = 120, 1920  # forcing periods; as long as nothing has settled, twice as many are looked at
 PER_PERIOD = 80  # samples
@@ -194,3 +209,41 @@ def _sizes(
         state = watch.final
         found = np.maximum(found, np.abs([*rows, state]).max(axis=0))
     return found
+
+
+def _motion(state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:
+    q1, _, v1, v2, bare, bare_rate = state
+    damping = p.mass_ratio * p.damping
+    base = p.mass_ratio * p.forcing * (sin(phase) + p.excitation * damping * p.frequency * cos(phase))
+    pull = p.gravity * sin(p.slope) - contact.floor
+    return (
+        v1,
+        v2,
+        base - damping * v1 - q1 - p.mass_ratio * pull,
+        pull,
+        bare_rate,
+        base - damping * bare_rate - bare,
+    )
+
+
+def _wall(letter: str, side: int) -> Wall:
+    push = {"v1": lambda state, phase, p: -side * p.mass_ratio, "v2": side}
+    return Wall(letter, lambda state, phase, p: 1 - side * (state.q1 - state.q2), push, "restitution")
+
+
+@cache
+def coupled_page() -> Machine:
+    """The machine; its parameters are those of `orbits.Coupled`."""
+    model, given = usual("coupled")
+    floor = DryFriction(
+        "floor", lambda s, phase, p: s.v1 - s.v2, lambda s, phase, p: p.friction * p.gravity * cos(p.slope)
+    )
+    return Machine(
+        name="coupled_and_bare",
+        states=("q1", "q2", "v1", "v2", "bare", "bare_rate"),
+        parameters=model.named(model.vector(given)),
+        phase_rate="frequency",
+        motion=_motion,
+        contacts=[_wall("L", 1), _wall("R", -1), floor],
+        energy=lambda s, phase, p: 0.5 * (s.v1**2 + p.mass_ratio * s.v2**2 + s.q1**2),
+    )

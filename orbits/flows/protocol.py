@@ -53,11 +53,11 @@ import numpy as np
 
 from contvines.core.kernel_functions import KernelFunctions
 from contvines.shared.near_names import did_you_mean
-from orbits.contacts.changes import Change, Site
+from orbits.contacts.letters import Change, Site
 from orbits.flows.trajectory import ModelOf, Trajectory
 
 if TYPE_CHECKING:
-    from orbits.contacts.changes import Mode
+    from orbits.contacts.letters import Mode
     from orbits.machines.varying import Varying
     from orbits.words import Word
 

@@ -12,8 +12,7 @@ from contvines.shared.animations import animated, check_animation, pictures
 from contvines.shared.figures import new_figure, styled
 from contvines.shared.near_names import hinting
 from orbits.plots.portrait import title
-from orbits.plots.scene import scene
-from orbits.plots.shown import LINE
+from orbits.plots.shown import LINE, scene
 
 if TYPE_CHECKING:
     from matplotlib.animation import FuncAnimation

@@ -1,7 +1,8 @@
-"""Phase portrait and time history of one orbit, with its events."""
+"""Phase portrait and time history of one orbit with its events, and what it is in words, for headings and notebooks."""
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -10,9 +11,9 @@ import numpy as np
 
 from contvines.shared.figures import new_figure, styled
 from contvines.shared.near_names import hinting
+from contvines.shared.number_text import complex_figures, figures
 from orbits.machines.notation import sign
-from orbits.plots import panels as panel
-from orbits.plots.shown import quantities, shown
+from orbits.plots.shown import CAVITY, LINE, Shown, quantities, shown
 from orbits.settings import SIMULATING
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from orbits.orbit import Orbit
+
 
 PANELS = ("both", "phase", "history")
 NARROW, LOW = 6.0, 3.4  # inches: below, panels stand under one another, or the phase portrait stands alone
@@ -95,9 +97,9 @@ def portrait(
             figure = drawn[0].get_figure(root=True)
             assert figure is not None
         if panels != "history":
-            panel.phase(drawn[0], seen, orbit.real)
+            phase(drawn[0], seen, orbit.real)
         if panels != "phase":
-            panel.history(drawn[-1], seen, orbit.real)
+            history(drawn[-1], seen, orbit.real)
             key(figure, drawn, axes is None, legend)
     return figure
 
@@ -155,3 +157,78 @@ def key(figure: Figure, panels: Sequence[Axes], own: bool, legend: bool | str) -
     gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
     look = {"ncols": 2, "frameon": False, "fontsize": "small", "borderaxespad": 0.0}
     axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, gap), **look)
+
+
+WALL = "#d9d9d9"
+MARKER = {"color": "white", "mec": "black", "mew": 1.0, "ms": 6, "ls": "none", "zorder": 4}
+
+
+def phase(axes: Axes, seen: Shown, real: bool) -> None:
+    """y against x; what jumps at an event is dashed, a motion that no machine follows dotted."""
+    if seen.limits is not None:
+        ends, reach = seen.limits
+        axes.axhline(0.0, color="0.75", lw=0.7, zorder=0)
+        for wall, end in zip(seen.walls, ends):
+            if (end - wall) * wall > 0.0:
+                axes.axvspan(wall, end, color=WALL, lw=0.0)
+        axes.set(xlim=ends, ylim=reach)
+    for segment in np.unique(seen.segment):
+        here = np.flatnonzero(seen.segment == segment)
+        axes.plot(seen.x[here], seen.y[here], "-" if real else ":", color=LINE, lw=1.6, zorder=2)
+    if not seen.events and np.ptp(seen.x) == np.ptp(seen.y) == 0.0:
+        axes.plot(seen.x[:1], seen.y[:1], "o", color=LINE, zorder=2)
+    for i, event in enumerate(seen.events):
+        before = np.flatnonzero(seen.segment == (i - 1) % len(seen.events))[-1]
+        jump = [seen.x[before], event.x], [seen.y[before], event.y]
+        axes.plot(*jump, color=LINE, lw=0.8, ls=(0, (2, 2)))
+    named: set[str] = set()
+    for event in seen.events:
+        new = event.height is None and event.letter not in named
+        named.add(event.letter)
+        axes.plot(event.x, event.y, event.mark, label=event.called if new else None, **MARKER)
+    axes.set(xlabel=seen.names[0], ylabel=seen.names[1])
+
+
+def history(axes: Axes, seen: Shown, real: bool) -> None:
+    """All curves over time, the walls beside them, and the events."""
+    for wall, edge in zip(seen.walls, seen.edges):  # where a body touches it
+        axes.plot(seen.clock, edge, color=CAVITY, lw=1.0)
+        axes.fill_between(seen.clock, edge, edge - 0.25 * seen.half * np.sign(wall), color=WALL, lw=0.0)
+    for curve in seen.curves.values():
+        line = curve.dashes if real or curve.dashes != "-" else ":"
+        axes.plot(seen.clock, curve.values, line, color=curve.colour, lw=1.0 if line == "--" else 1.6, label=curve.label)  # fmt: skip
+    named: set[str] = set()
+    for event in seen.events:
+        if event.height is not None:
+            label = event.called if event.letter not in named else None
+            axes.plot(event.at, event.height, event.mark, label=label, **MARKER)
+            named.add(event.letter)
+            continue
+        axes.axvline(event.at, color="#bdbdbd", lw=0.7, zorder=0)
+        above = {"xycoords": ("data", "axes fraction"), "ha": "center", "va": "bottom", "fontsize": "small"}
+        axes.annotate(event.letter, (event.at, 1.0), **above)
+    axes.set(xlabel=seen.time, ylabel=seen.unit, xlim=(seen.clock[0], seen.clock[-1]))
+    axes.margins(y=0.02)
+
+
+def page(orbit: Orbit) -> str:
+    """What an orbit is, line by line: its motion in words, its parameters, multipliers and least margin.
+
+    Parameters
+    ----------
+    orbit : Orbit
+    """
+    multipliers = complex_figures(orbit.multipliers[:8])
+    least = min(orbit.margins, key=lambda margin: margin.value, default=None)
+    rows = [
+        ("motion", title(orbit).split("\n")[0]),
+        *quantities(orbit).items(),
+        ("multipliers", multipliers or "-"),
+        ("least margin", "-" if least is None else f"{figures(least.value)} ({least.kind})"),
+    ]
+    body = "".join(
+        f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
+        f"<td style='text-align:left'>{html.escape(text)}</td></tr>"
+        for name, text in rows
+    )
+    return f"<table><tbody>{body}</tbody></table>"

@@ -11,15 +11,13 @@ import numpy as np
 from contvines.shared.even_points import low_discrepancy
 from contvines.shared.motions import Motion
 from contvines.shared.near_names import no_parameter
-from orbits.attractors.motion import SOLVED, Problem, distinct
-from orbits.attractors.recurrence import solved
+from orbits.attractors.search import solved
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.machines.base import Model
 from orbits.machines.notation import STARTS
 from orbits.orbit import Orbit
-from orbits.population.fleet import Fleet
-from orbits.population.sorting import Sorting
+from orbits.population.fleet import SOLVED, Fleet, Problem, Sorting, distinct
 from orbits.problem import rebuild
 from orbits.simulation.runs import simulator_of
 
@@ -159,7 +157,7 @@ class Population:
             `Motion.state` of a chaotic motion.
         p : float
         """
-        from orbits.attractors.embedded import embedded_cycles
+        from orbits.population.cycles import embedded_cycles
 
         simulator = self._simulator(p, state)
         begun = simulator.time
@@ -178,7 +176,7 @@ class Population:
         starts : float array (m, n)
         p : float
         """
-        from orbits.attractors.returning import returning_cycles
+        from orbits.population.cycles import returning_cycles
 
         simulator = self._simulator(p)
         if not simulator.forced:

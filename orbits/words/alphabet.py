@@ -32,7 +32,7 @@ from orbits.contacts.letters import NAMES as KINDS
 from orbits.contacts.wall import FREE, WallLaw
 
 if TYPE_CHECKING:
-    from orbits.contacts.changes import Mode
+    from orbits.contacts.letters import Mode
 
 
 class Watch(IntEnum):

@@ -18,7 +18,7 @@ from orbits.words.alphabet import SHAKEN, Alphabet, shaken
 from orbits.words.reading import WordError, bracket, read
 
 if TYPE_CHECKING:
-    from orbits.contacts.changes import Mode
+    from orbits.contacts.letters import Mode
 
 
 def least_rotation(items: Sequence[Any]) -> int:

@@ -9,9 +9,8 @@ import math
 
 import numpy as np
 
-from orbits.contacts.changes import Change, Site, Spot
 from orbits.contacts.dry_friction import STUCK
-from orbits.contacts.letters import HIT, SLIP
+from orbits.contacts.letters import HIT, SLIP, Change, Site, Spot
 from orbits.flows.native.sampling import flight, slowest
 from orbits.flows.protocol import Motion, Vanishing
 from orbits.machines.base import Model

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.contacts.changes import Change, Site, Spot
+from orbits.contacts.letters import Change, Site, Spot
 from orbits.flows.protocol import Motion, Vanishing
 from orbits.machines.page.machine import Machine
 from orbits.numbers import SMALLEST

@@ -6,7 +6,7 @@ import pytest
 import contvines as cv
 from contvines.graph.persistence import same_graph
 from orbits import Absorber
-from orbits.attractors.recurrence import attracted
+from orbits.attractors.search import attracted
 from orbits.machines.catalogue import stepper as machine
 from orbits.machines.stepping import RATE, TURNS, W
 from orbits.simulation.driver import skip

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.image import imread
 
 from contvines.command.calibrate import calibration_text
-from orbits.design.estimates import Calibration
+from orbits.design.calibration import Calibration
 from tests.orbits.design.laboratory import STUDY, measurement
 
 pytestmark = pytest.mark.slow

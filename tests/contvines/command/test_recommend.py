@@ -18,7 +18,7 @@ from contvines.command.study import read_study
 from contvines.export import json_text
 from contvines.report.answer import BROWSERS, Answer, print_page
 from orbits.attractors.sweeping import sweep
-from orbits.design.first_clearance import first_clearance
+from orbits.design.references import first_clearance
 
 MODEL = """
 units = "si"

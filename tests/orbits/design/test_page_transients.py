@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from orbits import Coupled, Machine, Wall
 from orbits.design.page_transients import page_transient
-from orbits.design.start_up import start_up
+from orbits.design.transients import start_up
 from orbits.symbols import cos
 
 LINEAR = Machine(

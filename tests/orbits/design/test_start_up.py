@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from orbits import Coupled
-from orbits.design.start_up import start_up
+from orbits.design.transients import start_up
 
 MACHINE = Coupled(damping=2.0, mass_ratio=0.02, restitution=0.6, friction=0.05, gravity=0.3)
 

@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import Machine, Wall
-from orbits.plots.track import track
+from orbits.plots.shown import track
 from orbits.symbols import cos
 
 

@@ -1,0 +1,249 @@
+"""Cycles of a machine, stable or not: those that a chaotic motion passes near, and those that Newton's method on the return map reaches from drawn starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from orbits.flows.protocol import SimulationError, Simulator, later
+from orbits.flows.trajectory import Trajectory
+from orbits.orbit import Orbit
+from orbits.settings import SIMULATING, SOLVING
+
+NEAR = 0.1  # largest difference of a return, relative to the spread of the motion
+TRIES = 3  # returns with one and the same list of events
+PER_LENGTH = 200  # nearest returns of each length
+LONGEST_WORD = 400
+PER_PERIOD = (
+    4  # events of the longest cycle that are looked for per period asked for, of a self-excited machine
+)
+
+
+def embedded_cycles(
+    simulator: Simulator, longest: int, solve: Callable[[Trajectory, int, int, int], Any]
+) -> Iterator[Any]:
+    """Cycles next to the nearest returns of a motion, of up to `longest` forcing periods.
+
+    Parameters
+    ----------
+    simulator : Simulator
+        On the motion; it is moved on.
+    longest : int
+        Of a self-excited machine: a fourth of the events of the longest cycle.
+    solve : callable
+        ``(record, first, last, periods)`` -> the cycle next to these events of a record, or None.
+
+    Yields
+    ------
+    Orbit
+        A cycle, as a rule unstable; one may come more than once.
+
+    Notes
+    -----
+    Chaotic motion comes back near each of its unstable cycles again and again, and a short piece between two near states is a guess
+    for Newton's method (D. P. Lathrop and E. J. Kostelich, Phys. Rev. A 40 (1989) 4028).
+    """
+    periods, events = simulator.watched
+    record = simulator.run(periods, events)
+    marks = np.flatnonzero(record.hits) if record.hits.sum() > 1 else np.arange(len(record))
+    if len(marks) < 2:
+        return
+    spread = np.ptp(record.points[marks], axis=0)
+    spread[spread <= 0.0] = 1.0
+    lengths = range(1, longest + 1) if simulator.forced else range(1)
+    for length in lengths:
+        tried: dict[tuple, int] = {}
+        for i, j in _returns(record, marks, spread, length, PER_PERIOD * longest):
+            if record.piled[i:j].any():
+                continue
+            key = _list_of_events(record.labels[i:j].tolist())
+            tried[key] = tried.get(key, 0) + 1
+            if tried[key] > TRIES:
+                continue
+            found = solve(record, i, j, max(length, 1))
+            if found is not None:
+                yield found
+
+
+def _returns(
+    record: Trajectory, marks: np.ndarray, spread: np.ndarray, periods: int, events: int
+) -> list[tuple[int, int]]:
+    """Pairs of marks alike in what they are and so many forcing periods (0: up to so many events) apart, the nearest ones first."""
+    times, points = record.times[marks], record.points[marks]
+    first = np.arange(len(marks))
+    if periods:
+        after = np.searchsorted(times, times + periods)
+        ends = [after - 1, after]
+    else:
+        ends = [first + n for n in range(1, events + 1)]
+    table = []
+    for last in ends:
+        fits = (last < len(marks)) & (last > first)
+        one, other = first[fits], last[fits]
+        size = np.abs((points[other] - points[one]) / spread).max(axis=1, initial=0.0)
+        if periods:
+            size = np.maximum(size, 2.0 * np.pi * np.abs(times[other] - times[one] - periods))
+        size[record.labels[marks[one]] != record.labels[marks[other]]] = np.inf
+        table.append(np.column_stack([marks[one], marks[other], size]))
+    rows = np.concatenate(table)
+    rows = rows[np.argsort(rows[:, 2], kind="stable")][:PER_LENGTH]
+    return [(int(i), int(j)) for i, j, size in rows if size < NEAR and j - i <= LONGEST_WORD]
+
+
+def _list_of_events(events: Sequence[int]) -> tuple:
+    """The events and modes, the same wherever the cycle is begun."""
+    return min(tuple(events[k:]) + tuple(events[:k]) for k in range(len(events)))
+
+
+ITERATIONS = 12
+LONGEST = 0.2  # of the box: longer steps are shortened
+SHORTER = 3  # times a step is halved where the motion does not come back
+BEYOND = 0.5  # of the box: so far outside nothing is looked for
+
+
+def fixed_point(
+    step: Callable[[np.ndarray], np.ndarray], x: np.ndarray, box: np.ndarray, hard: np.ndarray
+) -> np.ndarray | None:
+    """A point with ``step(x) = x``, by Newton's method with differences; None if none is reached.
+
+    Parameters
+    ----------
+    step : callable
+        The map; NaN where there is no image.
+    x : float array (d,)
+        Where to begin.
+    box : float array (d, 2)
+        Smallest and largest value of each coordinate of the starts.
+    hard : bool array (d,)
+        Which limits of the box cannot be passed (walls).
+    """
+    low, high = box.T
+    size = high - low
+    middle, outside = 0.5 * (low + high), (0.5 + BEYOND) * size
+    shift = SIMULATING.nudge * size
+    one = np.eye(len(size))
+    matrix = np.empty_like(one)
+    x = np.array(x, dtype=float)
+    image = step(x)
+    for _ in range(ITERATIONS):
+        rest = x - image
+        far = float(np.abs(rest / size).max())
+        if far < SOLVING.scaled:
+            return x
+        if not far < np.inf:
+            return None
+        for j, moved in enumerate(np.where(x > middle, -shift, shift)):  # into the box
+            there = x.copy()
+            there[j] += moved
+            matrix[:, j] = (step(there) - image) / moved
+        change = _solved(matrix - one, rest)
+        length = float(np.abs(change / size).max())
+        if not length < np.inf:
+            return None
+        change *= min(1.0, LONGEST / max(length, LONGEST))
+        there = x
+        for _ in range(SHORTER):
+            there = x + change
+            if hard.any():
+                there = np.where(hard, np.clip(there, low, high), there)
+            image = step(there)
+            if not np.isnan(image[0]):
+                break
+            change *= 0.5
+        x = there
+        if (np.abs(x - middle) > outside).any():
+            return None
+    return None
+
+
+def _solved(matrix: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    try:
+        return np.linalg.solve(matrix, rest)
+    except np.linalg.LinAlgError:
+        return np.full(len(rest), np.nan)
+
+
+Solve = Callable[[Trajectory, int, int, int], Orbit | None]
+"""(record, first, last, periods) -> the cycle next to these events of a record, or None."""
+
+WARM = (
+    3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
+)
+EVENTS = 400  # in a forcing period at most
+
+
+def returning_cycles(
+    simulator: Simulator,
+    starts: np.ndarray,
+    box: np.ndarray,
+    longest: int,
+    solve: Solve,
+) -> Iterator[Orbit]:
+    """Cycles of up to `longest` forcing periods with events, each once.
+
+    Parameters
+    ----------
+    simulator : Simulator
+        Of a forced machine.
+    starts : float array (n, 1 + d)
+        Phase and coordinates.
+    box : float array (1 + d, 2)
+        Smallest and largest value of these.
+    longest : int
+    solve : callable
+        ``(record, first, last, periods)`` -> the cycle next to these events of a record, or None.
+
+    Yields
+    ------
+    Orbit
+        A cycle, which may be unstable.
+
+    Notes
+    -----
+    A cycle is a fixed point of the n-th iterate of the return map, and the points from which Newton's method reaches it fill a far
+    larger part of the box than those from which the motion itself settles on it (of an unstable one: none). A machine with a mirror is
+    looked at every half period and mirrored, so that a symmetric cycle of odd period takes half as long.
+    """
+    box = box[1:]
+    length, size = (0.5 if simulator.mirrored else 1.0), box[:, 1] - box[:, 0]
+    known = np.empty((0, len(box)))
+
+    def ahead(x: np.ndarray, count: int) -> np.ndarray:
+        """So many lengths later."""
+        there = later(simulator, x, count * length)
+        return simulator.image(there) if length == 0.5 and count % 2 else there
+
+    for start in starts:
+        time = float(start[0]) / (2.0 * np.pi)
+        begin = later(simulator, start[1:], np.floor(time) + WARM - time, time)
+        if not np.isfinite(begin).all():
+            continue
+        for count in range(1, round(longest / length) + 1):
+            x = fixed_point(lambda y, n=count: ahead(y, n), begin, box, simulator.hard)
+            if x is None or np.any(np.abs((known - x) / size).max(axis=1) < SIMULATING.same):
+                continue
+            points = [x]
+            for _ in range(count - 1):
+                points.append(ahead(points[-1], 1))
+            known = np.concatenate([known, points])
+            again = (
+                np.abs((np.array(points[1:]).reshape(-1, len(x)) - x) / size).max(axis=1) < SIMULATING.same
+            )
+            prime = int(np.argmax(again)) + 1 if again.any() else count
+            found = _cycle_through(simulator, x, prime if prime % 2 or length == 1.0 else prime // 2, solve)
+            if found is not None:
+                yield found
+
+
+def _cycle_through(simulator: Simulator, x: np.ndarray, periods: int, solve: Solve) -> Orbit | None:
+    """The cycle through a point; None if it is none that can be continued."""
+    try:
+        simulator.start(x)
+        record = simulator.run(float(periods), EVENTS * periods)
+    except SimulationError:
+        return None
+    if not record.whole or not len(record) or record.piled.any():
+        return None
+    return solve(record, 0, len(record), periods)
