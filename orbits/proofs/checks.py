@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.proofs.balls import Given, ball
-from orbits.proofs.equations import MIRRORED, Motif
+from orbits.proofs.equations import MIRRORED, Motif, Varying
 from orbits.proofs.flights import MOVING, parameter_names
 from orbits.proofs.obstacles import ProofError
-from orbits.proofs.varying import Varying
 from orbits.settings import PROVING
 
 if TYPE_CHECKING:

@@ -7,17 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
-from orbits.proofs.balls import library
+from orbits.proofs.balls import ball, library
 from orbits.proofs.elimination import Blocks
 from orbits.proofs.flights import MOVING, WALLS, Flights, wall
-from orbits.proofs.jets import partial, variables
+from orbits.proofs.jets import partial, power, variables
 
 if TYPE_CHECKING:
     from flint import arb
 
-    from orbits.proofs.jets import Number, Row
+    from orbits.proofs.jets import Jet, Number, Row
+
 
 MIRRORED = {"L": "R", "R": "L"}
 
@@ -181,3 +182,30 @@ class System:
             system.corner.append([partial(value, 2 * k + j) for j in range(m)])
             system.c.append(0)
         return system
+
+
+@dataclass(frozen=True)
+class Varying:
+    """A parameter, and what follows it: number j is ``factor * parameter**exponent``.
+
+    Attributes
+    ----------
+    name : str
+        As people call it; for a machine in physical units a quantity, counted in its unit.
+    numbers : dict of str to (str, int or float)
+        By the machine's number: the factor, an exact decimal, and the exponent.
+    """
+
+    name: str
+    numbers: Mapping[str, tuple[str, int | float]]
+
+    @overload
+    def at(self, value: arb) -> dict[str, arb]: ...
+    @overload
+    def at(self, value: Jet) -> dict[str, Jet]: ...
+    def at(self, value: Number) -> Mapping[str, Number]:
+        """The numbers that move, at a value of the parameter (a ball or a jet)."""
+        return {
+            number: power(value, exponent) if factor == "1" else ball(factor) * power(value, exponent)
+            for number, (factor, exponent) in self.numbers.items()
+        }

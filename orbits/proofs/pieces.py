@@ -10,17 +10,14 @@ import numpy as np
 
 from orbits.proofs.admissible import examine
 from orbits.proofs.balls import Given, as_balls, ball, decimal, library, precision
-from orbits.proofs.certificates import Entry, certificate, tile_box
 from orbits.proofs.checks import check_symmetry
-from orbits.proofs.crossing import orbit_at, orbit_entry
 from orbits.proofs.enclosing import Box, refine
-from orbits.proofs.equations import Motif
+from orbits.proofs.equations import Motif, Varying
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
-from orbits.proofs.proof import Proof
+from orbits.proofs.proof import Entry, Proof, certificate, tile_box
 from orbits.proofs.special import Family
 from orbits.proofs.stability import stable_in_basis
-from orbits.proofs.tiles import Along, Tile, lay
-from orbits.proofs.varying import Varying
+from orbits.proofs.tiles import Along, Tile, lay, orbit_at, orbit_entry
 from orbits.proofs.wording import SAYS, said, spelling
 from orbits.settings import PROVING
 
@@ -28,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from flint import arb
+
 
 BITS = 192
 FIRST = 1 / 16  # first tile's share of the piece
@@ -324,3 +322,67 @@ def _box_of(entry: Entry) -> Box:
 
 def _wider(value: arb) -> arb:
     return value + library().arb(0, value.rad() * ROOM)
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """A branch, stretch by stretch between its special points.
+
+    Attributes
+    ----------
+    pieces : tuple of Piece
+    places : tuple of (int, int)
+        The points of the branch between which each of them lies.
+    """
+
+    pieces: tuple[Piece, ...]
+    places: tuple[tuple[int, int], ...] = ()
+    kind: str = field(default="branch", init=False)
+
+    @property
+    def existence(self) -> bool:
+        """Whether every stretch is covered."""
+        return bool(self.pieces) and all(piece.existence for piece in self.pieces)
+
+    @property
+    def real(self) -> bool | None:
+        """The verdict on all stretches, None where they differ."""
+        return _common([piece.real for piece in self.pieces])
+
+    @property
+    def stable(self) -> bool | None:
+        """The verdict on all stretches, None where they differ."""
+        return _common([piece.stable for piece in self.pieces])
+
+    @property
+    def radius(self) -> float | None:
+        """The largest radius of a tile."""
+        return max((piece.radius for piece in self.pieces if piece.radius is not None), default=None)
+
+    @property
+    def obstacles(self) -> tuple[Obstacle, ...]:
+        """Those of all stretches."""
+        return tuple(obstacle for piece in self.pieces for obstacle in piece.obstacles)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The pieces as JSON."""
+        return {
+            "kind": "branch",
+            "existence": self.existence,
+            "real": self.real,
+            "stable": self.stable,
+            "radius": self.radius,
+            "nodes": [],
+            "pieces": [piece.to_dict() for piece in self.pieces],
+        }
+
+    def certificate(self) -> list[dict[str, Any]]:
+        """The certificates of the pieces of which something is proved."""
+        return [piece.certificate() for piece in self.pieces if piece.count]
+
+    def __str__(self) -> str:
+        return "\n".join(str(piece) for piece in self.pieces) or "no stretch of the branch to prove"
+
+
+def _common(verdicts: list[bool | None]) -> bool | None:
+    return verdicts[0] if verdicts and len(set(verdicts)) == 1 else None

@@ -1,29 +1,42 @@
-"""Proofs of orbits and of special points, from their floating-point versions."""
+"""Proofs of orbits and of special points, from their floating-point versions.
+
+The stuck absorber rides with the cavity, and all that has to be proved is that friction holds: the push against friction is a harmonic of
+the forcing about the bias, so it is largest in closed form.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from orbits.proofs.admissible import NOTHING, Zero, examine
 from orbits.proofs.balls import Given, as_balls, ball, decimal, precision
-from orbits.proofs.certificates import conditions
 from orbits.proofs.checks import check_parameters, check_symmetry, mirrored, motif_of, require_mirror
-from orbits.proofs.crossing import crossing
-from orbits.proofs.enclosing import enclose, refine
-from orbits.proofs.equations import Motif, System
+from orbits.proofs.enclosing import Box, enclose, refine
+from orbits.proofs.equations import Motif, System, Varying
+from orbits.proofs.jets import sqrt
 from orbits.proofs.merging import merged
 from orbits.proofs.obstacles import Obstacle, ProofError, Remedy, Step
-from orbits.proofs.proof import Proof
-from orbits.proofs.resting import AtSlip
-from orbits.proofs.special import AtBorder, AtMultiplier, AtPair, Family, Normal, Vanishing
+from orbits.proofs.proof import Proof, conditions
+from orbits.proofs.special import (
+    AtBorder,
+    AtMultiplier,
+    AtPair,
+    AtParameter,
+    Family,
+    Normal,
+    Vanishing,
+    eigenpair,
+    eigenvector,
+    touching_phase,
+    vanishing_margin,
+)
+from orbits.proofs.special import chain as maps_of
 from orbits.proofs.stability import basis_texts, stable
-from orbits.proofs.starting import chain as maps_of
-from orbits.proofs.starting import eigenpair, eigenvector, touching_phase, vanishing_margin
-from orbits.proofs.varying import Varying
+from orbits.proofs.tiles import crossing
 from orbits.settings import PROVING
 
 if TYPE_CHECKING:
@@ -32,6 +45,9 @@ if TYPE_CHECKING:
     from flint import arb
 
     from orbits.proofs.elimination import Solution
+    from orbits.proofs.flights import Flights
+    from orbits.proofs.jets import Number, Row
+
 
 MOST_BITS = 6144
 FLOATING = 64  # bits where floats will do
@@ -271,3 +287,50 @@ def _with_bits(attempt: Callable[[int], Proof], proof: Proof, bits: int, given: 
         bits *= 2
         if tries >= 2 or bits > MOST_BITS:
             return best
+
+
+class AtSlip(AtParameter):
+    """Where friction just holds the stuck absorber; unknowns the phase at which the push is largest, and the parameter."""
+
+    def __init__(self, family: Family, side: int) -> None:
+        super().__init__(family)
+        self.k = self.length = 1
+
+        def row(z: Row, extras: Row) -> Number:
+            flights = self.prepare(extras)
+            return flights.limit[side] - side * flights.resting(z[0])[0]
+
+        self.borders = ((0, row),)
+
+    def block(self, i: int, shared: Flights, z: Row, following: Row, extras: Row) -> list[Any]:
+        """The push is at its extremum."""
+        return [shared.resting(z[0])[1]]
+
+    def closing(self, z: Row, extras: Row) -> list[Any]:
+        """There is no map to close."""
+        return list(z)
+
+
+def prove_stuck(machine: str, parameters: Mapping[str, Given], bits: int = 160) -> Proof:
+    """Whether the absorber can stay stuck; the motion itself exists in closed form, alone in its linear equations."""
+    motif = Motif(machine, (), (), 1, False, False)
+    given = {name: decimal(value) for name, value in parameters.items()}
+    with precision(bits):
+        p = {name: ball(value) for name, value in given.items()}
+        flights = motif.flights(p)
+        size = push_amplitude(flights)
+        reserves = [flights.limit[side] - side * flights.bias - size for side in (1, -1)]
+        real = True if all(r > 0 for r in reserves) else False if any(r < 0 for r in reserves) else None
+        # the oscillator's free motion decays by exp(-alpha T); the shaken cavity has none
+        stable = True if not flights.moving_cavity or p["damping"] > 0 else None
+    proof = Proof("orbit", motif, given, box=Box([], []), real=real, stable=stable, bits=bits)
+    if real is None:
+        return replace(proof, obstacles=(Obstacle(Step.ADMISSIBILITY, Remedy.BORDER, 0, "stick"),))
+    return replace(proof, broken=("stick", 0)) if real is False else proof
+
+
+def push_amplitude(flights: Flights) -> Number:
+    """Amplitude of the push on the stuck absorber, from two phases a quarter apart."""
+    quarter = ball(1).atan() * 2
+    one, other = (flights.resting(phase)[0] - flights.bias for phase in (ball(0), quarter))
+    return sqrt(one * one + other * other)

@@ -12,16 +12,13 @@ from contvines.shared.near_names import no_parameter
 from orbits.cycles.identity import root_orbit
 from orbits.flows.catalogue import flow_of
 from orbits.proofs.balls import Given, decimal
-from orbits.proofs.branches import Pieces
 from orbits.proofs.checks import check_symmetry, motif_of
-from orbits.proofs.equations import Motif
+from orbits.proofs.equations import Motif, Varying
 from orbits.proofs.flights import parameter_names
 from orbits.proofs.obstacles import ProofError
-from orbits.proofs.pieces import prove_piece
+from orbits.proofs.pieces import Pieces, prove_piece
 from orbits.proofs.proof import Proof
-from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special
-from orbits.proofs.resting import prove_stuck
-from orbits.proofs.varying import Varying
+from orbits.proofs.prove import MULTIPLIERS, prove_orbit, prove_special, prove_stuck
 from orbits.settings import PROVING
 from orbits.words import Word
 from orbits.words.margins import margin_name

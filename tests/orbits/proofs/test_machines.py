@@ -114,7 +114,7 @@ def test_decimals_only():
 
 def test_the_stuck_absorber_is_inside_the_cavity_and_stable_by_damping_alone():
     """Without the absorber's mass nothing damps the oscillator (its drag is mass ratio times damping); beyond a wall nobody sticks."""
-    from orbits.proofs.resting import prove_stuck
+    from orbits.proofs.prove import prove_stuck
 
     given = {
         "forcing": "0.1", "damping": "1", "excitation": "1", "restitution": "0.7", "friction": "0.5",

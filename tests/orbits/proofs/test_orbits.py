@@ -73,7 +73,7 @@ def test_an_orbit_that_no_machine_follows_is_proved_virtual():
 def test_on_the_border_neither_sign_is_proved():
     """At C = a exactly the stuck absorber is about to slip: in exact decimals, so no arithmetic can tell more."""
     machine = Absorber(restitution=0.5, friction=0.5, gravity=0.25, mass_ratio=0.0)
-    from orbits.proofs.resting import prove_stuck
+    from orbits.proofs.prove import prove_stuck
 
     values = {"restitution": "0.5", "friction": "0.5", "gravity": "0.25", "mass_ratio": "0", "frequency": "1"}
     assert machine.friction_acceleration(machine.vector({"amplitude": 0.125})) == 0.125
