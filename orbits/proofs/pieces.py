@@ -14,10 +14,10 @@ from orbits.proofs.checks import check_symmetry
 from orbits.proofs.enclosing import Box, refine
 from orbits.proofs.equations import Motif, Varying
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
-from orbits.proofs.proof import Entry, Proof, certificate, tile_box
+from orbits.proofs.proof import Entry, Proof, certificate
 from orbits.proofs.special import Family
 from orbits.proofs.stability import stable_in_basis
-from orbits.proofs.tiles import Along, Tile, lay, orbit_at, orbit_entry
+from orbits.proofs.tiles import Along, Tile, lay, orbit_at, orbit_entry, tile_box
 from orbits.proofs.wording import SAYS, said, spelling
 from orbits.settings import PROVING
 

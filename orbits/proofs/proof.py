@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from platform import python_version
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from orbits.proofs.balls import ball, library, precision, texts
 from orbits.proofs.enclosing import Box
@@ -18,9 +18,6 @@ from orbits.proofs.flights import parameter_names
 from orbits.proofs.obstacles import Obstacle
 from orbits.proofs.special import Vanishing
 from orbits.proofs.wording import SAYS, said, spelling
-
-if TYPE_CHECKING:
-    from orbits.proofs.tiles import Tile
 
 
 @dataclass(frozen=True)
@@ -194,20 +191,15 @@ def plain(text: str) -> str:
 def orbit_box(motif: Motif, box: Box, value: str = "1", basis: Sequence[Sequence[str]] = ()) -> Entry:
     """A proved orbit, where the parameter (if one varies) has this value."""
     nodes = [[[mid, "0", rad] for mid, rad in node[: motif.node]] for node in box.nodes]
-    return _entry(motif, nodes, [plain(value), "0", "0"], "0", basis)
-
-
-def tile_box(motif: Motif, tile: Tile) -> Entry:
-    """A tile."""
-    return _entry(motif, tile.nodes, tile.parameter, tile.half, tile.basis)
+    return box_entry(motif, nodes, [plain(value), "0", "0"], "0", basis)
 
 
 def resting_box(motif: Motif, value: str = "1", half: str = "0") -> Entry:
     """The stuck absorber at a value of the parameter, or on an interval of it."""
-    return _entry(motif, [], [plain(value), "0" if half == "0" else "1", "0"], half, ())
+    return box_entry(motif, [], [plain(value), "0" if half == "0" else "1", "0"], half, ())
 
 
-def _entry(
+def box_entry(
     motif: Motif,
     nodes: Sequence[Sequence[Sequence[str]]],
     parameter: list[str],

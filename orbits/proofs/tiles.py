@@ -25,7 +25,7 @@ from orbits.proofs.elimination import Singular, solve
 from orbits.proofs.enclosing import Box, enclose, refine
 from orbits.proofs.jets import Jet, partial
 from orbits.proofs.obstacles import Obstacle, Remedy, Step
-from orbits.proofs.proof import Entry, orbit_box, resting_box, tile_box
+from orbits.proofs.proof import Entry, box_entry, orbit_box, resting_box
 from orbits.proofs.special import AtParameter, Family, Normal
 from orbits.proofs.stability import away_from_one, basis_texts
 
@@ -154,6 +154,11 @@ def lay(along: Along, center: str, half: str, z: Nodes, value: arb) -> Tile | No
     except Singular:
         pass
     return None
+
+
+def tile_box(motif: Motif, tile: Tile) -> Entry:
+    """A tile as a certificate has it."""
+    return box_entry(motif, tile.nodes, tile.parameter, tile.half, tile.basis)
 
 
 def _levelled(radii: list[arb]) -> list[arb]:
