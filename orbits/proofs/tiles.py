@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from flint import arb
 
     from orbits.proofs.elimination import Nodes, Solution
+    from orbits.proofs.equations import Motif
     from orbits.proofs.jets import Number
 
 
