@@ -16,8 +16,18 @@ from ..graph.proving import stretches
 from ..graph.shortening import motion_name, told_apart
 from .curves import Curve
 from .figures import pixels, root
-from .insets import Region, add_inset, crowded_region, find_room, outlines
-from .labels import Box, Label, dense, grouped, place_labels
+from .labels import (
+    Box,
+    Label,
+    Region,
+    add_inset,
+    crowded_region,
+    dense,
+    find_room,
+    grouped,
+    outlines,
+    place_labels,
+)
 from .legends import Key, hold_legend
 from .style import PROVED, STATE_COLORS, STATE_OF, STATES, UNRESOLVED, line_of, mark_of
 
