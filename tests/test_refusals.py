@@ -11,7 +11,7 @@ import scipy.sparse as sp
 import contvines as cv
 import orbits
 from contvines.continuation.settings import Settings
-from contvines.problems.parameters import ParameterSet
+from contvines.problems.functions import ParameterSet
 from orbits import Absorber, Coupled, DryFriction, Machine, Switch, Wall
 from orbits import multiple_scales as ms
 from orbits.attractors import sweep

@@ -9,8 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from ..problems.abilities import Adaptive, Blurred, Doubtful
-from ..problems.interpreted import Linearised
+from ..problems.abilities import Adaptive, Blurred, Doubtful, Linearised
 from ..problems.protocol import array_of
 from ..shared.floating_point import EPSILON
 from .located import Located

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..flows.settings import FlowSettings
-from ..problems.starts_in_box import StartsInBox
+from ..problems.populations import StartsInBox
 from ..shared.floating_point import TINY
 from ..shared.motions import Motion, mean_of_blocks, wandering
 from .settings import MAPS

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ..problems.blas import dot, position
+from ..problems.dense import dot, position
 from .layout import Metric
 
 

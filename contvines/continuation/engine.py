@@ -281,7 +281,7 @@ class Engine(Rows):
                 return found
         found, p = None, min(max(p, self.lower), self.upper)
         if tangent is None and not self.compiled and isinstance(self.problem, Rough):
-            from ..problems.approach import approach
+            from ..problems.scouting import approach
 
             near = approach(self.problem, u, p)
             found = None if near is None else self.at_value(near, p)

@@ -13,7 +13,7 @@ from ..core.library import address
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ..problems.parameters import Parameters
+    from ..problems.functions import Parameters
 
 _FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_int64, *[ctypes.c_void_p] * 4)
 

@@ -10,7 +10,7 @@ from ..core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 
 if TYPE_CHECKING:
-    from ..problems.parameters import ParameterSet
+    from ..problems.functions import ParameterSet
     from .collocation import Rule
     from .compiled import CompiledRates
 

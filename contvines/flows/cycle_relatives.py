@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from ..problems.images import in_order
 from ..problems.protocol import Embedding, Symmetry
+from ..problems.symmetries import in_order
 from . import mesh
 from .cycle_borders import CycleBorders
 

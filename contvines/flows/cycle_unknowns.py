@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from ..problems.parameters import Parametrised
+from ..problems.functions import Parametrised
 from ..problems.protocol import ProblemDefaults, Symmetry
 from ..problems.scales import Scales
 from .collocation import Rule, rule

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..problems.functions import NotEvaluable
-from ..problems.parameters import ParameterSet
+from ..problems.functions import NotEvaluable, ParameterSet
 
 if TYPE_CHECKING:
-    from ..problems.parameters import Parameters
+    from ..problems.functions import Parameters
 
 FINER = 4  # places between two nodes at which the smallest value is looked for first
 ROUNDS = 3  # each of which looks ...

@@ -14,7 +14,7 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean
 
 if TYPE_CHECKING:
-    from ..problems.parameters import Parameters
+    from ..problems.functions import Parameters
 
 WORDS = {
     "exp": np.exp,

@@ -14,16 +14,15 @@ from contvines.shared.floating_point import COMPLEX_STEP
 
 from ..problems.derivatives import Differentiated, agreeing
 from ..problems.differences import along
-from ..problems.functions import NotEvaluable
-from ..problems.large.colouring import Colouring
-from ..problems.parameters import ParameterSet
+from ..problems.functions import NotEvaluable, ParameterSet
+from ..problems.large.jacobians import Colouring
 from .compiled import CompiledRates
 from .events import Events
 from .settings import FlowSettings
 from .sparse import LARGE, found_sparsity
 
 if TYPE_CHECKING:
-    from ..problems.parameters import Parameters
+    from ..problems.functions import Parameters
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so a hundredfold rounding of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))

@@ -11,9 +11,9 @@ from ..problems.protocol import Problem
 
 if TYPE_CHECKING:
     from ..problems.algebraic import AlgebraicProblem
-    from ..problems.images import Image
     from ..problems.populations import Population
     from ..problems.protocol import BorderPoint, Seed
+    from ..problems.symmetries import Image
     from .collocation import Rule
     from .events import Events
     from .field import Field

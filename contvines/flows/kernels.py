@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from ..core.library import native
+from ..problems.dense import assign
 from ..problems.functions import NotEvaluable
-from ..problems.interpreted import assign
 from ..problems.protocol import Kernels
 from .core import CoreCycle, CoreRates
 from .elimination import condense, multipliers_of, solve_collocation
@@ -18,7 +18,7 @@ from .sparse import SparseEquations, leading_multipliers, solve_bordered
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-    from ..problems.parameters import ParameterSet
+    from ..problems.functions import ParameterSet
     from .collocation import Rule
     from .field import Field
 

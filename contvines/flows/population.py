@@ -13,8 +13,8 @@ from contvines.shared.floating_point import ROUNDED, TINY
 from contvines.shared.motions import Motion, mean_of_blocks, wandering
 
 from ..problems.functions import NotEvaluable
+from ..problems.populations import StartsInBox
 from ..problems.registry import rebuild
-from ..problems.starts_in_box import StartsInBox
 from .attractors import AtRest, Escaped, Irregular, Place, Stopped, last_round
 from .field import Field
 from .flow import Flow
@@ -23,7 +23,7 @@ from .settings import FlowSettings
 
 if TYPE_CHECKING:
     from ..problems.algebraic import AlgebraicProblem
-    from ..problems.parameters import ParameterSet
+    from ..problems.functions import ParameterSet
     from ..problems.protocol import Problem
     from .cycle_mesh import CycleMesh
     from .orbit import CycleOrbit

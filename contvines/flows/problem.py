@@ -11,12 +11,11 @@ from contvines.shared.floating_point import TINY
 from contvines.shared.near_names import hinting
 
 from ..problems.abilities import Populated, Started
-from ..problems.functions import NotEvaluable, difference_text
-from ..problems.images import image_map, refuse_no_mirror
-from ..problems.parameters import ParameterSet
+from ..problems.functions import NotEvaluable, ParameterSet, difference_text
 from ..problems.protocol import Seed
 from ..problems.registry import addresses
 from ..problems.scales import flat_start, given_scale
+from ..problems.symmetries import image_map, refuse_no_mirror
 from . import mesh
 from .attractors import SAMPLES, Stopped, recurrence
 from .collocation import rule

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator
 
 from contvines.shared.floating_point import ROUNDED
 
-from ..problems.large.colouring import Colouring
+from ..problems.large.jacobians import Colouring
 from ..problems.large.sparse_factors import SuperLUFactors
 from ..problems.settings import LINEAR
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from scipy.sparse import csc_array
 
+    from .functions import Operator
     from .populations import Population
     from .protocol import BorderPoint, Problem, Seed
 
@@ -164,6 +165,18 @@ class Provable(Protocol):
 
 
 @runtime_checkable
+class Linearised(Protocol):
+    """Of the workspace of problems made of Python callables: F, F_u and F_p."""
+
+    @property
+    def residual(self) -> np.ndarray: ...
+    @property
+    def jacobian(self) -> np.ndarray | csc_array | Operator: ...
+    @property
+    def derivative(self) -> np.ndarray: ...
+
+
+@runtime_checkable
 class Blurred(Protocol):
     """Tells by how much rounding of its linearisation moves a raw eigenvalue."""
 
@@ -182,7 +195,7 @@ class Doubtful(Protocol):
 
 @runtime_checkable
 class Nearing(Protocol):
-    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.nearness`.
+    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.spectra`.
 
     `signed`: whether the sign of the determinant is known. `closer` hands out the same problem with eigenvalues.
     """

@@ -10,33 +10,32 @@ import numpy as np
 from contvines.shared.near_names import hinting
 
 from .callables import CallableProblem
-from .conditions import Conditions
 from .dense import DenseWork
 from .derivatives import Differentiated
-from .functions import Operator, Sparse, readonly
-from .images import image_map, images_of, refuse_no_group, smallest_image
-from .nearness import NEAREST
-from .outputs import Outputs
-from .parameters import ParameterSet
+from .functions import Operator, Outputs, ParameterSet, Sparse, readonly
 from .pieces import Pieces
-from .protocol import Seed, Symmetry
+from .protocol import Symmetry
 from .registry import addresses, find_callables
 from .scales import flat_start, given_scale
-from .simulated import SimulatedFlow
-from .spectra import WATCHED, reference_of, rounding, vectors_of, watched, without_roundoff
+from .settings import SIMULATION
+from .spectra import NEAREST, WATCHED, rounding, vectors_of, without_roundoff
+from .symmetries import image_map, images_of, refuse_no_group, smallest_image
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from scipy.sparse import csc_array
 
-    from .interpreted import Linearised
-    from .large.sparse_work import SparseWork
-    from .protocol import BorderPoint
+    from .abilities import Linearised
+    from .conditions import Conditions
+    from .large.sparse import SparseWork
 
 ALL_ZERO = np.zeros(NEAREST, dtype=complex)
+PATIENCE = 4000  # steps of the integration of one start
+SPREAD = 2.0  # of the starts, in sizes of the unknowns
+LARGEST = 60  # unknowns of equations that are integrated
 
 
-class AlgebraicProblem(SimulatedFlow, CallableProblem):
+class AlgebraicProblem(CallableProblem):
     """Solutions of F(u, p) = 0, or equilibria of u' = F(u, p).
 
     Parameters
@@ -130,7 +129,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         }
         colours = None
         if sparsity is not None:
-            from .large.colouring import Colouring
+            from .large.jacobians import Colouring
 
             colours = Colouring(sparsity, self.node)
         self.functions = Differentiated(*self._wrapped(self.pieces), start, self.values, sparsity=colours)
@@ -144,8 +143,13 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             self.generators.append(("mirror", self.mirror))
         refuse_no_group(self.generators, self.node)
         self.images, self.symmetric_for = images_of([f for _, f in self.generators], self.node), set()
-        self.conditions = Conditions(list(conditions), self.functions, start) if conditions else None
-        self.u0 = start if self.conditions is None else self.conditions.extended(start)
+        self.conditions: Conditions | None = None
+        self.u0 = start
+        if conditions:
+            from .conditions import Conditions
+
+            self.conditions = Conditions(list(conditions), self.functions, start)
+            self.u0 = self.conditions.extended(start)
         self.dimension = len(self.u0)
         self.given_scale = given_scale(scale, self.node)
         if self.given_scale is not None and self.conditions is not None:
@@ -178,7 +182,7 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         assert self.mirror is not None
         return np.append(self.mirror(u[: self.node]), u[self.node :])
 
-    def _of_unknowns(self, each: np.ndarray) -> np.ndarray:
+    def of_unknowns(self, each: np.ndarray) -> np.ndarray:
         """The multipliers of conditions have the length 1."""
         return np.append(each, np.ones(self.dimension - self.node, dtype=each.dtype))
 
@@ -213,14 +217,9 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         if not self.n_multipliers:
             return np.zeros(0)
         if self.detection == "real":
-            if self.many:
-                if self.close:
-                    return self.algebra.nearest_eigenvalues(self, work)
+            if self.many and not self.close:
                 return ALL_ZERO - self.algebra.distance_to_singular(self, work)
-            assert isinstance(work, DenseWork)
-            if not isinstance(self.reference, np.ndarray):
-                self.reference = reference_of(work.jacobian, *self.sizes())
-            return watched(work.jacobian, self.reference)
+            return self.algebra.nearest_eigenvalues(self, work)
         rate = 1.0 if self.scales is None else self.scales.rate
         return self._eigenvalues(work) / rate
 
@@ -267,18 +266,6 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         return np.asarray(spectrum, dtype=complex) * (1.0 if self.scales is None else self.scales.rate)
 
     # ------------------------------------------------------------------ pieces
-    def margins(self, u: np.ndarray, p: float) -> np.ndarray:
-        """Switches with the signs of the piece: positive inside."""
-        return self.pieces.margins(u[None, : self.node], p)
-
-    def margin_kind(self, j: int) -> str:
-        """Every border of a piece is a switch."""
-        return "switch"
-
-    def beyond(self, point: BorderPoint) -> list[Seed]:
-        """The solution of the piece on the other side of a switch."""
-        return self.pieces.beyond(self, point)
-
     def with_pieces(self, pieces: Pieces) -> AlgebraicProblem:
         """The same problem in another piece."""
         other = self.against(self.parameter)
@@ -308,6 +295,62 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
         own = self.outputs.measures([name for name in names if name in self.outputs.names], u, p)
         return {**super().measures([name for name in names if name not in own], u, p), **own}
 
+    # ------------------------------------------------------------------ motions of u' = F(u, p)
+    def simulated_attractors(self, p: float, starts: int = 12) -> list[dict[str, Any]]:
+        """What starts round u0 settle on: equilibria, each once, oscillations, or nothing within reach; none without a flow.
+
+        "word" and "kind" are "equilibrium", "oscillation" or "escapes"; an equilibrium has its place, "u".
+        """
+        if self.spectrum != "flow" or self.node > LARGEST or self.node != len(self.u0):
+            return []
+        middle = np.asarray(self.u0, dtype=float)
+        scales = self.scales
+        size = np.maximum(np.abs(middle), 1.0 if scales is None else scales.unknowns)
+        generator = np.random.default_rng(7)
+        found: list[dict[str, Any]] = []
+        for i in range(starts):
+            spread = np.zeros(self.node) if i == 0 else generator.uniform(-SPREAD, SPREAD, self.node)
+            kind, u = self._settled(middle + spread * size, p, size)
+            new = {"word": kind, "periods": 0, "kind": kind}
+            if kind == "equilibrium":
+                new["u"] = [float(x) for x in u]
+            if not any(_one(new, other, size) for other in found):
+                found.append(new)
+        return sorted(found, key=lambda one: (one["kind"], one.get("u", [])))
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable equilibrium as `simulated_attractors` lists it."""
+        place = [float(x) for x in u[: self.node]]
+        return {"word": "equilibrium", "periods": 0, "kind": "equilibrium", "u": place}
+
+    def _settled(self, u: np.ndarray, p: float, size: np.ndarray) -> tuple[str, np.ndarray]:
+        from scipy.integrate import LSODA
+
+        def rate(t: float, x: np.ndarray) -> np.ndarray:
+            try:
+                return np.asarray(self.residuals(x, p), dtype=float)
+            except (ArithmeticError, ValueError):
+                return np.full(len(x), np.nan)
+
+        with np.errstate(all="ignore"):
+            if not rate(0.0, u).any():  # at rest to the last bit, stable or not
+                u = u + SIMULATION.beside * size * (-1.0) ** np.arange(len(u))
+            speed = float((np.abs(rate(0.0, u)) / size).max())
+            span = 10.0 / speed if np.isfinite(speed) and speed > 0.0 else 10.0
+            tolerances: dict[str, Any] = {"rtol": SIMULATION.relative, "atol": SIMULATION.absolute * size}
+            solver = LSODA(rate, 0.0, u, np.inf, **tolerances)
+            rest, since = u, 0.0  # where the motion was, and when
+            for _ in range(PATIENCE):
+                solver.step()
+                x = solver.y
+                if solver.status == "failed" or not float((np.abs(x) / size).max()) < SIMULATION.far:
+                    return "escapes", u
+                if float((np.abs(x - rest) / size).max()) > SIMULATION.still:
+                    rest, since = x.copy(), solver.t
+                elif solver.t - since > span:
+                    return "equilibrium", x.copy()
+        return "oscillation", u
+
     # ------------------------------------------------------------------ files
     def describe(self) -> dict[str, Any]:
         """Name, start, and how to build the problem again if F can be imported."""
@@ -332,6 +375,12 @@ class AlgebraicProblem(SimulatedFlow, CallableProblem):
             "callables": where,
             "factory": "contvines.problems.algebraic:from_description" if importable and plain else None,
         } | ({"word": self.pieces.word} if self.pieces.count else {})
+
+
+def _one(a: dict[str, Any], b: dict[str, Any], size: np.ndarray) -> bool:
+    if a["kind"] != b["kind"]:
+        return False
+    return "u" not in a or bool((np.abs(np.subtract(a["u"], b["u"])) < SIMULATION.beside * size).all())
 
 
 def from_description(description: Mapping[str, Any], trust: bool = False) -> AlgebraicProblem | None:

@@ -13,18 +13,15 @@ from contvines.shared.floating_point import ROUNDED
 from contvines.shared.near_names import did_you_mean
 
 from . import dense
-from .breaks import find_break
-from .checks import disagreement, empty_row, refuse_derivatives
+from .checks import disagreement, empty_row, find_break
 from .derivatives import Differentiated
-from .equivariance import refuse_asymmetry
-from .extents import weighed
-from .functions import NotEvaluable, Operator
-from .nearness import side
-from .parameters import ParameterSet, Parametrised
+from .functions import NotEvaluable, Operator, ParameterSet, Parametrised
 from .pieces import Pieced, Pieces
 from .protocol import ProblemDefaults
 from .scales import Scales
 from .settings import DERIVATIVES
+from .spectra import side
+from .symmetries import refuse_asymmetry
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -32,9 +29,9 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
     from .dense import DenseWork
-    from .images import Image
-    from .large.sparse_work import SparseWork
-    from .protocol import Kernels
+    from .large.sparse import SparseWork
+    from .protocol import BorderPoint, Kernels, Seed
+    from .symmetries import Image
 
 TERMS = 62  # roundings of more unknowns than this cancel
 
@@ -55,7 +52,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
     reference
         A matrix relative to which eigenvalues are watched for branch points where there is no spectrum.
     many : bool
-        Whether they are watched only where a cheaper number asks for it; see :mod:`.nearness`.
+        Whether they are watched only where a cheaper number asks for it; see :mod:`.spectra`.
     close : bool
         Whether they are watched here; see `closer`.
     signed : bool
@@ -165,9 +162,18 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray:
         """F alone."""
 
-    @abstractmethod
     def margins(self, u: np.ndarray, p: float) -> np.ndarray:
         """Switches with the signs of the pieces: positive inside."""
+        nodes = np.asarray(u)[: self.node * len(self.pieces.signs)].reshape(-1, self.node)
+        return self.pieces.margins(nodes, p)
+
+    def margin_kind(self, j: int) -> str:
+        """Every border of a piece is a switch."""
+        return "switch"
+
+    def beyond(self, point: BorderPoint) -> list[Seed]:
+        """The solutions on the other side of a switch."""
+        return self.pieces.beyond(self, point)
 
     @abstractmethod
     def with_pieces(self, pieces: Pieces) -> Pieced:
@@ -180,24 +186,14 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         """Length of a direction as normal forms measure it: Euclidean, over the unknowns (over the first point of a cycle)."""
         return float(np.linalg.norm(direction[: self.node]))
 
-    def _of_unknowns(self, each: np.ndarray) -> np.ndarray:
+    def of_unknowns(self, each: np.ndarray) -> np.ndarray:
         """What `functions` know of each of their arguments, of each unknown."""
         return each
 
     @property
     def lengths(self) -> np.ndarray:
         """Length over which the equations bend in each unknown."""
-        return self._of_unknowns(self.functions.lengths)
-
-    @property
-    def bends(self) -> np.ndarray:
-        """Whether they bend in each unknown at all."""
-        return self._of_unknowns(self.functions.bends)
-
-    @property
-    def known(self) -> np.ndarray:
-        """Whether the length of each unknown comes from the equations or from the start; else it is 1."""
-        return self._of_unknowns(self.functions.known)
+        return self.of_unknowns(self.functions.lengths)
 
     @property
     def noise(self) -> float:
@@ -212,9 +208,9 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns and parameter, shape (N + 1,); learned when they are asked for the first time."""
         scales = self.scales
-        refuse_asymmetry(self)
+        self._check_symmetries()
         if scales is None:
-            from .learn_scales import learn
+            from .scouting import learn
 
             scales = self.scales = learn(self, within, self.given_scale)
         return scales.vector
@@ -233,45 +229,9 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
             self._side = self.scales, side(self.sizes()[0])
         return self._side[1]
 
-    def row_sizes(self, work: DenseWork | SparseWork, scale: np.ndarray, width: float) -> np.ndarray:
-        """Largest change of each equation when one unknown or the parameter changes by its scale."""
-        return np.maximum(self.algebra.row_sizes(work, scale), np.abs(work.derivative) * width)
-
-    def weighed(
-        self, work: DenseWork | SparseWork, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Lengths of unknowns of which nothing else is known, from a linearisation at (u, p); and which are known then."""
-        jacobian = work.jacobian
-        if not isinstance(jacobian, np.ndarray):
-            return lengths, known
-
-        def beside(v: np.ndarray) -> np.ndarray:
-            try:
-                return self.residuals(u + v, p)
-            except NotEvaluable:
-                return np.full(self.dimension, np.nan)
-
-        return weighed(beside, jacobian, lengths, known)
-
     def rates(self, work: DenseWork | SparseWork) -> list[float]:
         """Sizes of the eigenvalues of dF/du, where they are wanted and can be obtained cheaply."""
         return []
-
-    def noise_at(self, work: DenseWork | SparseWork, scale: np.ndarray, border: np.ndarray) -> float:
-        """How much the noise of the equations moves a solution along the row `border`, relative to the scale.
-
-        `work` has the linearisation.
-        """
-        if not self.functions.noise.any():
-            return 0.0
-        n, step, tangent = self.dimension, np.zeros(self.dimension + 1), np.zeros(self.dimension + 1)
-        copies = n // len(self.functions.noise)
-        work.residual[:] = np.tile(self.functions.noise, copies)
-        self.kernels.bordered(self, work, border, 0.0, step, tangent)
-        moved = float((np.abs(step[:n]) / scale).max())
-        return (
-            min(moved, DERIVATIVES.believed) if np.isfinite(moved) and moved > DERIVATIVES.roundoff else 0.0
-        )
 
     # ------------------------------------------------------------------ algebra
     @property
@@ -389,11 +349,44 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
         scales = self.scales
         if scales is not None and not len(u) == len(scales.unknowns) == len(self.functions.lengths):
             scales = None
-        return disagreement(self.functions, u, p, scales)
+        try:
+            return disagreement(self.functions, u, p, scales)
+        except NotEvaluable:
+            return None
 
     def _check_start(self, u: np.ndarray) -> None:
-        refuse_derivatives(self.functions, u, self.p0)
-        refuse_asymmetry(self)
+        try:
+            wrong = disagreement(self.functions, u, self.p0)
+        except NotEvaluable as error:
+            wrong = f"{error}, at the start"
+        if wrong is not None:
+            raise ValueError(wrong)
+        self._check_symmetries()
+
+    def _check_symmetries(self) -> None:
+        """Refuse a symmetry of which the equations know nothing, once for each choice of parameters."""
+        values = self.values
+        key = (values.varying, *sorted(item for item in values.values.items() if item[0] != values.varying))
+        if not self.generators or key in self.symmetric_for:
+            return
+        for symmetry in self.generators:
+            refuse_asymmetry(
+                self.functions, self.in_own_pieces(), symmetry, self.u0[: self.node], self.mixed_rows
+            )
+        self.symmetric_for.add(key)
+
+    def in_own_pieces(self) -> Callable[[np.ndarray, float], np.ndarray]:
+        """The equations, each state in the piece in which it lies."""
+        if not self.pieces.count:
+            return self.functions.value
+        pieces = self.pieces.repeated(1, 1)
+        functions = self.functions_in(pieces)
+
+        def value(u: np.ndarray, p: float) -> np.ndarray:
+            pieces.choose(u, p)
+            return functions.value(u, p)
+
+        return value
 
     def _check_rows(self, u: np.ndarray) -> None:
         with np.errstate(all="ignore"):

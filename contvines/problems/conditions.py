@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import null_space
 
 from .derivatives import Differentiated
-from .parameters import ParameterSet
+from .functions import ParameterSet
 from .spectra import without_roundoff
 
 

@@ -13,15 +13,14 @@ import numpy as np
 from contvines.shared.floating_point import COMPLEX_STEP
 
 from .differences import Difference, along, bend, noise_of, roughness
-from .extents import measured, of_parameter
-from .functions import CALLED, NotEvaluable, Operator, Sparse, UserFunction, as_matrix
-from .parameters import ParameterSet
+from .functions import CALLED, NotEvaluable, Operator, ParameterSet, Sparse, UserFunction, as_matrix
+from .scales import measured, of_parameter
 from .settings import DERIVATIVES
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-    from .large.colouring import Colouring
+    from .large.jacobians import Colouring
 
 BESIDE = (-0.37, 0.41)  # lengths aside where noise is there as well
 
@@ -164,7 +163,7 @@ class Differentiated:
             matrix = as_matrix(self.given_matrix.raw(u, self.parameters.start), len(u))
             self.structure = "dense" if isinstance(matrix, np.ndarray) else "sparse"
             if isinstance(matrix, Operator):
-                from .large.written_out import worth_it
+                from .large.jacobians import worth_it
 
                 written = not preconditioned and worth_it(matrix, len(u))
                 self.structure = "sparse" if written else "operator"
@@ -209,7 +208,7 @@ class Differentiated:
             self.errors = self.exact
             given = as_matrix(self.given_matrix.raw(u, p), n)
             if self.structure == "sparse" and isinstance(given, Operator):
-                from .large.written_out import written_out
+                from .large.jacobians import written_out
 
                 return written_out(given, n)
             return given

@@ -11,28 +11,65 @@ import numpy as np
 from contvines.shared.near_names import hinting
 
 from .callables import CallableProblem
-from .cycle_measures import CycleMeasures
 from .derivatives import Differentiated
-from .images import image_map, in_order, refuse_no_mirror
-from .outputs import Outputs
-from .parameters import ParameterSet
+from .functions import NotEvaluable, Outputs, ParameterSet
 from .pieces import Pieces
-from .protocol import Embedding, Seed, Symmetry
+from .protocol import Embedding, Symmetry
 from .registry import addresses, find_callables
 from .scales import flat_start, given_scale
 from .settings import IDENTITY
-from .simulated import MapSection, SimulatedMap
-from .spectra import without_roundoff
+from .spectra import vectors_of, without_roundoff
+from .symmetries import image_map, in_order, refuse_no_mirror
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from .interpreted import Linearised
+    from .abilities import Linearised
     from .populations import Population
-    from .protocol import BorderPoint
 
 
-class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
+class MapSection:
+    """A map applied once per period of a cycle; see :mod:`contvines.circles.section`.
+
+    Parameters
+    ----------
+    problem : MapProblem
+    p : float
+    """
+
+    def __init__(self, problem: MapProblem, p: float) -> None:
+        self.problem, self.p = problem, float(p)
+        self.value = problem.in_own_pieces()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """x0, x1, ..."""
+        return tuple(f"x{j}" for j in range(self.problem.node))
+
+    def through(self, u: np.ndarray) -> np.ndarray:
+        """The first point of the cycle."""
+        return np.array(u[: self.problem.node], dtype=float)
+
+    def rounds(self, u: np.ndarray) -> np.ndarray:
+        """All points of the cycle, shape (periods, d)."""
+        return np.array(u, dtype=float).reshape(self.problem.cycle, self.problem.node)
+
+    def image(self, x: np.ndarray) -> np.ndarray:
+        """f at a point, in the piece in which it lies; NaN where f is not defined."""
+        try:
+            with np.errstate(all="ignore"):
+                return self.value(x, self.p)
+        except NotEvaluable:
+            return np.full(self.problem.node, np.nan)
+
+    def step(self, x: np.ndarray) -> np.ndarray:
+        """One period of the cycle later."""
+        for _ in range(self.problem.cycle):
+            x = self.image(x)
+        return x
+
+
+class MapProblem(CallableProblem):
     """The n-cycles of a map: f(x_i, p) = x_{i+1}, x_n = x_0. Unknowns are all points of the cycle.
 
     Parameters
@@ -156,7 +193,7 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         self._find_symmetries()
         return self
 
-    def _of_unknowns(self, each: np.ndarray) -> np.ndarray:
+    def of_unknowns(self, each: np.ndarray) -> np.ndarray:
         return np.tile(each, self.cycle)
 
     def _with_cycle(self, u: np.ndarray, p: float, pieces: Pieces) -> MapProblem:
@@ -219,25 +256,10 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
             product = step @ product
         return without_roundoff(np.linalg.eigvals(product))
 
-    def margins(self, u: np.ndarray, p: float) -> np.ndarray:
-        """Switches with the signs of the pieces: positive inside."""
-        return self.pieces.margins(np.asarray(u).reshape(self.cycle, self.node), p)
-
-    def margin_kind(self, j: int) -> str:
-        """Every border of a piece is a switch."""
-        return "switch"
-
-    def beyond(self, point: BorderPoint) -> list[Seed]:
-        """The cycles on the other side of a switch."""
-        return self.pieces.beyond(self, point)
-
     def with_pieces(self, pieces: Pieces) -> MapProblem:
-        """The same cycles in other pieces."""
-        return self._with_cycle(self.u0, self.p0, pieces)
-
-    def doubled_with(self, pieces: Pieces) -> MapProblem:
-        """The cycles of twice the length in given pieces."""
-        return self._with_cycle(np.tile(self.u0, 2), self.p0, pieces)
+        """The same cycles in other pieces; with those of several rounds, the cycles of so many times the length."""
+        rounds = len(pieces.signs) // self.cycle
+        return self._with_cycle(np.tile(self.u0, rounds), self.p0, pieces)
 
     def cycle_through(self, points: np.ndarray, p: float) -> MapProblem:
         """The problem of the cycles with as many points as given, shape (n, d), with its start there."""
@@ -302,6 +324,74 @@ class MapProblem(SimulatedMap, CycleMeasures, CallableProblem):
         turned = [np.roll(form, -first, axis=0).reshape(-1) for form in forms for first in range(root)]
         pieces = min(tuple(np.roll(signs, -first, axis=0).reshape(-1).tolist()) for first in range(n))
         return ("cycle", root, self.node, pieces), min(turned, key=in_order(np.tile(scale, root)))
+
+    # ------------------------------------------------------------------ measures and motions
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Mean, smallest and largest of each coordinate over the cycle, and the coordinates of its first point."""
+        names = [f"{what}{j}" for what in ("x", "mean", "min", "max") for j in range(self.node)]
+        return (*self.outputs.names, "norm", *names)
+
+    def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Measures for an array of solutions."""
+        nodes = np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)
+        own = [name for name in names if name in self.outputs.names]
+        result = self.outputs.measures(own, nodes[:, 0], p)
+        for name in names:
+            if name not in self.measure_names:
+                raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
+            if name in own:
+                continue
+            what = name.rstrip("0123456789")
+            j = int(name[len(what) :] or 0)
+            if what == "norm":
+                result[name] = np.sqrt((nodes**2).sum(axis=(1, 2)) / self.cycle)
+            elif what == "x":
+                result[name] = nodes[:, 0, j]
+            else:
+                result[name] = getattr(nodes[:, :, j], what)(axis=1)
+        return result
+
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> np.ndarray | None:
+        """A coordinate ``x0``, ``x1`` ... at every point of the cycle, shape (m, n); None for other measures."""
+        if name not in {f"x{j}" for j in range(self.node)}:
+            return None
+        return np.asarray(u, dtype=float).reshape(-1, self.cycle, self.node)[:, :, int(name[1:])]
+
+    def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray:
+        """Eigenvectors of the product of the Jacobians along the cycle, as columns, in the order of its eigenvalues."""
+        product = np.eye(self.node)
+        for i, x in enumerate(np.asarray(u, dtype=float).reshape(self.cycle, self.node)):
+            self.pieces.current = i
+            product = self.functions.jacobian(x, p) @ product
+        return vectors_of(product, values)
+
+    def orbit(self, u: np.ndarray, p: float) -> np.ndarray:
+        """The points of the cycle, shape (n, d)."""
+        return np.array(u).reshape(self.cycle, self.node)
+
+    def replay(self, u: np.ndarray, p: float) -> float:
+        """Largest distance after iterating each point of the cycle once."""
+        nodes = np.asarray(u, dtype=float).reshape(self.cycle, self.node)
+        worst = 0.0
+        for i, x in enumerate(nodes):
+            self.pieces.current = i
+            gap = self.functions.value(x, p) - nodes[(i + 1) % self.cycle]
+            worst = max(worst, float(np.abs(gap).max()))
+        return worst
+
+    def simulated_attractors(self, p: float, starts: int = 24) -> list[dict[str, Any]]:
+        """What starts round the cycle settle on at a parameter value: "word", "periods" and "kind" of each motion."""
+        population = self.population()
+        motions, _, _ = population.settle(population.starts(starts, 7, p), p)
+        found = {(m.word, m.periods, "cycle" if m.word else m.kind) for m in motions}
+        return [
+            {"word": word or None, "periods": periods, "kind": kind} for word, periods, kind in sorted(found)
+        ]
+
+    def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable cycle as `simulated_attractors` lists it."""
+        return {"word": f"{self.cycle}-cycle", "periods": self.cycle, "kind": "cycle"}
 
     def section(self, p: float) -> MapSection:
         """Its motions, once per period of the cycle."""

@@ -14,14 +14,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from copy import copy
 from inspect import signature
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
-from .functions import NotEvaluable, UserFunction
-from .parameters import ParameterSet
+from .functions import NotEvaluable, ParameterSet, UserFunction
 from .protocol import Problem, Seed, margin_of
 from .settings import IDENTITY
 
@@ -34,13 +33,6 @@ class Pieced(Problem, Protocol):
 
     def margins(self, u: np.ndarray, p: float) -> np.ndarray: ...
     def with_pieces(self, pieces: Pieces) -> Pieced: ...
-
-
-@runtime_checkable
-class Doubling(Protocol):
-    """In other pieces it has cycles of twice the length."""
-
-    def doubled_with(self, pieces: Pieces) -> Pieced: ...
 
 
 class UnknownSwitch(KeyError):
@@ -184,7 +176,6 @@ class Pieces:
         Parameters
         ----------
         problem : AlgebraicProblem or MapProblem
-            With ``with_pieces`` (and ``doubled_with`` for maps).
         point : SpecialPoint
             Its tangent points out of the piece.
         """
@@ -192,8 +183,8 @@ class Pieces:
         candidates: list[tuple[Pieced, np.ndarray, bool]] = [
             (problem.with_pieces(self.turned(j)), point.u, False)
         ]
-        if isinstance(problem, Doubling):
-            candidates.append((problem.doubled_with(self.turned(j, 2)), np.tile(point.u, 2), True))
+        if problem.spectrum == "map":
+            candidates.append((problem.with_pieces(self.turned(j, 2)), np.tile(point.u, 2), True))
         for other, u, flip in candidates:
             tangent = _inward(other, u, point.value, j)
             if tangent is None:

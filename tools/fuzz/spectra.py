@@ -20,7 +20,7 @@ from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
 import contvines as cv
-from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.dense import KERNELS, DenseWork
 from contvines.problems.protocol import Kernels, ProblemDefaults
 
 LOW, HIGH = -0.7, 0.9  # of u; the cluster is at zero
@@ -85,7 +85,7 @@ class Spectrum(ProblemDefaults):
 
     def workspace(self) -> Any:
         """For contvines."""
-        return dense_workspace(1)
+        return DenseWork(1)
 
     def equations(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """p - p(u)."""

@@ -52,7 +52,7 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
     flow = problem.spectrum == "flow"
     if problem.kernels.matrix is None:
         return Pitch(None, None, "")
-    from ...problems.nearness import is_large
+    from ...problems.spectra import is_large
 
     try:
         if is_large(problem):

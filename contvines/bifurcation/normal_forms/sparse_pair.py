@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from ...problems.large.sparse_work import SparseWork
+from ...problems.large.sparse import SparseWork
 from ...shared.floating_point import ROUNDED
 from ..roots import chebyshev_nodes
 from ..settings import NORMAL_FORMS

@@ -10,28 +10,66 @@ A LinearOperator is never factorised: GMRES solves the bordered system, with the
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse import csc_array
 from scipy.sparse.linalg import LinearOperator, eigs, eigsh, splu
 
+from ..dense import assign, inspect
 from ..functions import NotEvaluable, Operator
-from ..interpreted import assign, inspect
-from ..nearness import distance
 from ..protocol import Kernels
 from ..settings import LINEAR
+from ..spectra import LARGEST, distance
 from . import matrix_free
-from .nearest_eigenvalues import by_arpack, nearest_sparse
-from .sparse_factors import Factors, SuperLUFactors
-from .sparse_loci import flip, matrix, transpose
-from .sparse_work import Elimination, SparseWork
+from .matrix_free import by_arpack, nearest_sparse
+from .sparse_factors import Factors, Method, SuperLUFactors
 
 if TYPE_CHECKING:
-    from ..interpreted import Equations
+    from ..dense import Equations
     from ..protocol import Problem
+    from .matrix_free import Bordered
+
 
 SWEEPS = 8  # of refinement with the factors of an earlier Jacobian
+
+
+class Elimination(NamedTuple):
+    """Factors, border, F_u^-1 F_p and Schur complement of a block elimination."""
+
+    factors: Factors
+    border: np.ndarray
+    column: np.ndarray
+    corner: float
+
+
+@dataclass
+class SparseWork:
+    """F, F_u, F_p and the factors of F_u, made when they are first needed; `near` are those of the Jacobian before, if they are kept."""
+
+    residual: np.ndarray
+    derivative: np.ndarray
+    jacobian: csc_array | Operator = field(default_factory=lambda: csc_array((0, 0)))
+    factors: Factors | None = None
+    near: Factors | None = None
+    keep: bool = True
+    failed: bool = False
+    method: Method = field(default_factory=Method)
+    eliminated: Elimination | None = None  # the last one
+    iterated: Bordered | None = None  # the last bordered system of a matrix-free Jacobian
+    distance: float = 1.0
+    tangent: np.ndarray | None = None  # the last one of a matrix-free Jacobian, a guess of the next one
+
+    @property
+    def matrix(self) -> csc_array:
+        """The Jacobian, where it is a matrix."""
+        assert not isinstance(self.jacobian, Operator)
+        return self.jacobian
+
+    def __getitem__(self, i: int) -> np.ndarray:
+        return (self.residual, self.derivative)[i]
 
 
 def workspace(problem: Problem) -> SparseWork:
@@ -63,7 +101,7 @@ def linearise(data: Equations, u: np.ndarray, p: float, work: SparseWork) -> flo
         total = float(derivative.sum())
         assert not isinstance(jacobian, np.ndarray)
         if not isinstance(jacobian, Operator):
-            jacobian = sp.csc_array(jacobian, dtype=float, copy=True)
+            jacobian = csc_array(jacobian, dtype=float, copy=True)
             total += float(jacobian.data.sum())
         work.jacobian = jacobian
         sizes = np.abs(residual)
@@ -83,8 +121,8 @@ def _factorise(work: SparseWork) -> Factors | None:
     return work.factors
 
 
-def _border_matrix(work: SparseWork, border: np.ndarray, factor: float) -> sp.csc_array:
-    return sp.csc_array(
+def _border_matrix(work: SparseWork, border: np.ndarray, factor: float) -> csc_array:
+    return csc_array(
         sp.bmat(
             [
                 [work.matrix, work.derivative[:, None]],
@@ -211,7 +249,7 @@ def bordered(
 
 # ---------------------------------------------------------------------- eigenvalues
 def distance_to_singular(data: Equations, work: SparseWork) -> float:
-    """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`contvines.problems.nearness`. Without refinement: it is a rough number."""
+    """1/|M^-1 b| for the bordered matrix M that was solved with last; see :mod:`contvines.problems.spectra`. Without refinement: it is a rough number."""
     if work.iterated is not None:
         found = matrix_free.distance_to_singular(data, work.iterated)
         work.distance = work.distance if found is None else found
@@ -234,7 +272,7 @@ def nearest_eigenvalues(data: Equations, work: SparseWork) -> np.ndarray:
     factors, reference = _factorise(work), data.reference
     if reference is None:
         rows, units = data.sizes()
-        reference = sp.csc_array(sp.diags_array(rows / units)) if factors is None else work.matrix
+        reference = csc_array(sp.diags_array(rows / units)) if factors is None else work.matrix
         data.reference = reference
     assert not isinstance(reference, np.ndarray)
     return nearest_sparse(factors, reference, len(work.residual))
@@ -283,7 +321,7 @@ def leading(data: Equations, work: SparseWork, count: int, shift: float) -> np.n
     return np.append(values, np.full(count - len(values), values[np.argmin(np.real(values))]))
 
 
-def eigenvectors(matrix: sp.csc_array | Operator, values: np.ndarray) -> np.ndarray:
+def eigenvectors(matrix: csc_array | Operator, values: np.ndarray) -> np.ndarray:
     """Unit eigenvectors as columns, for eigenvalues that are known, by inverse iteration.
 
     Raises
@@ -309,6 +347,23 @@ def eigenvectors(matrix: sp.csc_array | Operator, values: np.ndarray) -> np.ndar
     return np.array(columns).T.reshape(n, len(columns))
 
 
+def transpose(data: Equations, work: SparseWork, column: np.ndarray, other: SparseWork) -> None:
+    """The transposed Jacobian, with another last column, into another workspace."""
+    if isinstance(work.jacobian, Operator):
+        raise ValueError(
+            "loci need the transposed Jacobian: give it as an array or a sparse matrix, not as a LinearOperator"
+        )
+    other.jacobian, other.factors, other.failed = work.matrix.T.tocsc(), None, False
+    other.derivative[:] = column
+
+
+def matrix(data: Equations, work: SparseWork) -> np.ndarray:
+    """F_u as it stands in a workspace, dense."""
+    if len(work.residual) > LARGEST or isinstance(work.jacobian, Operator):
+        raise ValueError(f"it needs the matrix of F_u, of up to {LARGEST} unknowns")
+    return work.matrix.toarray()
+
+
 KERNELS = Kernels(
-    linearise, bordered, inspect, compiled=False, assign=assign, flip=flip, transpose=transpose, column=1, matrix=matrix
+    linearise, bordered, inspect, compiled=False, assign=assign, transpose=transpose, column=1, matrix=matrix
 )  # fmt: skip

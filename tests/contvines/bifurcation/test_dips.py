@@ -9,7 +9,7 @@ import contvines as cv
 from contvines.bifurcation.detect import Detector
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
-from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.dense import KERNELS, DenseWork
 from contvines.problems.protocol import Kernels, ProblemDefaults
 
 
@@ -29,7 +29,7 @@ class Line(ProblemDefaults):
         self.margin, self.multiplier, self.data = margin, multiplier, self
 
     def workspace(self):
-        return dense_workspace(1)
+        return DenseWork(1)
 
     def equations(self, u, p):
         return u - p, np.eye(1), np.array([-1.0])

@@ -6,7 +6,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
-from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.dense import KERNELS, DenseWork
 from contvines.problems.protocol import Kernels, ProblemDefaults
 
 GAPS = st.floats(-5.0, -1.5).map(lambda exponent: 10.0**exponent)
@@ -71,7 +71,7 @@ class Floor(ProblemDefaults):
         self.data = self
 
     def workspace(self):
-        return dense_workspace(1)
+        return DenseWork(1)
 
     def equations(self, u, p):
         return u**2 - p**2 - 1e-6, np.diag(2.0 * u), np.array([-2.0 * p])

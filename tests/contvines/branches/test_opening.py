@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.dense import KERNELS, DenseWork
 from contvines.problems.protocol import Kernels, ProblemDefaults
 
 NARROW = 0.05  # part of the distance between the ends of the loop by which it keeps from the outer branch
@@ -47,7 +47,7 @@ class Walled(ProblemDefaults):
         self.kernels = Kernels(KERNELS.linearise, KERNELS.bordered, self.inspect)
 
     def workspace(self):
-        return dense_workspace(1)
+        return DenseWork(1)
 
     def equations(self, u, p):
         x = u[0]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.problems.dense import KERNELS, dense_workspace
+from contvines.problems.dense import KERNELS, DenseWork
 from contvines.problems.protocol import Kernels, ProblemDefaults, Seed
 
 
@@ -34,7 +34,7 @@ class Line(ProblemDefaults):
         return self.m
 
     def workspace(self):
-        return dense_workspace(1)
+        return DenseWork(1)
 
     def equations(self, u, p):
         return u - self.offset - self.slope * p, np.eye(1), np.array([-self.slope])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.problems.approach import approach
+from contvines.problems.scouting import approach
 
 # the spruce budworm of Ludwig, Jones and Holling (J. Anim. Ecol. 47 (1978) 315): x' = r x (1 - x/k) - x^2/(1 + x^2)
 R, K = 0.5, 10.0

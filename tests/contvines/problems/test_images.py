@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contvines.problems.images import images_of, smallest_image
+from contvines.problems.symmetries import images_of, smallest_image
 
 
 def test_a_quarter_turn_and_a_reflection_generate_the_square():

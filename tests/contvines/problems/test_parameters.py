@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.problems.parameters import ParameterSet
+from contvines.problems.functions import ParameterSet
 
 
 def cusp(u, p):

@@ -1,7 +1,11 @@
-"""Learning scales: a short, coarse continuation both ways from the start of a problem that is made of Python callables.
+"""Scouting: from a rough guess to a solution, and along its branch far enough to see how large the unknowns become.
 
-It follows the branch far enough to see how large its unknowns become; its metric grows with what it sees. Nothing of it is kept
-but the sizes.
+Full steps of Newton's method may jump over a fold to another solution, or away; damped ones end at the solution to which the guess
+belongs, or nowhere. The step lengths are those of Deuflhard, Newton methods for nonlinear problems, Springer 2004, algorithm NLEQ-ERR (section
+3.3.3): they depend on no scaling of the equations.
+
+Scales are learned by a short, coarse continuation both ways from the start of a problem that is made of Python callables; its metric grows with
+what it sees. Nothing of it is kept but the sizes.
 """
 
 from __future__ import annotations
@@ -13,15 +17,21 @@ import numpy as np
 
 from contvines.shared.floating_point import TINY
 
-from .approach import RoughProblem, approach
-from .extents import of_parameter, of_rounding
-from .scales import Scales, in_fields
-from .settings import SCALES
+from .abilities import Rough
+from .functions import NotEvaluable
+from .protocol import Equations, array_of
+from .scales import Scales, in_fields, of_parameter, of_rounding, weighed
+from .settings import DERIVATIVES, SCALES
 
 if TYPE_CHECKING:
-    from .dense import DenseWork
-    from .large.sparse_work import SparseWork
+    from types import ModuleType
 
+    from .dense import DenseWork
+    from .derivatives import Differentiated
+    from .large.sparse import SparseWork
+
+
+DAMPED = 80  # steps of damped Newton
 STEPS = {30: 60, 500: 24}  # each way, up to so many unknowns; FEW of them where there are more
 FEW = 6
 LONGEST = 0.5  # step, in the metric
@@ -32,27 +42,96 @@ MOST = 64  # unknowns of which is asked whether rounding has moved them
 SAMPLES = 4  # points at which eigenvalues are looked at
 
 
-class Unscaled(RoughProblem, Protocol):
-    """A problem whose scales are to be learned.
+class RoughProblem(Equations, Rough, Protocol):
+    """A problem whose equations can be evaluated without their derivatives, and bend over known lengths."""
 
-    ``bends`` tells whether the equations bend in each unknown, ``known`` whether its length says anything.
-    """
+
+class Unscaled(RoughProblem, Protocol):
+    """A problem whose scales are to be learned, a :class:`contvines.problems.callables.CallableProblem`."""
+
+    functions: Differentiated
 
     @property
     def u0(self) -> np.ndarray: ...
     @property
     def p0(self) -> float: ...
     @property
-    def bends(self) -> np.ndarray: ...
-    @property
-    def known(self) -> np.ndarray: ...
+    def algebra(self) -> ModuleType: ...
     def workspace(self) -> DenseWork | SparseWork: ...
-    def row_sizes(self, work: DenseWork | SparseWork, scale: np.ndarray, width: float) -> np.ndarray: ...
+    def of_unknowns(self, each: np.ndarray) -> np.ndarray: ...
     def rates(self, work: DenseWork | SparseWork) -> list[float]: ...
-    def noise_at(self, work: DenseWork | SparseWork, scale: np.ndarray, border: np.ndarray) -> float: ...
-    def weighed(
-        self, work: DenseWork | SparseWork, u: np.ndarray, p: float, lengths: np.ndarray, known: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]: ...
+
+
+def approach(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray | None:
+    """A point near the solution at this parameter value to which damped Newton's method leads; None where it leads nowhere.
+
+    Parameters
+    ----------
+    problem : RoughProblem
+    u : ndarray, shape (N,)
+    p : float
+
+    Returns
+    -------
+    ndarray or None
+        Of shape (N,), so near that full steps converge; `u` itself where they do from there.
+    """
+    work, kernels, n = problem.workspace(), problem.kernels, len(u)
+    F = array_of(work)
+    border, scale = np.zeros(n + 1), np.maximum(problem.lengths, SCALES.barely * np.abs(u))
+    border[n] = 1.0
+
+    def size(correction: np.ndarray) -> float:
+        found = float((np.abs(correction) / (scale + np.abs(u))).max())
+        return found if found == found else math.inf
+
+    def correction() -> tuple[np.ndarray, float]:
+        step, tangent = np.zeros(n + 1), np.zeros(n + 1)
+        sign = kernels.bordered(problem.data, work, border, 0.0, step, tangent)
+        return step[:n], sign
+
+    def linearised(at: np.ndarray) -> bool:
+        return bool(kernels.linearise(problem.data, at, p, work) < math.inf)
+
+    u, damping = np.array(u, dtype=float), 1.0
+    if not linearised(u):
+        return None
+    step, sign = correction()
+    for _ in range(DAMPED):
+        length = size(step)
+        if not length < math.inf:
+            return None
+        if length < SCALES.near:
+            return u
+        while True:
+            if damping < SCALES.shortest:
+                return None
+            trial = u + damping * step
+            F[:] = _value(problem, trial, p)
+            simplified = correction()[0] if np.isfinite(F).all() else np.full(n, np.nan)
+            if size(simplified) < (1.0 - 0.25 * damping) * length and linearised(trial):
+                ahead, there = correction()
+                if there * sign >= 0.0:
+                    break
+                linearised(
+                    u
+                )  # a singular Jacobian lies between: what is behind it belongs to another solution
+            bend = size(simplified - (1.0 - damping) * step)
+            shorter = 0.5 * length * damping**2 / bend if 0.0 < bend < math.inf else 0.0
+            damping = min(max(shorter, 0.1 * damping), 0.5 * damping)
+        gap = size(simplified - ahead) * size(ahead)
+        damping = min(1.0, damping * length * size(simplified) / gap) if gap > 0.0 else 1.0
+        u, step, sign = trial, ahead, there
+    return None
+
+
+def _value(problem: RoughProblem, u: np.ndarray, p: float) -> np.ndarray:
+    """F, or not a number where it cannot be evaluated."""
+    with np.errstate(all="ignore"):
+        try:
+            return problem.residuals(u, p)
+        except ArithmeticError:
+            return np.full(len(u), np.nan)
 
 
 class Scout:
@@ -87,7 +166,7 @@ class Scout:
         self.rows = np.zeros(self.n)
         self.rates: list[float] = []
         self.noise = 0.0
-        self.known = np.asarray(problem.known)
+        self.known = problem.of_unknowns(problem.functions.known)
         self.given = given is not None
         if given is not None:
             self.first, self.scale = given, given.copy()
@@ -128,8 +207,7 @@ class Scout:
         self.low, self.high = np.minimum(self.low, z), np.maximum(self.high, z)
         extent = 0.5 * (self.high - self.low)[:-1]
         self.scale = in_fields(np.maximum(self.first, extent))
-        rows = self.problem.row_sizes(self.work, self.scale, self.width)
-        self.rows = np.maximum(self.rows, rows)
+        self.rows = np.maximum(self.rows, self._felt(self.scale, self.width))
         if len(self.rates) < SAMPLES:
             self.rates += self.problem.rates(self.work)
 
@@ -164,8 +242,41 @@ class Scout:
         if moving.any() and free.any():
             way = float((sizes[moving] / rates[moving]).min())
             self.first = np.where(free, np.maximum(rates[:-1] * way, TINY), self.first)
-        self.first, told = self.problem.weighed(self.work, z[:-1], float(z[-1]), self.first, known | free)
+        self.first, told = self._weighed(z, known | free)
         self.known, self.scale = known | (told & ~free), self.first.copy()
+
+    def _weighed(self, z: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lengths of unknowns of which nothing else is known, from the linearisation at z; and which are known then."""
+        if not isinstance(self.work.jacobian, np.ndarray):
+            return self.first, known
+
+        def beside(v: np.ndarray) -> np.ndarray:
+            try:
+                return self.problem.residuals(z[:-1] + v, float(z[-1]))
+            except NotEvaluable:
+                return np.full(self.n, np.nan)
+
+        return weighed(beside, self.work.jacobian, self.first, known)
+
+    def _felt(self, scale: np.ndarray, width: float) -> np.ndarray:
+        """Largest change of each equation when one unknown or the parameter changes by so much, as linearised last."""
+        return np.maximum(
+            self.problem.algebra.row_sizes(self.work, scale), np.abs(self.work.derivative) * width
+        )
+
+    def listen(self, tangent: np.ndarray) -> None:
+        """How much the noise of the equations moves the solution at which they were linearised last across the branch, relative to the scale."""
+        noise = self.problem.functions.noise
+        if not noise.any():
+            return
+        across = self.weights() * tangent
+        step, again = np.zeros((2, self.n + 1))
+        self.work.residual[:] = np.tile(noise, self.n // len(noise))
+        border = across / np.abs(across).max()
+        self.kernels.bordered(self.problem.data, self.work, border, 0.0, step, again)
+        moved = float((np.abs(step[:-1]) / self.scale).max())
+        if np.isfinite(moved) and moved > DERIVATIVES.roundoff:
+            self.noise = min(moved, DERIVATIVES.believed)
 
     def _confirmed(self, tangent: np.ndarray) -> np.ndarray:
         """Which entries of a tangent are no rounding: they are the same when it is solved for with another border."""
@@ -219,7 +330,7 @@ class Scout:
         for j in np.flatnonzero((size > 0.0) & (size < SCALES.rounding * size.max()))[:MOST]:
             unit = np.zeros(self.n)
             unit[j] = 1.0
-            felt = self.problem.row_sizes(self.work, unit, 0.0)
+            felt = self._felt(unit, 0.0)
             reach = np.divide(self.rows, felt, out=np.full(self.n, np.inf), where=felt > 0.0).min()
             if np.isfinite(reach) and size[j] < SCALES.rounding * reach:
                 found[int(j)] = float(reach)
@@ -231,7 +342,7 @@ class Scout:
         size = np.maximum(np.abs(self.high), np.abs(self.low))[:-1]
         lost = self._rounding(size)
         size[list(lost)] = 0.0
-        bends, first = np.asarray(self.problem.bends), self.first
+        bends, first = self.problem.of_unknowns(self.problem.functions.bends), self.first
         sure = bends | self.known
         # a zero that rounding has moved has no size of its own
         least = np.where(np.asarray(self.problem.u0) == 0.0, SCALES.faint, SCALES.rounding)
@@ -272,8 +383,7 @@ def learn(problem: Unscaled, within: tuple[float, float], given: np.ndarray | No
     if begin is None:
         return Scales(in_fields(scout.first), scout.width, np.ones(scout.n), 1.0, 0.0)
     z, tangent = begin
-    across = scout.weights() * tangent
-    scout.noise = problem.noise_at(scout.work, scout.scale, across / np.abs(across).max())
+    scout.listen(tangent)
     steps = next((steps for most, steps in STEPS.items() if scout.n <= most), FEW)
     scout.walk(z, tangent, steps)
     scout.walk(z, -tangent, steps)
