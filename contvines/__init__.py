@@ -71,7 +71,7 @@ __getattr__ = on_demand(
         "Seed": "contvines.problems.protocol",
         "Settings": "contvines.continuation.settings",
         "SpecialPoint": "contvines.branches.special_point",
-        "StepRule": "contvines.continuation.step_rule",
+        "StepRule": "contvines.continuation.settings",
         "Switch": "contvines.graph.graph",
         "Symmetry": "contvines.problems.protocol",
         "Attractor": "contvines.graph.attractor",
@@ -108,8 +108,7 @@ if TYPE_CHECKING:
     from .coexistence.build import atlas
     from .coexistence.erosion import erosion
     from .coexistence.robustness import robustness
-    from .continuation.settings import Settings
-    from .continuation.step_rule import StepRule
+    from .continuation.settings import Settings, StepRule
     from .continuation.trace import trace
     from .flows import FlowProblem
     from .graph.attractor import Attractor as Attractor

@@ -1,5 +1,5 @@
 // Continuation of a compiled problem: predict, correct, judge the step, many points a call; single points, and places where a number
-// passes zero. The reference: contvines/continuation/loop.py, corrector.py, bracketing.py, aims.py, lengths.py; unknowns have scale 1 and one
+// passes zero. The reference: contvines/continuation/loop.py, corrector.py, bracketing.py, layout.py; unknowns have scale 1 and one
 // weight here: <a, b> = of_unknowns a_u.b_u + of_parameter a_p b_p.
 #pragma once
 #include "math.hpp"
@@ -103,7 +103,7 @@ inline int improve(const Frame& f, double* u, double& p, whole sweep, double res
 }
 
 // ---- the march ------------------------------------------------------------------------------------------------------------------
-// `judge` of a step rule (contvines/continuation/step_rule.py); ABORT ends the march.
+// `judge` of a step rule (contvines/continuation/settings.py); ABORT ends the march.
 using Judge = double (*)(double turn, double error, whole sweeps, double length, double angle, double roundoff);
 inline double by_angle(double turn, double error, whole sweeps, double length, double angle, double roundoff) {
     if (!(turn <= 2.0 * angle && error <= angle * length + roundoff)) return -0.5;

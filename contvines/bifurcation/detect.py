@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Chunk, Status
 from ..problems.abilities import Nearing
 from ..shared.floating_point import EPSILON
 from .consistency import at_one, leap

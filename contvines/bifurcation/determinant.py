@@ -14,8 +14,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..continuation.aims import NO_COLUMNS, SIGN, Aim
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import NO_COLUMNS, SIGN, Aim
 from ..problems.abilities import Doubtful
 from ..shared.floating_point import EPSILON, TINY
 from .locate import Root, locate, locate_singular

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..continuation.aims import MARGINS, Aim
 from ..continuation.engine import Engine, Solved
-from ..continuation.layout import MARGIN
+from ..continuation.layout import MARGIN, MARGINS, Aim
 from ..shared.floating_point import EPSILON
 from .kinds import BORDERS
 from .locate import Root, locate

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..continuation.settings import hinted
 
 if TYPE_CHECKING:
-    from ..continuation.aims import Aim
     from ..continuation.engine import Solved
+    from ..continuation.layout import Aim
     from .located import Located
     from .point_on_branch import Point, PointOnBranch
     from .segment import Segment

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..continuation.aims import Aim
 from ..continuation.engine import Solved
+from ..continuation.layout import Aim
 from ..shared.floating_point import EPSILON, ROUNDED
 from .segment import Segment
 from .settings import LOCATING

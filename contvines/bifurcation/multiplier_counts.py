@@ -1,6 +1,6 @@
 """Multipliers past the circle: period doublings, Neimark-Sacker and Hopf points, and folds and branch points where they show there.
 
-Multipliers are taken one by one (:func:`contvines.continuation.aims.multiplier`): the k-th largest real one is a test function of its own, so
+Multipliers are taken one by one (:func:`contvines.continuation.layout.multiplier`): the k-th largest real one is a test function of its own, so
 two that cross at once are two events. A product of test functions would not change sign.
 """
 

@@ -11,10 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..continuation.aims import KINDS
-from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine
-from ..continuation.layout import MARGIN
+from ..continuation.layout import KINDS, MARGIN, Chunk
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 from .multiplier_counts import sizes_by_sort

@@ -7,9 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..continuation.aims import Aim
 from ..continuation.engine import Engine, Hit, Solved
-from ..continuation.layout import Found, solved_point, solved_points
+from ..continuation.layout import Aim, Found, solved_point, solved_points
 from ..continuation.mesh_motion import MeshMotion
 from .multiplier_counts import counts
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..continuation.chunk import Chunk
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Chunk
 from .kind import Kind
 from .kind_answers import number_of
 from .point_on_branch import PointOnBranch

@@ -6,12 +6,12 @@ from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
 
-from ..continuation.chunk import Status
+from ..continuation.layout import Status
 from ..shared.number_text import number_text
 
 
 class Reason(StrEnum):
-    """Why a branch ends; the first ones are those of the continuation loop (:class:`contvines.continuation.chunk.Status`)."""
+    """Why a branch ends; the first ones are those of the continuation loop (:class:`contvines.continuation.layout.Status`)."""
 
     RUNNING = "running"
     LEFT_INTERVAL = "left-interval"

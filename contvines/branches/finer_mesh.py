@@ -15,8 +15,8 @@ import numpy as np
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Role
-from ..continuation.chunk import Status, packed
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Status, packed
 from ..continuation.mesh_motion import MeshMotion
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..bifurcation.kinds import RENAMED
 from ..bifurcation.located import Located, Role
-from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Status
 
 
 class Piece(NamedTuple):

@@ -13,9 +13,8 @@ from ..bifurcation.locate import Root
 from ..bifurcation.located import Located, Role
 from ..bifurcation.one_sided_limits import one_sided
 from ..bifurcation.segment import Segment
-from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
-from ..continuation.layout import MARGIN
+from ..continuation.layout import MARGIN, Status
 from ..journal import NullJournal
 from .half_branch import HalfBranch, pack, piece_of, single, unpack
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from ..bifurcation.detect import Detector
 from ..bifurcation.located import Located, Role
-from ..continuation.chunk import Chunk, Status
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Chunk, Status
 from ..continuation.trace import Finer, Retrace, chunks
 from ..journal import NullJournal
 from .finer_mesh import Meshes

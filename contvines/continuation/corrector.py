@@ -1,189 +1,316 @@
-"""Corrector: Newton's method on the bordered system, along a branch and for single points.
+"""Corrector: Newton's method on the bordered system, along a branch and for single points; and its sums over the unknowns.
 
-For problems in Python; native/march.hpp has the same for compiled ones.
+For problems in Python, where every unknown has its scale; native/march.hpp has the same for compiled ones, whose unknowns all have scale 1 and one
+weight.
 """
 
-import math
+from __future__ import annotations
 
-from .aims import probe
-from .arrays import add, correction_size, distance, hermite, orient, put, remainder
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..problems.dense import dot, position
 from .bracketing import Bracket
-from .layout import AT_END, ENDS, JUMP, NOWHERE, PASSED, PRECISION
+from .layout import AT_END, ENDS, JUMP, NOWHERE, PASSED, PRECISION, Aim, Found, Metric, Scratch, Way, probe
 from .settings import SOLUTION
+
+if TYPE_CHECKING:
+    from ..problems.protocol import KernelFunctions
 
 STRAY = 0.3  # part of a chord by which a point may lie off the interpolation between its ends
 
 
-def improve(u, p, step, sweep, residual, before, tolerance, metric, noise):
-    """Add a Newton correction to u and p, unless Newton's method diverges.
+def correction_size(step: np.ndarray, u: np.ndarray, p: float, metric: Metric) -> float:
+    """Largest entry of a correction, relative to scale + abs(unknown); infinity where it is not finite."""
+    part = np.abs(u)
+    part += metric.scale[:-1]
+    np.divide(step[:-1], part, out=part)
+    change = abs(float(step[-1])) / (float(metric.scale[-1]) + abs(p))
+    if not dot(part, part) + change < math.inf:
+        return math.inf
+    return max(abs(float(part[position(part)])), change)
+
+
+def plane(
+    tangent: np.ndarray,
+    u: np.ndarray,
+    p: float,
+    metric: Metric,
+    border: np.ndarray,
+) -> float:
+    """Fill `border` with the plane through (u, p) across a tangent; returns border.(u, p)."""
+    np.multiply(metric.weights, tangent, out=border)
+    return dot(border, u, len(u)) + float(border[-1]) * p
+
+
+def compare(
+    tangent: np.ndarray,
+    before: np.ndarray,
+    u: np.ndarray,
+    guess_u: np.ndarray,
+    p: float,
+    guess: float,
+    metric: Metric,
+) -> tuple[float, float, float]:
+    """Length of a tangent, cosine of its angle with the unit tangent before, distance of a point from its guess."""
+    weighted = metric.weights * tangent
+    norm = math.sqrt(dot(weighted, tangent))
+    gap = u - guess_u
+    error = math.sqrt(dot(metric.weights[:-1] * gap, gap) + metric.of_parameter * (p - guess) ** 2)
+    return norm, dot(weighted, before) / norm, error
+
+
+def orient(
+    tangent: np.ndarray,
+    along: np.ndarray,
+    border: np.ndarray,
+    metric: Metric,
+) -> tuple[float, float, float]:
+    """Length of a tangent, its inner product with another vector, and border.tangent; the length is infinite where one is not finite."""
+    weighted = metric.weights * tangent
+    norm = math.sqrt(dot(weighted, tangent)) if np.isfinite(tangent).all() else math.inf
+    return norm, dot(weighted, along), dot(border, tangent)
+
+
+def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> float:
+    """Cubic Hermite interpolation at s in [0, 1]; fills u and guess alike, returns p. See :class:`contvines.bifurcation.segment.Segment`."""
+    a, b = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2
+    c, d = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0)
+    guess[:] = a * chord[0] + b * chord[1] + c * chord[2] + d * chord[3]
+    u[:] = guess[:-1]
+    return float(guess[-1])
+
+
+def distance(u: np.ndarray, p: float, guess: np.ndarray, metric: Metric) -> float:
+    """Distance of (u, p) from a guess."""
+    gap = u - guess[:-1]
+    return math.sqrt(dot(metric.weights[:-1] * gap, gap) + metric.of_parameter * (p - float(guess[-1])) ** 2)
+
+
+def extrapolate(
+    points: np.ndarray,
+    values: np.ndarray,
+    tangents: np.ndarray,
+    i: int,
+    h: float,
+    metric: Metric,
+    u: np.ndarray,
+) -> float:
+    """Cubic Hermite extrapolation over a length h from point i - 1 (and i - 2); fills u, returns p.
+
+    The length of the arc between the two points is their distance times 1 + angle^2/24 (exact to fourth order).
+    """
+    here, value, point = tangents[i - 1], float(values[i - 1]), points[i - 1]
+    if i >= 2:
+        there = tangents[i - 2]
+        chord, bend = point - points[i - 2], here - there
+        change = value - float(values[i - 2])
+        turn = dot(metric.weights * bend, bend)
+        square = dot(metric.weights[:-1] * chord, chord) + metric.of_parameter * change**2
+        d = math.sqrt(square) * (1.0 + turn / 24.0)
+        if d > 0.0 and turn < 1.0 and h < 4.0 * d:
+            share = h / d
+            a = h * (1.0 + 2.0 * share + share * share)
+            b = h * (share + share * share)
+            c = h * (3.0 * share + 2.0 * share * share) / d
+            chord *= -c
+            chord += point
+            way = a * here
+            way += np.multiply(there, b, out=bend)
+            np.add(chord, way[:-1], out=u)
+            if metric.moving is not None:
+                # nothing corrects these: their errors grow by the formula above, and do not by that of Adams and Bashforth
+                held = metric.moving.held
+                u[held] = point[held] + h * (
+                    (1.0 + 0.5 * share) * here[:-1][held] - 0.5 * share * there[:-1][held]
+                )
+            return value - c * change + float(way[-1])
+    np.add(point, h * here[:-1], out=u)
+    return value + h * float(here[-1])
+
+
+class Corrector:
+    """Newton's method for one problem.
 
     Parameters
     ----------
-    u, p, step
-        Unknowns (changed in place), parameter, correction of both.
-    sweep : int
-        Number of corrections before this one.
-    residual : float
-        Largest residual before this correction.
-    before : float
-        Size of the correction before this one.
-    tolerance : float
+    kernels, data, work
+        Of the problem.
     metric : Metric
     noise : float
         Accuracy to which corrections can be obtained at all, because the equations are not smooth below it; 0 for roundoff.
-
-    Returns
-    -------
-    p : float
-    size : float
-        Of the correction, relative to the scale + abs(unknown).
-    verdict : int
-        1 when converged, -1 when diverged, else 0.
-    """
-    size = correction_size(step, u, p, metric)
-    if not size < SOLUTION.huge:
-        return p, size, -1
-    if sweep > 1 and size > 2.0 * before and size > max(SOLUTION.stalled, 10.0 * noise):
-        return p, size, -1
-    add(u, step)
-    p += float(step[u.shape[0]])
-    if size <= max(min(SOLUTION.small, tolerance), noise):
-        return p, size, 1
-    if sweep > 0:
-        ratio = size / before
-        # quadratic convergence: the next correction would be about ratio^2 size
-        if size <= tolerance and ratio * ratio * size <= max(SOLUTION.predicted, noise):
-            return p, size, 1
-        if size <= SOLUTION.stalled and ratio > 0.3 and residual < SOLUTION.solved:
-            return p, size, 1
-        # corrections that are noise do not shrink, whatever the tolerance
-        if size <= 30.0 * noise and ratio > 0.1:
-            return p, size, 1
-    return p, size, 0
-
-
-def correct(kernels, data, work, u, p, border, target, tolerance, max_sweeps, step, tangent, metric, noise):
-    """Newton's method for F(u, p) = 0, border.(u, p) = target; u is updated in place.
-
-    Each sweep is one linearisation and one elimination, which gives the correction and the tangent.
-
-    Returns
-    -------
-    p : float
-    sweeps : int
-        Number of sweeps; -1: no convergence; -2: not evaluable.
-    sign : float
-        Sign of the bordered determinant at the last linearisation, before the last correction.
-    size : float
-        Last correction, relative to the scale + abs(unknown).
-    """
-    size = 0.0
-    sign = 0.0
-    for sweep in range(max_sweeps):
-        residual = kernels.linearise(data, u, p, work)
-        if not math.isfinite(residual):
-            return p, -2, sign, size
-        gap = remainder(border, u, p, target)
-        sign = kernels.bordered(data, work, border, gap, step, tangent)
-        p, size, verdict = improve(u, p, step, sweep, residual, size, tolerance, metric, noise)
-        if verdict != 0:
-            return p, sweep + 1 if verdict > 0 else -1, sign, size
-    return p, -1, sign, size
-
-
-def point(kernels, frame, way, s, found, i, noise):
-    """The solution at a place on a chord, and everything about it, into entry i of what is found.
-
-    Parameters
-    ----------
-    kernels
-        Of the problem.
-    frame : tuple
-        The problem's data and workspace, metric and `Scratch`.
-    way : Way
-    s : float
-    found : Found
-    i : int
-    noise : float
-    """
-    data, work, metric, scratch = frame
-    border, u, tangent = way.border, found.u[i], found.tangents[i]
-    p = hermite(way.chord, s, u, scratch.guess)
-    limit = 0 if way.length > 0.0 and (s == 0.0 or s == 1.0) else way.sweeps
-    target = way.start + s * way.length
-    residual, sign, size, sweeps, settled = 0.0, 0.0, 0.0, -1, limit == 0
-    for sweep in range(limit + 1):
-        residual = kernels.linearise(data, u, p, work)
-        if not math.isfinite(residual):
-            sweeps = -2
-            break
-        sign = kernels.bordered(data, work, border, remainder(border, u, p, target), scratch.step, tangent)
-        if settled:
-            sweeps = sweep
-            break
-        if sweep == limit:
-            break
-        p, size, verdict = improve(
-            u, p, scratch.step, sweep, residual, size, SOLUTION.rounding, metric, noise
-        )
-        if verdict < 0:
-            break
-        settled = verdict > 0
-    if sweeps >= 0:
-        kernels.inspect(data, u, p, work, found.rows[i])
-        norm, same, across = orient(tangent, way.along, border, metric)
-        if not math.isfinite(norm):
-            sweeps = -3
-        else:
-            if same < 0.0:
-                norm, across = -norm, -across
-            put(tangent, tangent, norm)
-            if across < 0.0:
-                sign = -sign
-            if way.length > 0.0 and distance(u, p, scratch.guess, metric) > STRAY * way.length:
-                sweeps = -4
-    found.numbers[i] = p, sweeps, residual, sign, size
-
-
-def search(kernels, frame, way, found, known, aim, noise):
-    """The solution at which a number passes zero between a chord's ends.
-
-    Parameters
-    ----------
-    kernels, frame, way, found, noise
-        See :func:`point`; the solution is the first one of what is found.
     known : ndarray
-        Has tolerance and jump of :class:`contvines.continuation.bracketing.Bracket`; the final bracket is left there.
-    aim : Aim
-
-    Returns
-    -------
-    int
-        `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
+        Bracket of a search; see :mod:`contvines.continuation.layout`.
+    scratch : Scratch
     """
 
-    def value(s):
-        point(kernels, frame, way, s, found, 0, noise)
-        p, sweeps, _, sign, _ = found.numbers[0].tolist()
-        return probe(aim, found.rows[0], found.tangents[0, -1], sign) if sweeps >= 0 else math.nan, p
+    def __init__(
+        self,
+        kernels: KernelFunctions,
+        data: object,
+        work: object,
+        metric: Metric,
+        noise: float,
+        known: np.ndarray,
+        scratch: Scratch,
+    ) -> None:
+        self.kernels, self.data, self.work, self.metric = kernels, data, work, metric
+        self.noise, self.known, self.scratch = noise, known, scratch
 
-    first, first_p = value(0.0)
-    if not math.isfinite(first):
-        return NOWHERE
-    last, last_p = value(1.0)
-    if not math.isfinite(last):
-        return NOWHERE
-    smallest, largest = sorted((abs(first), abs(last)))
-    if first * last > 0.0:
-        # an end that is the zero itself may have either sign, by roundoff
-        if aim.anyway == 0 and smallest > SOLUTION.solved * largest:
+    def improve(
+        self, u: np.ndarray, p: float, sweep: int, residual: float, before: float, tolerance: float
+    ) -> tuple[float, float, int]:
+        """Add the Newton correction of unknowns and parameter, unless Newton's method diverges.
+
+        Parameters
+        ----------
+        u, p
+            Unknowns (changed in place), parameter.
+        sweep : int
+            Number of corrections before this one.
+        residual : float
+            Largest residual before this correction.
+        before : float
+            Size of the correction before this one.
+        tolerance : float
+
+        Returns
+        -------
+        p : float
+        size : float
+            Of the correction, relative to the scale + abs(unknown).
+        verdict : int
+            1 when converged, -1 when diverged, else 0.
+        """
+        step, noise = self.scratch.step, self.noise
+        size = correction_size(step, u, p, self.metric)
+        if not size < SOLUTION.huge:
+            return p, size, -1
+        if sweep > 1 and size > 2.0 * before and size > max(SOLUTION.stalled, 10.0 * noise):
+            return p, size, -1
+        u += step[:-1]
+        p += float(step[-1])
+        if size <= max(min(SOLUTION.small, tolerance), noise):
+            return p, size, 1
+        if sweep > 0:
+            ratio = size / before
+            # quadratic convergence: the next correction would be about ratio^2 size
+            if size <= tolerance and ratio * ratio * size <= max(SOLUTION.predicted, noise):
+                return p, size, 1
+            if size <= SOLUTION.stalled and ratio > 0.3 and residual < SOLUTION.solved:
+                return p, size, 1
+            # corrections that are noise do not shrink, whatever the tolerance
+            if size <= 30.0 * noise and ratio > 0.1:
+                return p, size, 1
+        return p, size, 0
+
+    def linearised(
+        self, u: np.ndarray, p: float, border: np.ndarray, target: float, tangent: np.ndarray
+    ) -> tuple[float, float]:
+        """One linearisation and one elimination, which gives the correction and the tangent; residual (not finite: not evaluable) and sign."""
+        residual = self.kernels.linearise(self.data, u, p, self.work)
+        if not math.isfinite(residual):
+            return residual, 0.0
+        gap = target - float(border[-1]) * p - dot(border, u, len(u))
+        return residual, self.kernels.bordered(self.data, self.work, border, gap, self.scratch.step, tangent)
+
+    def correct(
+        self, u: np.ndarray, p: float, target: float, tolerance: float, max_sweeps: int
+    ) -> tuple[float, int, float, float]:
+        """Newton's method for F(u, p) = 0, border.(u, p) = target, with the border at hand; u is updated in place.
+
+        Returns
+        -------
+        p : float
+        sweeps : int
+            Number of sweeps; -1: no convergence; -2: not evaluable.
+        sign : float
+            Sign of the bordered determinant at the last linearisation, before the last correction.
+        size : float
+            Last correction, relative to the scale + abs(unknown).
+        """
+        size, sign = 0.0, 0.0
+        for sweep in range(max_sweeps):
+            residual, sign = self.linearised(u, p, self.scratch.border, target, self.scratch.tangent)
+            if not math.isfinite(residual):
+                return p, -2, sign, size
+            p, size, verdict = self.improve(u, p, sweep, residual, size, tolerance)
+            if verdict != 0:
+                return p, sweep + 1 if verdict > 0 else -1, sign, size
+        return p, -1, sign, size
+
+    def point(self, way: Way, s: float, found: Found, i: int) -> None:
+        """The solution at a place on a chord, and everything about it, into entry i of what is found."""
+        border, u, tangent = way.border, found.u[i], found.tangents[i]
+        p = hermite(way.chord, s, u, self.scratch.guess)
+        limit = 0 if way.length > 0.0 and (s == 0.0 or s == 1.0) else way.sweeps
+        target = way.start + s * way.length
+        residual, sign, size, sweeps, settled = 0.0, 0.0, 0.0, -1, limit == 0
+        for sweep in range(limit + 1):
+            residual, sign = self.linearised(u, p, border, target, tangent)
+            if not math.isfinite(residual):
+                sweeps = -2
+                break
+            if settled:
+                sweeps = sweep
+                break
+            if sweep == limit:
+                break
+            p, size, verdict = self.improve(u, p, sweep, residual, size, SOLUTION.rounding)
+            if verdict < 0:
+                break
+            settled = verdict > 0
+        if sweeps >= 0:
+            self.kernels.inspect(self.data, u, p, self.work, found.rows[i])
+            norm, same, across = orient(tangent, way.along, border, self.metric)
+            if not math.isfinite(norm):
+                sweeps = -3
+            else:
+                if same < 0.0:
+                    norm, across = -norm, -across
+                tangent /= norm
+                if across < 0.0:
+                    sign = -sign
+                if way.length > 0.0 and distance(u, p, self.scratch.guess, self.metric) > STRAY * way.length:
+                    sweeps = -4
+        found.numbers[i] = p, sweeps, residual, sign, size
+
+    def search(self, way: Way, found: Found, aim: Aim) -> int:
+        """The solution at which a number passes zero between a chord's ends, the first one of what is found.
+
+        ``known`` has tolerance and jump of :class:`contvines.continuation.bracketing.Bracket`; the final bracket is left there.
+
+        Returns
+        -------
+        int
+            `PASSED` where the bracket holds a zero, `AT_END` where an end is taken for it, `NOWHERE` where there is none.
+        """
+        known = self.known
+
+        def value(s: float) -> tuple[float, float]:
+            self.point(way, s, found, 0)
+            p, sweeps, _, sign, _ = found.numbers[0].tolist()
+            return probe(aim, found.rows[0], found.tangents[0, -1], sign) if sweeps >= 0 else math.nan, p
+
+        first, first_p = value(0.0)
+        if not math.isfinite(first):
             return NOWHERE
-        outcome, seen, end = AT_END, 1.0, 0.0 if abs(first) < abs(last) else 1.0
-        known[0] = end
-    else:
-        bracket = Bracket(1.0, last, last_p, 0.0, first, first_p, *known[[PRECISION, JUMP]].tolist())
-        seen, outcome, end = bracket.narrow(value), PASSED, bracket.best
-        known[ENDS] = bracket.x1, bracket.f1, bracket.p1, bracket.x2, bracket.f2, bracket.p2
-    if end != seen or found.numbers[0, 1] < 0.0:  # the best place once more
-        value(end)
-    return outcome
+        last, last_p = value(1.0)
+        if not math.isfinite(last):
+            return NOWHERE
+        smallest, largest = sorted((abs(first), abs(last)))
+        if first * last > 0.0:
+            # an end that is the zero itself may have either sign, by roundoff
+            if aim.anyway == 0 and smallest > SOLUTION.solved * largest:
+                return NOWHERE
+            outcome, seen, end = AT_END, 1.0, 0.0 if abs(first) < abs(last) else 1.0
+            known[0] = end
+        else:
+            bracket = Bracket(1.0, last, last_p, 0.0, first, first_p, *known[[PRECISION, JUMP]].tolist())
+            seen, outcome, end = bracket.narrow(value), PASSED, bracket.best
+            known[ENDS] = bracket.x1, bracket.f1, bracket.p1, bracket.x2, bracket.f2, bracket.p2
+        if end != seen or found.numbers[0, 1] < 0.0:  # the best place once more
+            value(end)
+        return outcome

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contvines.shared.floating_point import EPSILON
 
@@ -14,17 +15,31 @@ from ..core.table import TableKernels
 from ..interrupts import HELD, OPEN
 from ..problems.abilities import Adaptive, Moving, Nearing, Rough
 from ..problems.protocol import Problem, array_of
-from . import layout
-from .aims import NO_COLUMNS, NOTHING, Aim
-from .layout import Control, Found, Metric, Scratch, Way, solved_point
+from .layout import (
+    AT_END,
+    ENDS,
+    JUMP,
+    NO_COLUMNS,
+    NOTHING,
+    NOWHERE,
+    PRECISION,
+    SIZE,
+    Aim,
+    Control,
+    Found,
+    Metric,
+    Scratch,
+    Way,
+    solved_point,
+)
 from .layout import Hit as Hit
 from .layout import Solved as Solved
-from .rows import Rows
 from .settings import SOLUTION, Settings
 
 if TYPE_CHECKING:
-    from .interpreted import InterpretedLoop
+    from .loop import InterpretedLoop
     from .native import NativeLoop
+
 
 NOISY = 30.0  # times their noise: corrections of noisy equations may be as large at a solution
 ONE = np.zeros(1)  # a single place: the chord's first end
@@ -38,7 +53,17 @@ def parameter_unit(within: tuple[float, float], p: float, scale: float = 1.0) ->
     return own if own < length else length
 
 
-class Engine(Rows):
+def _of_rows(extreme: np.ufunc, rows: np.ndarray) -> np.ndarray:
+    """The smallest or largest of each row; of few columns a column at a time, which takes a tenth of a reduction's time."""
+    if rows.ndim == 1 or rows.shape[-1] > 16:
+        return np.asarray(extreme.reduce(rows, axis=-1))
+    found = rows[..., 0].copy()
+    for j in range(1, rows.shape[-1]):
+        extreme(found, rows[..., j], out=found)
+    return found
+
+
+class Engine:
     """Continuation of one problem within an interval.
 
     Parameters
@@ -100,7 +125,7 @@ class Engine(Rows):
         self.guess = np.zeros((4, n + 1))  # a chord of which the first end alone is used
         self.nothing, self.at_parameter = np.zeros(n + 1), np.zeros(n + 1)
         self.at_parameter[n] = 1.0
-        self.known = np.zeros(layout.SIZE)
+        self.known = np.zeros(SIZE)
         self.loop = self.loop_with(self.metric)
 
     def loop_with(self, metric: Metric) -> InterpretedLoop | NativeLoop:
@@ -110,7 +135,7 @@ class Engine(Rows):
             from .native import NativeLoop
 
             return NativeLoop(kernels.table, self.data, self.work, (self.n, self.row_size), *rest)
-        from .interpreted import InterpretedLoop
+        from .loop import InterpretedLoop
 
         return InterpretedLoop(kernels, self.data, self.work, *rest)
 
@@ -167,6 +192,53 @@ class Engine(Rows):
         """The solution at a distance along the tangent of a known one."""
         guess = self.join(point.u, point.p) + step * point.tangent
         return self.across(guess[:-1], float(guess[-1]), point.tangent)
+
+    # ------------------------------------------------------------------ rows: multipliers as (re, im) pairs, then margins
+    def rows(self, count: int) -> np.ndarray:
+        """Room for rows, the same one every time: large, written once and read once."""
+        if len(self._rows) < count:
+            self._rows = np.zeros((count, self.row_size))
+        return self._rows[:count]
+
+    def spectrum(self, rows: np.ndarray) -> NDArray[np.complex128]:
+        """Raw multipliers of some rows, shape (..., m)."""
+        pairs = np.ascontiguousarray(rows[..., : 2 * self.m])
+        return pairs.view(np.complex128) + 0.0  # a copy, without negative zeros
+
+    def margins(self, rows: np.ndarray) -> np.ndarray:
+        """Margins of some rows, shape (..., n_margins); NaN counts as not applicable."""
+        return np.fmin(rows[..., 2 * self.m :], np.inf)
+
+    def smallest_margin(self, rows: np.ndarray) -> np.ndarray:
+        """Smallest margin of each row, +inf where there are none."""
+        margins = rows[..., 2 * self.m :]  # fmin passes over NaN
+        if margins.ndim == 1 or not margins.shape[-1]:
+            return np.fmin.reduce(margins, axis=-1, initial=np.inf)
+        return np.fmin(_of_rows(np.fmin, margins), np.inf)
+
+    def multipliers(self, rows: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period, shape (..., m)."""
+        return np.asarray(self.problem.to_multipliers(self.spectrum(rows)), dtype=complex)
+
+    @property
+    def tells_stability(self) -> bool:
+        """Whether the problem has a spectrum that tells stability; else it is not computed."""
+        return self.problem.spectrum in ("map", "flow")
+
+    def stable(self, rows: np.ndarray) -> np.ndarray:
+        """Whether all multipliers are inside the unit circle (left of the imaginary axis for flows); False where nothing says."""
+        return self.outermost(rows) < 0.0
+
+    def outermost(self, rows: np.ndarray) -> np.ndarray:
+        """How far the outermost multiplier is outside the unit circle (right of the imaginary axis for flows); NaN where nothing says."""
+        if not self.tells_stability:
+            return np.full(rows.shape[:-1], np.nan)
+        if not self.m:
+            return np.full(rows.shape[:-1], -np.inf)
+        spectrum = self.spectrum(rows)
+        if self.problem.spectrum == "flow":
+            return _of_rows(np.maximum, spectrum.real)
+        return _of_rows(np.maximum, np.abs(spectrum)) - 1.0
 
     # ------------------------------------------------------------------ single points
     def solve(
@@ -238,13 +310,13 @@ class Engine(Rows):
             See :class:`contvines.continuation.bracketing.Bracket`.
         """
         known = self.known
-        known[layout.PRECISION], known[layout.JUMP] = tolerance, jump
+        known[PRECISION], known[JUMP] = tolerance, jump
         found, outcome = self._run(chord, start, length, ONE, border, along, 40, aim)
-        if outcome == layout.NOWHERE:
+        if outcome == NOWHERE:
             return None
         point = solved_point(found, 0)
-        one, f_one, p_one, other, f_other, p_other = known[layout.ENDS].tolist()
-        if outcome == layout.AT_END or point is None:
+        one, f_one, p_one, other, f_other, p_other = known[ENDS].tolist()
+        if outcome == AT_END or point is None:
             return Hit(one, point, 0.0, 0.0)
         place = one if abs(f_one) < abs(f_other) else other
         width = abs(p_one - p_other) + 2.0 * EPSILON * abs(point.p)

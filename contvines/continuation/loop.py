@@ -7,133 +7,145 @@ depend neither on the number of repetitions of an orbit nor on the unit of the p
 scales s: then a_u.b_u is the sum of a_j b_j / s_j^2 (the array ``weights``).
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
-from .arrays import compare, extrapolate, fix_parameter, plane, put
-from .corrector import correct
-from .layout import BORDER, LEFT_INTERVAL, MARGIN, NOT_EVALUABLE, RUNNING, STEP_TOO_SMALL
-from .settings import SOLUTION
+import numpy as np
+
+from .corrector import Corrector, compare, extrapolate, plane
+from .layout import MARGIN, NOTHING, NOWHERE, Aim, Chunk, Control, Found, Metric, Scratch, Status, Way
+from .settings import SOLUTION, StepRule
+
+if TYPE_CHECKING:
+    from ..problems.protocol import KernelFunctions
 
 
-def march(kernels, judge, frame, chunk, first, h, control):
-    """Fill rows first, first + 1, ... of the chunk arrays with points of the branch.
-
-    Row first - 1 holds the last known point, row first - 2 (if any) the one before it.
-
-    Each step is judged, and the next one chosen, by ``judge`` (:mod:`contvines.continuation.step_rule`). At the ends of the
-    interval the last point is corrected at the fixed parameter value, so it lies on the end exactly.
+class InterpretedLoop(Corrector):
+    """March and single points of one problem; overflows are nobody's business.
 
     Parameters
     ----------
-    kernels
-        Of the problem.
-    judge : callable
-        Of the step rule.
-    frame : tuple
-        The problem's data and workspace, metric and `Scratch`.
-    chunk : Points
-        Filled.
-    first : int
-        At least 1.
-    h : float
-        Step to try first.
-    control : Control
-
-    Returns
-    -------
-    filled : int
-        Rows are filled up to, not including, this one.
-    h : float
-        Step to go on with.
-    status : int
+    kernels, data, work, metric, noise, known, scratch
+        See :class:`contvines.continuation.corrector.Corrector`.
+    rule : StepRule
     """
-    data, work, metric, scratch = frame
-    points, values, tangents = chunk.points, chunk.values, chunk.tangents
-    rows, signs, corrections = chunk.rows, chunk.signs, chunk.corrections
-    u, border, step, tangent = scratch.u, scratch.border, scratch.step, scratch.tangent
-    n, row_size = points.shape[1], rows.shape[1]
-    angle, min_step, max_step, tolerance, lower, upper, stop_at_border, sweeps_allowed, row_margins, noise = (
-        control
-    )
-    i = first
-    trouble = 0
-    while i < points.shape[0]:
-        if h < min_step:
-            return i, h, NOT_EVALUABLE if trouble == -2 else STEP_TOO_SMALL
-        start = values[i - 1]
-        p = extrapolate(points, values, tangents, i, h, metric, u)
-        fixed = p > upper or p < lower
-        length = h
-        bound = upper if p > upper else lower
-        if fixed:
-            if start == bound:
-                return i, h, LEFT_INTERVAL
-            for _ in range(3):
-                if p != start:
-                    length *= min(max((bound - start) / (p - start), 0.0), 1.5)
-                p = extrapolate(points, values, tangents, i, length, metric, u)
-            p = bound
-            fix_parameter(border)
-            target = bound
-        else:
-            target = plane(tangents[i - 1], u, p, metric, border)
-        put(points[i], u, 1.0)
-        guess = p
-        p, sweeps, sign, size = correct(
-            kernels,
-            data,
-            work,
-            u,
-            p,
-            border,
-            target,
-            tolerance,
-            sweeps_allowed,
-            step,
-            tangent,
-            metric,
-            noise,
+
+    def __init__(
+        self,
+        kernels: KernelFunctions,
+        data: object,
+        work: object,
+        metric: Metric,
+        noise: float,
+        known: np.ndarray,
+        scratch: Scratch,
+        rule: StepRule,
+    ) -> None:
+        super().__init__(kernels, data, work, metric, noise, known, scratch)
+        self.rule = rule
+
+    def points(self, way: Way, places: np.ndarray, found: Found, aim: Aim) -> int:
+        """The points at some places, or the one that is aimed at; see :mod:`contvines.continuation.corrector`."""
+        with np.errstate(all="ignore"):
+            if aim.what != NOTHING:
+                return self.search(way, found, aim)
+            for i, s in enumerate(places):
+                self.point(way, s, found, i)
+        return NOWHERE
+
+    @np.errstate(all="ignore")
+    def march(self, chunk: Chunk, first: int, h: float, control: Control) -> tuple[int, float, int]:
+        """Fill rows first, first + 1, ... of the arrays of a chunk with points of the branch.
+
+        Row first - 1 holds the last known point, row first - 2 (if any) the one before it.
+
+        Each step is judged, and the next one chosen, by the step rule (:class:`contvines.continuation.settings.StepRule`). At the ends of the
+        interval the last point is corrected at the fixed parameter value, so it lies on the end exactly.
+
+        Parameters
+        ----------
+        chunk : Chunk
+            Filled.
+        first : int
+            At least 1.
+        h : float
+            Step to try first.
+        control : Control
+
+        Returns
+        -------
+        filled : int
+            Rows are filled up to, not including, this one.
+        h : float
+            Step to go on with.
+        status : int
+        """
+        metric, judge, (u, border, _, tangent, _) = self.metric, self.rule.factor, self.scratch
+        points, values, tangents, rows, signs, corrections = chunk.arrays
+        angle, min_step, max_step, tolerance, lower, upper, stop_at_border, sweeps_allowed, margins, noise = (
+            control
         )
-        if sweeps < 0:
-            trouble = sweeps
-            h *= 0.5
-            continue
+        i = first
         trouble = 0
-        if metric.moving is not None:
-            metric.moving.steer(u, tangent)
-        norm, cosine, error = compare(tangent, tangents[i - 1], u, points[i], p, guess, metric)
-        if fixed:
-            p = bound
-            if cosine < 0.0:
-                cosine = -cosine
-                norm = -norm
-            if tangent[n] * norm < 0.0:
-                sign = -sign
-        turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
-        factor = judge(turn, error, sweeps, length, angle, max(SOLUTION.rounding, noise))
-        if not factor > 0.0:
-            h = -factor * length
-            continue
-        if p > upper or p < lower:
+        while i < len(points):
+            if h < min_step:
+                return i, h, Status.NOT_EVALUABLE if trouble == -2 else Status.STEP_TOO_SMALL
+            start = values[i - 1]
+            p = extrapolate(points, values, tangents, i, h, metric, u)
+            fixed = p > upper or p < lower
+            length = h
             bound = upper if p > upper else lower
-            h = length * max(0.5, (bound - start) / (p - start)) * 1.0000001
-            if guess == p or start == bound:
-                return i, h, LEFT_INTERVAL
-            if h >= length:
-                h = 0.9 * length
-            continue
-        put(points[i], u, 1.0)
-        put(tangents[i], tangent, norm)
-        values[i] = p
-        signs[i] = sign
-        corrections[i] = size
-        kernels.inspect(data, u, p, work, rows[i])
-        i += 1
-        if fixed:
-            return i, h, LEFT_INTERVAL
-        h = min(h * factor, max_step)
-        if stop_at_border:
-            for j in range(row_margins, row_size):
-                if rows[i - 1, j] < MARGIN:
-                    return i, h, BORDER
-    return i, h, RUNNING
+            if fixed:
+                if start == bound:
+                    return i, h, Status.LEFT_INTERVAL
+                for _ in range(3):
+                    if p != start:
+                        length *= min(max((bound - start) / (p - start), 0.0), 1.5)
+                    p = extrapolate(points, values, tangents, i, length, metric, u)
+                p = target = bound
+                border[:-1], border[-1] = 0.0, 1.0
+            else:
+                target = plane(tangents[i - 1], u, p, metric, border)
+            points[i] = u
+            guess = p
+            p, sweeps, sign, size = self.correct(u, p, target, tolerance, sweeps_allowed)
+            if sweeps < 0:
+                trouble = sweeps
+                h *= 0.5
+                continue
+            trouble = 0
+            if metric.moving is not None:
+                metric.moving.steer(u, tangent)
+            norm, cosine, error = compare(tangent, tangents[i - 1], u, points[i], p, guess, metric)
+            if fixed:
+                p = bound
+                if cosine < 0.0:
+                    cosine = -cosine
+                    norm = -norm
+                if tangent[-1] * norm < 0.0:
+                    sign = -sign
+            turn = math.sqrt(max(0.0, 2.0 - 2.0 * cosine))
+            factor = judge(turn, error, sweeps, length, angle, max(SOLUTION.rounding, noise))
+            if not factor > 0.0:
+                h = -factor * length
+                continue
+            if p > upper or p < lower:
+                bound = upper if p > upper else lower
+                h = length * max(0.5, (bound - start) / (p - start)) * 1.0000001
+                if guess == p or start == bound:
+                    return i, h, Status.LEFT_INTERVAL
+                if h >= length:
+                    h = 0.9 * length
+                continue
+            points[i], values[i], signs[i], corrections[i] = u, p, sign, size
+            np.divide(tangent, norm, out=tangents[i])
+            self.kernels.inspect(self.data, u, p, self.work, rows[i])
+            i += 1
+            if fixed:
+                return i, h, Status.LEFT_INTERVAL
+            h = min(h * factor, max_step)
+            if stop_at_border and (rows[i - 1, margins:] < MARGIN).any():
+                return i, h, Status.BORDER
+        return i, h, Status.RUNNING

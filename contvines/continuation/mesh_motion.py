@@ -11,7 +11,7 @@ import numpy as np
 from .engine import Engine, Solved
 
 if TYPE_CHECKING:
-    from .interpreted import InterpretedLoop
+    from .loop import InterpretedLoop
     from .native import NativeLoop
 
 ALONG = 0.7  # cosine of the angle between a tangent and the way to the next point on a mesh that moves along, at least

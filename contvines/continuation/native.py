@@ -14,10 +14,8 @@ from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 from ..core.table import memory_of
 from ..interrupts import wanted
-from .aims import Aim
-from .layout import RUNNING, Control, Found, Metric, Points, Scratch, Way
-from .settings import SOLUTION
-from .step_rule import BY_ANGLE, StepRule
+from .layout import Aim, Chunk, Control, Found, Metric, Scratch, Status, Way
+from .settings import BY_ANGLE, SOLUTION, StepRule
 
 BRIEF, LONG = (
     0.01,
@@ -107,12 +105,16 @@ class NativeLoop:
         self.judge = None if rule is BY_ANGLE else Judge(rule)
         self.at_once = 4  # points of one call
 
-    def march(self, chunk: Points, first: int, h: float, control: Control) -> tuple[int, float, int]:
-        """See :func:`contvines.continuation.loop.march`."""
-        step, filled, status = NUMBER(h), WHOLE(first), RUNNING
-        arrays, size, settings = [place(array) for array in chunk], len(chunk.points), np.array(control)
+    def march(self, chunk: Chunk, first: int, h: float, control: Control) -> tuple[int, float, int]:
+        """See :meth:`contvines.continuation.loop.InterpretedLoop.march`."""
+        step, filled, status = NUMBER(h), WHOLE(first), Status.RUNNING
+        arrays, size, settings = (
+            [place(array) for array in chunk.arrays],
+            len(chunk.points),
+            np.array(control),
+        )
         judge = None if self.judge is None else self.judge.address
-        while status == RUNNING and filled.value < size and not wanted():
+        while status == Status.RUNNING and filled.value < size and not wanted():
             begun = perf_counter()
             status = _march()(
                 self.at,

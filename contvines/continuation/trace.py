@@ -13,18 +13,15 @@ import numpy as np
 from ..interrupts import listening
 from ..journal import NullJournal
 from ..problems.protocol import Problem
-from . import layout
-from .chunk import OF_SOLVED, Chunk, Status, packed
-from .closing import Closing
+from .ends import Closing, Reach
 from .engine import Engine, Solved
+from .layout import OF_SOLVED, Chunk, Status, packed
 from .mesh_motion import MeshMotion
-from .reach import Reach
-from .settings import Settings, hinting
-from .step_rule import BY_ANGLE
+from .settings import BY_ANGLE, Settings, hinting
 
 if TYPE_CHECKING:
     from ..journal import Journal
-    from .interpreted import InterpretedLoop
+    from .loop import InterpretedLoop
     from .native import NativeLoop
 
 LARGEST = 2_000_000  # numbers in a chunk; chunks grow until then, or to eight times the setting
@@ -98,7 +95,7 @@ def chunks(
             known = journal.recall(name) if journal is not None else None
             if known is not None:
                 chunk = Chunk(
-                    *(np.asarray(known[part]) for part in layout.Points._fields),
+                    *(np.asarray(known[part]) for part in OF_SOLVED),
                     status=Status(int(known["status"])),
                 )
                 h, still = float(known["h"]), bool(known.get("still", False))
@@ -170,7 +167,7 @@ def chunks(
 
 def _kept(chunk: Chunk) -> dict[str, Any]:
     """What a journal keeps of a chunk: the loop writes to the other arrays the next time, and nobody to points and tangents."""
-    values: dict[str, Any] = {part: getattr(chunk, part) for part in layout.Points._fields}
+    values: dict[str, Any] = {part: getattr(chunk, part) for part in OF_SOLVED}
     for part in ("points", "tangents"):
         values[part] = values[part].view()
         values[part].flags.writeable = False
@@ -188,20 +185,15 @@ def _march(
 ) -> tuple[Chunk, float]:
     first, n = len(history), engine.n
     size = first + capacity
-    arrays = layout.Points(
-        np.empty((size, n)),
-        np.empty(size),
-        np.empty((size, n + 1)),
-        engine.rows(size),
-        np.zeros(size),
-        np.zeros(size),
-    )
-    for array, name in zip(arrays, OF_SOLVED, strict=True):
-        array[:first] = [getattr(point, name) for point in history]
+    signs, corrections = np.zeros((2, size))
+    points, tangents = np.empty((size, n)), np.empty((size, n + 1))
+    chunk = Chunk(points, np.empty(size), tangents, engine.rows(size), signs, corrections, Status.RUNNING)
+    for array, known in zip(chunk.arrays, packed(history, chunk.status).arrays, strict=True):
+        array[:first] = known
     control = engine.control._replace(stop_at_border=stop_at_border, max_step=longest)
     with engine.section:
-        filled, h, status = loop.march(arrays, first, float(h), control)
-    return Chunk(*(array[first - 1 : filled] for array in arrays), status=Status(status)), float(h)
+        filled, h, status = loop.march(chunk, first, float(h), control)
+    return Chunk(*(array[first - 1 : filled] for array in chunk.arrays), status=Status(status)), float(h)
 
 
 def _apart(engine: Engine, longest: float) -> float:

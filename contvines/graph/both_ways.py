@@ -10,8 +10,8 @@ from ..branches.finer_mesh import Meshes
 from ..branches.half_branch import HalfBranch
 from ..branches.opening import from_border
 from ..branches.tracing import trace_half
-from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Status
 from .run import Origin, Pending, Run
 
 DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start

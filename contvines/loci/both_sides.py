@@ -11,8 +11,8 @@ from ..bifurcation.detect import Detector
 from ..branches.finer_mesh import Meshes
 from ..branches.half_branch import HalfBranch
 from ..branches.tracing import trace_half
-from ..continuation.chunk import Status
 from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Status
 from ..continuation.settings import Settings
 from ..problems.protocol import Problem
 from .ends import becoming, border_of, locus_of

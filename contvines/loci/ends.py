@@ -6,8 +6,8 @@ import numpy as np
 
 from ..bifurcation.located import Located, Role
 from ..branches.half_branch import HalfBranch
-from ..continuation.chunk import Status
 from ..continuation.engine import Solved
+from ..continuation.layout import Status
 from ..problems.abilities import Adaptive
 from ..shared.number_text import number_text
 from .codimension_two import becomes, beginning, vanishing

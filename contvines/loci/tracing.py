@@ -15,7 +15,7 @@ from ..branches.branch import Branch
 from ..branches.ending import Ending
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
-from ..continuation.chunk import Status
+from ..continuation.layout import Status
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
 from ..interrupts import listening

@@ -5,9 +5,9 @@ import numpy as np
 import contvines as cv
 from contvines.command.compose import first_orbit, run_diagram
 from contvines.command.study import read_study
-from contvines.continuation.layout import SIZE, Control, Metric, Points, Scratch
+from contvines.continuation.layout import SIZE, Chunk, Control, Metric, Scratch, Status
 from contvines.continuation.native import NativeLoop
-from contvines.continuation.step_rule import BY_ANGLE
+from contvines.continuation.settings import BY_ANGLE
 from orbits import Absorber
 from orbits.problem import OrbitProblem
 from orbits.words import Word
@@ -47,7 +47,8 @@ class Core:
         control = Control(
             case.ANGLE, 1e-9, step, case.TOLERANCE, *case.INTERVAL, 0, 8, 2 * self.problem.n_multipliers, 0.0
         )
-        chunk = Points(self.points, self.values, self.tangents, self.rows, np.zeros(count), np.zeros(count))
+        arrays = self.points, self.values, self.tangents, self.rows
+        chunk = Chunk(*arrays, *np.zeros((2, count)), Status.RUNNING)
         metric = Metric(np.ones(n + 1), np.ones(n + 1), *map(float, case.metric(l)))
         scratch = Scratch(np.zeros(n), *np.zeros((4, n + 1)))
         made = self.problem

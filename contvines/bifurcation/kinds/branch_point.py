@@ -13,8 +13,8 @@ from functools import partial
 
 import numpy as np
 
-from ...continuation.aims import aim_at_multiplier
 from ...continuation.engine import Engine, Solved
+from ...continuation.layout import aim_at_multiplier
 from ..consistency import unresolved
 from ..determinant import alone, by_elimination, by_sign, passes, passes_for_certain, singular, turned
 from ..kind import Kind

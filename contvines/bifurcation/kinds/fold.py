@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...continuation.aims import NO_COLUMNS, SLOPE, Aim
+from ...continuation.layout import NO_COLUMNS, SLOPE, Aim
 from ..determinant import alone
 from ..kind import Classified, Kind, Test
 from ..located import Located

@@ -10,8 +10,8 @@ from functools import partial
 
 import numpy as np
 
-from ...continuation.aims import SORTS, aim_at_multiplier
 from ...continuation.engine import Engine, Solved
+from ...continuation.layout import SORTS, aim_at_multiplier
 from ...problems.abilities import Adaptive
 from ..kind import Classified, Kind, Test
 from ..located import Located

@@ -20,9 +20,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...continuation.aims import aim_at_multiplier
 from ...continuation.engine import Engine, Solved
-from ...continuation.layout import solved_points
+from ...continuation.layout import aim_at_multiplier, solved_points
 from ..settings import NORMAL_FORMS
 
 WIDE = 16.0  # times a step: the chord on which points beside a special point are placed; they may lie far off it, and are none of its ends
@@ -73,7 +72,7 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     point : Solved
         The special point, with the tangent of the known branch.
     name, k
-        Which multiplier; see :func:`contvines.continuation.aims.aim_at_multiplier`.
+        Which multiplier; see :func:`contvines.continuation.layout.aim_at_multiplier`.
     """
     kind = engine.problem.spectrum
     if kind == "none" or abs(point.tangent[-1]) < engine.settings.upright:

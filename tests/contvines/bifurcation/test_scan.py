@@ -10,9 +10,8 @@ from hypothesis.extra.numpy import arrays
 
 from contvines.bifurcation.scan import NativeScan, with_arrays
 from contvines.bifurcation.symmetry_test import SymmetryTest
-from contvines.continuation.chunk import Chunk, Status
-from contvines.continuation.layout import Metric
-from contvines.continuation.rows import Rows
+from contvines.continuation.engine import Engine
+from contvines.continuation.layout import Chunk, Metric, Status
 from contvines.core.library import native
 
 
@@ -25,7 +24,7 @@ BOTH = [with_arrays, *([in_native] if native() else [])]
 TURN = 2.0 * np.pi
 
 
-class Shown(Rows):
+class Shown(Engine):
     """What a scan asks of an engine: n unknowns of which the first is an angle, m multipliers, w margins."""
 
     def __init__(self, n, m, w, detection="map", parameter_weight=0.25):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.continuation.chunk import Status
 from contvines.continuation.engine import Engine
+from contvines.continuation.layout import Status
 from contvines.continuation.settings import Settings
 from contvines.continuation.starts import solve_start
 from contvines.continuation.trace import chunks

@@ -7,10 +7,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.continuation.arrays import (
-    Metric,
-    extrapolate,
-)
+from contvines.continuation.corrector import Metric, extrapolate
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 
