@@ -23,7 +23,7 @@ from scipy.integrate import solve_ivp
 import contvines as cv
 from contvines import Settings
 from contvines.bifurcation.segment import Segment
-from contvines.coexistence.solutions import solutions_at
+from contvines.branches.solutions import solutions_at
 from contvines.continuation.engine import Engine, Solved
 
 WITHIN = (-1.0, 1.0)

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..bifurcation.symmetry_test import image_of
+from ..branches.solutions import solutions_at
 from ..circles.section import Section, Walled, section_of
 from ..continuation.settings import Settings
 from ..graph.graph import Graph
 from .circle_step import TURN, next_point
 from .settings import MANIFOLDS
-from .solutions import solutions_at
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..branches.branch import Branch
+from ..branches.solutions import solutions_at
 from ..circles.section import section_of
 from ..continuation.settings import hinting
 from ..graph.shortening import short_word
@@ -20,7 +21,6 @@ from .basins import wilson
 from .population import Population, population_of
 from .ranges import stable_range
 from .settings import ATLAS
-from .solutions import solutions_at
 
 MANY, FEW, MANY_ACROSS = 1024, 256, 100
 """Starts that tell a share: many of a population whose basins are drawn with so many starts each way, few where each start is flown alone."""

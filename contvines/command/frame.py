@@ -230,7 +230,7 @@ def tell_result(found: "Graph | Chart", file: Path, details: bool) -> None:
         )
         first = (lambda brief: summary(found, brief=brief)) if known else None
     else:
-        from contvines.loci.summary import chart_summary
+        from contvines.loci.table import chart_summary
 
         size, whole = len(found.loci), f"{len(found.loci)} loci, {len(found.points)} points"
         first = (lambda brief: chart_summary(found)) if size > MANY else None

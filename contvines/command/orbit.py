@@ -67,7 +67,7 @@ def _orbit(file: Path, label: str | None, trust: bool) -> object:
         return _solution(first_orbit(study), study.within)
     from contvines.branches.special_point import SpecialPoint
     from contvines.graph.graph import Graph
-    from contvines.loci.plane_point import PlanePoint
+    from contvines.loci.locus import PlanePoint
     from contvines.problems.registry import without_problem
     from contvines.store import load
 

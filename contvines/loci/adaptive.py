@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ..flows.cycles import CycleProblem
-from ..problems.protocol import Symmetry
-from .borders import borders_at
-from .layout import FOLD, GROWTH, KNOWN, PERIOD
-from .on_mesh import on_mesh
+from ..problems.protocol import Problem, Symmetry
+from .kernels import KNOWN
+from .kinds import FOLD, GROWTH, PERIOD
+from .linear import borders_at
 from .problem import LocusProblem, Work
+
+
+def on_mesh(problem: Problem) -> CycleProblem:
+    """The problem, which is one of cycles of a flow.
+
+    Raises
+    ------
+    TypeError
+        If it is none.
+    """
+    if not isinstance(problem, CycleProblem):
+        raise TypeError(f"a {type(problem).__name__} has no mesh")
+    return problem
 
 
 class AdaptiveLocus(LocusProblem):
@@ -40,15 +53,16 @@ class AdaptiveLocus(LocusProblem):
     @property
     def symmetries(self) -> tuple[Symmetry, ...]:  # type: ignore[override]
         """Those in whose fixed spaces other motions lie: equilibria, and cycles of half the period. A locus that comes there has ended."""
-        own = [s for s in self.base.symmetries if s.root is not None]
-        return tuple(Symmetry(s.kind, partial(self._image, s.apply), None, self._kind_at(s)) for s in own)
+        return tuple(self._of_motion(symmetry) for symmetry in self.base.symmetries if symmetry.root)
 
-    def _image(self, apply: Callable[[np.ndarray], np.ndarray], U: np.ndarray) -> np.ndarray:
-        return np.concatenate([apply(U[: self.size]), U[self.size :]])
+    def _of_motion(self, symmetry: Symmetry) -> Symmetry:
+        """A symmetry of the motion as one of the special point."""
+        apply, kind_at, n = symmetry.apply, symmetry.kind_at, self.size
 
-    def _kind_at(self, symmetry: Symmetry) -> Callable[[np.ndarray], str] | None:
-        kind_at = symmetry.kind_at
-        return None if kind_at is None else lambda U: kind_at(U[: self.size])
+        def image(U: np.ndarray) -> np.ndarray:
+            return np.concatenate([apply(U[:n]), U[n:]])
+
+        return Symmetry(symmetry.kind, image, None, None if kind_at is None else lambda U: kind_at(U[:n]))
 
     def workspace(self) -> Work:
         """Arrays for the kernels, whose borders follow the mesh."""
@@ -135,23 +149,8 @@ class AdaptiveLocus(LocusProblem):
         """The same locus with twice as many intervals."""
         finer = self.mesh.refined()
         position = float(self.works[0].reference[0]) if self.works else self.reference
-        return AdaptiveLocus(
-            finer,
-            self.kind,
-            self.over,
-            finer.period_place if self.condition == PERIOD else self.index,
-            self.bounds,
-            None,
-            position,
-            self.masked,
-            self.unit,
-            self.own_kind,
-        )
-
-    def describe(self) -> dict[str, Any]:
-        """A description from which `from_description` builds the problem again."""
-        about = super().describe()
-        return {**about, "factory": about["factory"] and "contvines.loci.adaptive:from_description"}
+        index = finer.period_place if self.condition == PERIOD else self.index
+        return self.again(finer, index=index, reference=position)
 
     def halved(self, u: np.ndarray, direction: bool = False) -> np.ndarray:
         """Unknowns, or a direction of unknowns, with every interval halved."""

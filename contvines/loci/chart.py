@@ -17,8 +17,7 @@ from ..interrupts import Resumable
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
 from ..shared.plot_options import PlotOptions
-from .locus import Locus, Turn
-from .plane_point import PlanePoint
+from .locus import Locus, PlanePoint, Turn
 from .regions import Region
 
 if TYPE_CHECKING:

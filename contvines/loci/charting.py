@@ -12,11 +12,11 @@ from ..continuation.starts import check_interval
 from ..graph.graph import Graph
 from ..interruptible import Asked, OnInterrupt, carried_out
 from ..interrupts import listening
-from ..journal import Journal
+from ..journal import Journal, NullJournal
 from ..progress import Tell
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
-from .own_test import followed
+from .starts import of_own_kind
 from .tracing import locus
 
 
@@ -77,7 +77,11 @@ def chart(
     """
     within = check_interval(within)
     bounds = check_interval(graph.within if bounds is None else bounds)
-    points = [s for s in graph.special.values() if followed(s) and (s.real or virtual)]
+    points = [
+        point
+        for point in graph.special.values()
+        if point.kind not in ("end", "user") and not of_own_kind(point) and (point.real or virtual)
+    ]
     if not points:
         raise ValueError("the graph has no special points, so there is nothing to chart; widen its interval")
 
@@ -133,23 +137,15 @@ def chart_of_one(
     ValueError
         As :func:`contvines.locus` does.
     """
-    run = Charting(
-        graph,
-        over,
-        check_interval(within),
-        check_interval(graph.within),
-        virtual,
-        Settings(),
-        None,
-        progress,
-    )
+    intervals = check_interval(within), check_interval(graph.within)
+    run = Charting(graph, over, *intervals, virtual, Settings(), NullJournal(), progress)
     found = locus(
         graph.special[label],
         over,
         within,
         bounds=graph.within,
         virtual=virtual,
-        progress=lambda name, count, value: run.tell(f"{name}: {count} points"),
+        progress=run.tell_points,
         kinds=kinds,
     )
     run.chart.loci[label] = found

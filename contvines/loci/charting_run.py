@@ -1,48 +1,37 @@
-"""The state of a chart while it is made: a queue of places where loci may start, and what is known already."""
+"""The state of a chart while it is made: a queue of places where loci may start, and what is known already; last where loci cross."""
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from itertools import combinations
 from time import monotonic
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from ..bifurcation.kinds import kind_named
+from ..branches.solutions import on_segment
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..graph.graph import Graph
 from ..graph.identity import same_form
-from ..journal import NullJournal
+from ..journal import Journal
 from ..problems.protocol import Problem
-from ..problems.registry import without_problem
 from ..progress import time_left
 from ..shared.floating_point import TINY
-from .born import Candidate
 from .chart import Chart
-from .codimension_two import find
-from .coefficients_at import coefficients
-from .crossings import crossings
+from .codimension_two import mark
 from .departures import leaving
-from .kinds import PREFIXES, condition
-from .known_motions import KnownMotions, together
-from .layout import BRANCH, FOLD, MARGIN, PERIOD
-from .locus import Locus
-from .long_period import lengthened, with_suited_period
-from .on_mesh import on_mesh
-from .plane_point import PlanePoint
+from .kinds import BRANCH, FOLD, MARGIN, PERIOD, condition
+from .locus import Locus, PlanePoint
 from .problem import LocusProblem
-from .regions import divide
+from .regions import KnownMotions, divide, together
 from .settings import PLACES
-from .starts import begin, regular_side
-from .tracing import checked_ends, trace_locus
-
-if TYPE_CHECKING:
-    from ..journal import Journal
+from .starts import Candidate, candidate_of, check_start, with_period
+from .tracing import trace_locus
 
 T = TypeVar("T")
 BESIDE = 0.1  # of the sides of the plane: a segment so far away may belong to an arc through a place
@@ -96,12 +85,13 @@ class Charting:
         bounds: tuple[float, float],
         virtual: bool,
         settings: Settings,
-        journal: Journal | None,
+        journal: Journal,
         progress: Callable[[ChartProgress], None] | None,
     ) -> None:
         self.graph, self.over, self.within, self.bounds = graph, over, within, bounds
+        self.widths = np.array([bounds[1] - bounds[0], within[1] - within[0]])
         self.virtual, self.settings, self.progress = virtual, settings, progress
-        self.journal = NullJournal() if journal is None else journal
+        self.journal = journal
         self.chart = Chart(
             (graph.parameter, over),
             (bounds, within),
@@ -111,10 +101,10 @@ class Charting:
             notation={name: text for name, text in graph.notation.items() if name in (graph.parameter, over)},
         )
         self.queue: deque[tuple[Candidate, int]] = deque()
-        self.numbers: dict[str, int] = {}
+        self.numbers = Counter[str]()  # the last one with each prefix
         for taken in graph.special:
             prefix = taken.rstrip("0123456789")
-            self.numbers[prefix] = max(self.numbers.get(prefix, 0), int(taken[len(prefix) :] or 0))
+            self.numbers[prefix] = max(self.numbers[prefix], int(taken[len(prefix) :] or 0))
         self.forms: dict[str, Engine] = {}
         self.refused: list[str] = []
         self.done, self.tracing, self.begun = 0, False, monotonic()
@@ -138,36 +128,19 @@ class Charting:
 
     def label(self, prefix: str) -> str:
         """The next label with this prefix."""
-        self.numbers[prefix] = self.numbers.get(prefix, 0) + 1
+        self.numbers[prefix] += 1
         return f"{prefix}{self.numbers[prefix]}"
 
     # ------------------------------------------------------------------ loci
     def add_special(self, point: SpecialPoint) -> None:
         """Queue the locus of a special point of the graph."""
-        if point.problem is None:
-            raise ValueError(without_problem(point.label))
-        value = point.problem.parameters.get(self.over)
-        if value is None or self.over == point.problem.parameter:
-            begin(point.problem, point.kind, point.u, point.value, self.over)  # says why
-            return
-        if not self.within[0] <= value <= self.within[1]:
-            raise ValueError(
-                f"the diagram was made at {self.over} = {value:.10g}, outside of within = [{self.within[0]:.10g}, "
-                f"{self.within[1]:.10g}]; widen the interval"
-            )
-        if not self.queue and not self.chart.loci:
-            checked_ends(point.problem, self.over, self.within)
+        check_start(point, self.over, self.within)
         try:
-            point = with_suited_period(regular_side(point))
+            self.queue.append((candidate_of(point, self.over), 0))
         except (MemoryError, OSError):
             raise
         except Exception as error:
             self.refused.append(f"{point.label}: {type(error).__name__}: {error}")
-            return
-        candidate = Candidate(
-            point.attached, point.kind, point.u, point.value, value, point.margin_index or 0, point.label
-        )
-        self.queue.append((candidate, 0))
 
     def work(self, depth: int) -> None:
         """Trace what is queued, and what is found, until nothing is new."""
@@ -207,69 +180,47 @@ class Charting:
 
     def trace(self, candidate: Candidate) -> Locus | None:
         """The locus of a candidate; None, with a remark, where it cannot be followed."""
-        own = (
-            candidate.seed in self.graph.special
-        )  # a locus is called like the special point from which it comes
-        label = candidate.seed if own else self.label(kind_named(candidate.kind).label)
+        # a locus is called like the special point from which it comes
+        own = candidate.seed in self.graph.special
+        prefix = kind_named(candidate.kind).label
+        label = candidate.seed if own else self.label(prefix)
+        about = self.over, self.within, self.bounds, self.settings, label, self.virtual, self.journal
         try:
-            problem = begin(
-                candidate.problem,
-                candidate.kind,
-                candidate.u,
-                candidate.p,
-                self.over,
-                candidate.index,
-                self.bounds,
-            )
-            locus = trace_locus(
-                problem,
-                candidate.u,
-                candidate.p,
-                candidate.q,
-                self.within,
-                self.settings,
-                label,
-                candidate.seed,
-                self.virtual,
-                self.journal,
-                lambda name, count, value: self.tell(f"{name}: {count} points"),
-            )
+            locus = trace_locus(candidate, *about, self.tell_points)
         except ValueError as error:
             self.refused.append(f"{candidate.seed}: {error}")
             locus = None
         if locus is None or len(locus) < 3:
-            if not own:
-                self.numbers[label.rstrip("0123456789")] -= 1
+            self.numbers[prefix] -= 0 if own else 1
             return None
         return locus
+
+    def tell_points(self, label: str, count: int, value: float) -> None:
+        """Report how many points a locus has so far."""
+        self.tell(f"{label}: {count} points")
 
     def known(self, candidate: Candidate) -> Locus | None:
         """The locus on which a candidate lies already, or None."""
         wanted = condition(candidate.problem, candidate.kind)
         for locus in self.chart.loci.values():
-            problem = locus.problem
+            problem, there = locus.problem, candidate
             if problem is None:
                 continue
             # where branches cross they do not fold
             if locus.kind != candidate.kind and (wanted, problem.condition) != (FOLD, BRANCH):
                 continue
-            there = candidate
             if wanted == PERIOD:  # cycles of another period stand for the same homoclinic orbits
                 try:
-                    longer = lengthened(
-                        on_mesh(candidate.problem), candidate.u, candidate.p, problem.reference
-                    )
+                    there = with_period(candidate, problem.reference)
                 except ValueError:
                     continue
-                there = replace(candidate, problem=longer[0], u=longer[1], p=longer[2])
             if self.passes(locus, problem, there, border=wanted == MARGIN):
                 return locus
         return None
 
     def passes(self, locus: Locus, problem: LocusProblem, candidate: Candidate, border: bool) -> bool:
         """Whether a locus goes through the place of a candidate, with the same motion (at borders: with any word)."""
-        values, size = locus.values, locus.size
-        unit = np.array([self.bounds[1] - self.bounds[0], self.within[1] - self.within[0]])
+        values, size, unit = locus.values, locus.size, self.widths
         place = np.array([candidate.p, candidate.q])
         near = np.abs((values - place) / unit).max(axis=1)
         if not near.min() < 0.2:
@@ -294,52 +245,30 @@ class Charting:
             u, p = problem.split(U)
             if np.abs(([p, q] - place) / unit).max() > (PLACES.end if found is None else PLACES.same):
                 continue
-            if border:
-                return True
-            if same_form(problem.base.canonical(u, float(p)), form, engine.scale):
+            if border or same_form(problem.base.canonical(u, float(p)), form, engine.scale):
                 return True
         return False
 
     # ------------------------------------------------------------------ points
     def mark(self, locus: Locus) -> list[PlanePoint]:
         """Find the points of codimension two on a locus; returns those that are new."""
-        fresh: list[PlanePoint] = []
-        marked: list[tuple[int, PlanePoint]] = []
-        for index, point in find(locus):
-            known = next((other for other in self.chart.points.values() if self.same(point, other)), None)
-            if known is None:
-                point.label = self.label(PREFIXES[point.kind])
-                point.on = [locus.label]
-                point.coefficients = point.coefficients or coefficients(point)
-                self.chart.points[point.label] = known = point
-                fresh.append(point)
-            elif locus.label not in known.on:
-                known.on.append(locus.label)
-            if all(point is not known for _, point in marked):
-                marked.append((index, known))
-        locus.marked = tuple(marked)
-        return fresh
+        known = len(self.chart.points)
+        locus.marked = mark(locus, self.chart.points, self.label, self.same)
+        return list(self.chart.points.values())[known:]
 
     def same(self, one: PlanePoint, other: PlanePoint) -> bool:
         """Whether two points are one: the same kind at the same place."""
-        unit = (self.bounds[1] - self.bounds[0], self.within[1] - self.within[0])
-        return one.kind == other.kind and all(
-            abs(a - b) <= PLACES.same * w for a, b, w in zip(one.value, other.value, unit)
-        )
+        apart = np.abs(np.subtract(one.value, other.value))
+        return one.kind == other.kind and bool((apart <= PLACES.same * self.widths).all())
 
-    # ------------------------------------------------------------------ regions
+    # ------------------------------------------------------------------ regions and crossings
     def divide(self) -> None:
         """Regions between the real parts of the loci, and what a simulation finds in each."""
-        curves = []
-        for each in self.chart.loci.values():
-            values = each.values.copy()
-            values[~each.real] = np.nan
-            curves.append(values)
-        problem = next(iter(self.graph.branches.values())).attached
+        graph, loci = self.graph, self.chart.loci.values()
+        curves = [np.where(locus.real[:, None], locus.values, np.nan) for locus in loci]
+        problem = next(iter(graph.branches.values())).attached
         regions = divide(curves, self.chart.within)
-        known = KnownMotions(
-            self.graph.branches.values(), self.chart.loci.values(), self.over, self.chart.within
-        )
+        known = KnownMotions(graph.branches.values(), loci, self.over, self.chart.within)
         for region in self.counted("region", regions):
             region.attractors = self.attractors_at(problem, region.at, known)
             for place in region.elsewhere:
@@ -367,3 +296,88 @@ class Charting:
             raise ValueError("no locus could be followed: " + "; ".join(dict.fromkeys(self.refused)))
         self.journal.checkpoint(self.chart)
         self.tell(self.chart.message)
+
+
+# ------------------------------------------------------------------ crossings
+Met = tuple[str, str, int, int, np.ndarray]  # two loci, a segment of each, and where these meet
+
+
+def crossings(chart: Chart, each: Callable[[list[Met]], Iterable[Met]]) -> list[dict[str, Any]]:
+    """Where real parts of two loci cross without anything to do with one another: two motions, or two directions of one.
+
+    Parameters
+    ----------
+    chart : Chart
+    each : callable
+        Hands out what may be a crossing one by one, and may tell of it.
+
+    Returns
+    -------
+    list of dict
+        "on", the labels of the two loci; "value", both parameters by name; "error", the uncertainty of the place relative to the plane.
+    """
+    lows, widths = np.array(chart.within)[:, 0], np.diff(chart.within)[:, 0]
+    curves = {label: (locus.values - lows) / widths for label, locus in chart.loci.items()}
+    met: list[Met] = []
+    for one, other in combinations(chart.loci, 2):
+        real, others = chart.loci[one].real, chart.loci[other].real
+        met += [
+            (one, other, i, j, lows + place * widths)
+            for i, j, place in segments(curves[one], curves[other])
+            if real[i : i + 2].all() and others[j : j + 2].all()
+        ]
+    found: list[dict[str, Any]] = []
+    for one, other, i, j, place in each(met):
+        p, q, error = _crossing(chart.loci[one], chart.loci[other], i, j, place)
+        meetings = [p.value for p in chart.points.values() if one in p.on and other in p.on]
+        if any(np.abs((np.array([p, q]) - m) / widths).max() < max(PLACES.end, error) for m in meetings):
+            continue
+        found.append(
+            {"on": [one, other], "value": dict(zip(chart.parameters, (p, q))), "error": float(error)}
+        )
+    return found
+
+
+def segments(a: np.ndarray, b: np.ndarray) -> list[tuple[int, int, np.ndarray]]:
+    """Crossings of two polygons, shapes (n, 2) and (m, 2): (segment of a, segment of b, place)."""
+    if len(a) < 2 or len(b) < 2:
+        return []
+    d, e = np.diff(a, axis=0), np.diff(b, axis=0)
+    gap = b[None, :-1] - a[:-1, None]
+    turn = d[:, None, 0] * e[None, :, 1] - d[:, None, 1] * e[None, :, 0]
+    with np.errstate(all="ignore"):
+        s = (gap[..., 0] * e[None, :, 1] - gap[..., 1] * e[None, :, 0]) / turn
+        t = (gap[..., 0] * d[:, None, 1] - gap[..., 1] * d[:, None, 0]) / turn
+        inside = (s >= 0.0) & (s < 1.0) & (t >= 0.0) & (t < 1.0)
+    return [(int(i), int(j), a[i] + s[i, j] * d[i]) for i, j in np.argwhere(inside)]
+
+
+def _crossing(first: Locus, second: Locus, i: int, j: int, place: np.ndarray) -> tuple[float, float, float]:
+    """(p, q, error): the place by the secant method on the second parameter, where both loci can be solved at a value of it."""
+    p, q = float(place[0]), float(place[1])
+    low, high = first.within
+    both = [(first, i), (second, j)]
+    size = max(float(abs(np.diff(locus.branch.values[k : k + 2])[0])) for locus, k in both)
+    met = p, q, size / (high - low)
+    if first.problem is None or second.problem is None:
+        return met
+    engines = [Engine(locus.branch.attached, first.within, Settings()) for locus, _ in both]
+
+    def gap(value: float) -> tuple[float, float] | None:
+        solved = [on_segment(engine, locus.branch, k, value) for engine, (locus, k) in zip(engines, both)]
+        ends = [float(point.u[locus.size]) for point, (locus, _) in zip(solved, both) if point is not None]
+        return None if len(ends) < 2 else (ends[0] - ends[1], ends[0])
+
+    before, now = q, q + Settings.aside * size + Settings.located * (high - low)
+    last = gap(before)
+    for _ in range(20):
+        here = gap(now)
+        if last is None or here is None or here[0] == last[0]:
+            break
+        step = -here[0] * (now - before) / (here[0] - last[0])
+        if not abs(now + step - q) <= 2.0 * size:
+            break
+        before, last, now = now, here, now + step
+        if abs(step) < Settings.rounding * (high - low):
+            return here[1], float(now), float(abs(step) / (high - low))
+    return met

@@ -17,11 +17,20 @@ Dynamical Equilibria, 2000, chapters 3 and 4). With borders b and c, M = [[F_u, 
     pair             m1 m2 - 1 for the multipliers of a pair, l1 + l2 for eigenvalues of a flow
 
 Every solve is one elimination of the problem's own kernel with another column in the place of F_p. What is left are two (at branch
-points three) directions in which F = 0 holds to first order (:mod:`contvines.loci.spanning`) from the point at which the residuals of F are made up
+points three) directions in which F = 0 holds to first order from the point at which the residuals of F are made up
 for. There the tests are evaluated, so that a Newton step has a residual g of the second order; they are differentiated along these directions alone, by
 differences. Directions and slopes are not worked out again where Newton's method has hardly moved: the residuals stay exact, so nothing of
 the location is lost. The borders are renewed after a few accepted points, sooner
 where the null vector turns: c becomes the null vector, b the left one.
+
+The directions: with the slopes along both parameters in units of their sizes, turned by an angle into C1 and C2, one elimination solves
+
+    [[F_u, C1], [row]] (x, s) = (-C2, 0)  and  (0, 1):
+
+two directions in which F stays zero, s C1 + C2 or s C1 being the change of the parameters. `row` is the second of these directions at
+the point before, and C1 is across the parameters' part of the first: where that is so the matrix is regular wherever (F_u, F_p, F_q)
+has full rank, at folds and where branches cross, too. At branch points it has not: there b takes the place of C1, and one more
+direction goes along the null vector.
 
 native/loci.hpp has the same for compiled problems.
 """
@@ -30,37 +39,204 @@ import math
 
 import numpy as np
 
-from ..shared.floating_point import PIVOT
-from .layout import (
-    APART,
-    BRANCH,
-    FLIP,
-    FLIP_B,
-    FLIP_C,
-    FOLD,
-    KNOWN,
-    LEFT,
-    LONGEST,
-    PAIR,
-    PERIOD,
-    SERVED,
-    SIGN,
-    TESTED,
-    TURNED,
-    B,
-    C,
-)
-from .probing import frozen, pair_of, slopes_along, tests
-from .spanning import particular, span
+from ..bifurcation.settings import LOCATING
+from ..shared.floating_point import PIVOT, ROUNDED
+from .kinds import APART, BRANCH, FLIP, FOLD, GROWTH, MARGIN, OWN, PAIR, PERIOD
+from .settings import SCALING
+
+ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of `solutions`, the last one with another after it
+B, C, FLIP_B, FLIP_C = range(4)  # rows of `borders`
+KNOWN, SIGN, ANGLE, SERVED = range(4)  # of `state`; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
+LONGEST = 4  # points that borders serve
+TURNED = 1.02  # length of the null vector, as long as c at first, at which they do not any more
+
+
+# ------------------------------------------------------------------ tests
+def null_test(data, work, b, c):
+    """Solve M (v, g) = (0, 1) with the linearisation in `trial`; returns g."""
+    line, step, null = *work.lines, work.solutions[TESTED]
+    work.trial_F[:], work.trial_Q[:], line[:-1], line[-1] = 0.0, b[:-1], c[:-1], 0.0
+    data.calls.bordered(data.first, work.trial, line, 0.0, step, null)
+    return null[-1]
+
+
+def pair_of(row, multipliers, flow, reference):
+    """(test, position) of the pair nearest to the stability boundary and to the reference; NaN where there is none.
+
+    Maps: m1 m2 - 1 and (m1 + m2)/2, the cosine of the angle; flows: l1 + l2 and l1 l2, the square of the frequency.
+    """
+    found, best = (math.nan, math.nan), math.inf
+    for i in range(multipliers):
+        a, b = row[2 * i], row[2 * i + 1]
+        for j in range(i + 1, multipliers):
+            c, d = row[2 * j], row[2 * j + 1]
+            if abs(b + d) > LOCATING.rounding * (1.0 + abs(b)) or (
+                b != 0.0 and abs(a - c) > LOCATING.rounding * (1.0 + abs(a))
+            ):
+                continue  # neither two real ones nor a conjugate pair
+            total, product = a + c, a * c - b * d
+            test, place = (total, product) if flow else (product - 1.0, 0.5 * total)
+            unit = 1.0 + abs(reference) if flow else 1.0
+            distance = abs(test) + 0.1 * abs(place - reference) / unit
+            if distance < best:
+                found, best = (test, place), distance
+    return found
+
+
+def tests(data, work, u, p, q, values):
+    """The tests g at any (u, p, q), into `values`; the linearisation in `trial` is used up."""
+    first, trial, borders, calls, kind = data.first, work.trial, work.borders, data.calls, data.kind
+    calls.assign(first, data.second, q)
+    if not math.isfinite(calls.linearise(first, u, p, trial)):
+        return
+    if kind == FOLD:
+        values[0] = null_test(data, work, borders[B], borders[C])
+    elif kind == FLIP:  # the linearisation is left as it was
+        calls.flip(first, trial, -1.0)
+        values[0] = null_test(data, work, borders[FLIP_B], borders[FLIP_C])
+        calls.flip(first, trial, 1.0)
+    elif kind == BRANCH:
+        line, step, null = *work.lines, work.solutions[TESTED]
+        work.trial_F[:] = data.unit * work.trial_Q
+        work.trial_Q[:], line[:-1], line[-1] = borders[B, :-1], borders[C, :-1], 0.0
+        calls.bordered(first, trial, line, 0.0, step, null)
+        values[:2] = null[-1], step[-1]
+    elif kind == PERIOD:
+        values[0] = u[data.which] / work.reference[0] - 1.0
+    elif kind == OWN:
+        values[0] = data.own(u, p, q, trial, work.row)
+    else:
+        row = work.row
+        calls.inspect(first, u, p, trial, row)
+        if kind == MARGIN:
+            values[0] = row[2 * data.multipliers + data.which]
+        elif kind == GROWTH:
+            values[0] = math.log(abs(row[0])) if row[0] != 0.0 else -math.inf
+        else:
+            values[0] = pair_of(row, data.multipliers, data.flow, work.reference[0])[0]
+
+
+def slopes_along(data, work, direction):
+    """Derivatives of the tests along a direction in (U, q), by differences."""
+    point, n = work.point, len(work.base_F)
+    slopes = np.zeros(len(point) - 1 - n)
+    parts = np.abs(direction) / np.maximum(work.scales[: len(point)], np.abs(point))
+    length = max(parts[-1], parts[: n + 1].max())
+    if not length > ROUNDED:
+        return slopes
+    h = SCALING.step / length
+    moved = point + h * direction
+    tests(data, work, moved[:n], data.unit * moved[n], moved[-1], slopes)
+    return (slopes - work.values[: len(slopes)]) / h
+
+
+# ------------------------------------------------------------------ directions in which F = 0 holds
+def rotate(columns, angle):
+    """Turn C1 and C2 further."""
+    c, s = math.cos(angle), math.sin(angle)
+    columns[0], columns[1] = c * columns[0] + s * columns[1], c * columns[1] - s * columns[0]
+
+
+def turn(work):
+    """Angle and row from the two directions found last; returns by how much the angle changes."""
+    along, null = work.solutions[ALONG], work.solutions[NULL]
+    n = len(null) - 1
+    angle = -math.atan(along[n])
+    scaled = null[:n] / work.scales[:n]
+    size = null[n] ** 2 + float(scaled @ scaled)
+    if not (0.0 < size < math.inf and -2.0 < angle < 2.0):
+        return 0.0
+    work.frame[:n] = scaled / work.scales[:n] / size
+    work.frame[n] = math.cos(angle) * null[n] / size
+    work.state[ANGLE] += angle
+    return angle
+
+
+def parted(work, k, solution):
+    """Direction k: unknowns of a solution, and what its part along C1 means for the parameters."""
+    direction, scales, angle = work.directions[k], work.scales, work.state[ANGLE]
+    n = len(solution) - 1
+    direction[:n] = solution[:n]
+    direction[n] = solution[n] * math.cos(angle) * scales[n]
+    direction[-1] = solution[n] * math.sin(angle) * scales[len(direction) - 1]
+
+
+def unfolded(work, k, solution, p=0.0, q=0.0):
+    """Direction k at branch points: unknowns and unfolding of a solution, and changes of the parameters."""
+    direction, n = work.directions[k], len(solution) - 1
+    direction[:n] = solution[:n]
+    direction[n:] = p, solution[n], q
+
+
+def solve(data, work, side, column, row, step, tangent):
+    """[[F_u, column], [row]] x = (-side, 0) into `step`, (0, 1) into `tangent`; returns the determinant's sign."""
+    n = len(work.base_F)
+    work.base_F[:], work.base_Q[:] = side[:n], column[:n]
+    return data.calls.bordered(data.first, work.base, row, 0.0, step, tangent)
+
+
+def span(data, work):
+    """The directions but the particular one; F_p and F_q, in the units of U and q, are in `columns` and are used up."""
+    columns, directions, state, scales = work.columns, work.directions, work.state, work.scales
+    along, null, frame = work.solutions[ALONG], work.solutions[NULL], work.frame
+    n, last = columns.shape[1], directions.shape[1] - 1
+    if data.kind == BRANCH:
+        row = np.append(work.borders[C, :-1], 0.0)
+        for k in range(2):
+            solve(data, work, columns[k], work.borders[B], row, along, null)
+            unfolded(work, 1 + k, along, 1.0 - k, k)
+        unfolded(work, 3, null)
+    else:
+        columns[0] *= scales[n]
+        columns[1] *= scales[last]
+        if state[KNOWN] >= 0.0:
+            turn(work)
+            rotate(columns, state[ANGLE])
+        else:  # any row, then the one that belongs to this place
+            frame[:n] /= scales[:n]
+            rotate(columns, state[ANGLE])
+            solve(data, work, columns[1], columns[0], frame, along, null)
+            rotate(columns, turn(work))
+        solve(data, work, columns[1], columns[0], frame, along, null)
+        parted(work, 1, null)
+        parted(work, 2, along)
+        directions[2, n] -= math.sin(state[ANGLE]) * scales[n]
+        directions[2, last] += math.cos(state[ANGLE]) * scales[last]
+    state[KNOWN] = 0.0
+
+
+def particular(data, work):
+    """Direction 0: what makes up for the residuals of F; the sign of the elimination is kept."""
+    found, spare = work.solutions[SPARE], work.solutions[SPARE + 1]
+    if data.kind == BRANCH:
+        row = np.append(work.borders[C, :-1], 0.0)
+        work.state[SIGN] = solve(data, work, work.residual, work.borders[B], row, found, spare)
+        unfolded(work, 0, found)
+    else:
+        work.state[SIGN] = solve(data, work, work.residual, work.columns[0], work.frame, found, spare)
+        parted(work, 0, found)
+
+
+# ------------------------------------------------------------------ the kernels
+def frozen(work, here):
+    """Whether directions and slopes are those of the last call, because the point has hardly moved; keeps the point if not.
+
+    Slopes are known to about the step; a point that has moved less than that has them to that accuracy.
+    """
+    sizes = np.maximum(work.scales[: len(here)], np.abs(here))
+    if work.state[KNOWN] > 0.0 and (np.abs(here - work.frozen) < SCALING.step * sizes).all():
+        return True
+    work.frozen[:] = here
+    return False
 
 
 def locus_linearise(data, U, q, work):
     """F, F_u, F_p, F_q and the tests at (U, q); see `linearise` in the protocol."""
-    first, second, base, state = data.first, data.second, work.base, work.state
-    residuals, point, direction = work.residual, work.point, work.directions[0]
+    first, second, base, state, residuals = data.first, data.second, work.base, work.state, work.residual
     n, size, calls = len(work.base_F), len(U), data.calls
     u, p = U[:n], data.unit * U[n]
-    still = frozen(work, U, q)
+    here = np.append(U, q)
+    still = frozen(work, here)
     if not still:
         state[KNOWN] = min(state[KNOWN], 0.0)
         calls.assign(second, first, p)
@@ -75,20 +251,45 @@ def locus_linearise(data, U, q, work):
     if not still:
         work.columns[0] = data.unit * work.base_Q
         span(data, work)
-    state[SIGN] = particular(data, work)
-    point[:size] = U + direction[:size]
-    point[size] = q + direction[size]
+    particular(data, work)
+    point = work.point
+    point[:] = here + work.directions[0]
     tests(data, work, point[:n], data.unit * point[n], point[size], work.values)
     residuals[n:] = work.values[: size - n]
     work.kept[:] = residuals
     return max(largest, *map(abs, residuals[n:].tolist())) if np.isfinite(residuals[n:]).all() else math.inf
 
 
-def close(small, size):
-    """Gauss elimination with row exchange of `size` equations with two right-hand sides; returns the determinant's sign."""
-    sign = 1.0
+def locus_bordered(data, work, border, target, step, tangent):
+    """Solve the bordered system of the locus; see `bordered` in the protocol."""
+    directions, residuals, state = work.directions, work.residual, work.state
+    n = len(work.base_F)
+    count = len(residuals) - n  # tests; there are as many directions, and the one along the locus
+    others, slopes = directions[1 : count + 2], np.zeros(count)
+    # else the residuals are those of the point, for which the particular direction stands
+    if (residuals != work.kept).any():
+        particular(data, work)
+        slopes = slopes_along(data, work, directions[0])
+        work.kept[:] = math.nan
+    if state[KNOWN] < 1.0:
+        for steep, direction in zip(work.steep, others):
+            steep[:count] = slopes_along(data, work, direction)
+        state[KNOWN] = 1.0
+    small = np.zeros((count + 1, count + 3))
+    small[:, : count + 1] = np.vstack([work.steep[: count + 1, :count].T, others @ border])
+    small[:count, -2] = -residuals[n:] - slopes
+    small[count, -2:] = target - border @ directions[0], 1.0
+    sign = state[SIGN] * close(small)
+    step[:] = directions[0] + small[:, -2] @ others
+    tangent[:] = small[:, -1] @ others
+    return sign
+
+
+def close(small):
+    """Gauss elimination with row exchange of a few equations with two right-hand sides; returns the determinant's sign."""
+    sign, size = 1.0, len(small)
     for j in range(size):
-        best = j + int(np.abs(small[j:size, j]).argmax())
+        best = j + int(np.abs(small[j:, j]).argmax())
         if best != j:
             small[[j, best]], sign = small[[best, j]], -sign
         if small[j, j] == 0.0:
@@ -98,35 +299,7 @@ def close(small, size):
         for i in range(j + 1, size):
             small[i, j:] -= small[i, j] / small[j, j] * small[j, j:]
     for j in reversed(range(size)):
-        small[j, 3:] = (small[j, 3:] - small[j, j + 1 : size] @ small[j + 1 : size, 3:]) / small[j, j]
-    return sign
-
-
-def locus_bordered(data, work, border, target, step, tangent):
-    """Solve the bordered system of the locus; see `bordered` in the protocol."""
-    directions, residuals, kept, state = work.directions, work.residual, work.kept, work.state
-    small, steep = work.small, work.steep
-    n = len(work.base_F)
-    count = len(residuals) - n  # tests; there are as many directions, and the one along the locus
-    total = count + 1
-    slopes = np.zeros(count)
-    # else the residuals are those of the point, for which the particular direction stands
-    if (residuals != kept).any():
-        state[SIGN] = particular(data, work)
-        slopes_along(data, work, directions[0], slopes)
-        kept[:] = math.nan
-    if state[KNOWN] < 1.0:
-        for column in range(total):
-            slopes_along(data, work, directions[1 + column], steep[column])
-        state[KNOWN] = 1.0
-    small[:count, :total] = steep[:total, :count].T
-    small[count, :total] = directions[1 : 1 + total] @ border
-    small[:total, total:3] = 0.0
-    small[:count, 3], small[:count, 4] = -residuals[n:] - slopes, 0.0
-    small[count, 3:] = target - border @ directions[0], 1.0
-    sign = state[SIGN] * close(small, total)
-    step[:] = directions[0] + small[:total, 3] @ directions[1 : 1 + total]
-    tangent[:] = small[:total, 4] @ directions[1 : 1 + total]
+        small[j, size:] = (small[j, size:] - small[j, j + 1 : size] @ small[j + 1 :, size:]) / small[j, j]
     return sign
 
 
@@ -181,6 +354,5 @@ def locus_inspect(data, U, q, work, row):
         margins[0] = math.log10(APART / first.from_rest(U[:n], data.unit * U[n]))
     margins[work.masked] = math.inf
     if kind == PAIR:
-        pair_of(row, data.multipliers, data.flow, reference[0], reference[1:])
-        reference[0] = reference[2]
-        margins[-1] = reference[2] if data.flow else 1.0 - reference[2] * reference[2]
+        place = reference[0] = pair_of(row, data.multipliers, data.flow, reference[0])[1]
+        margins[-1] = place if data.flow else 1.0 - place * place

@@ -1,16 +1,18 @@
-"""A problem's linearisation from Python: solves with borders, null vectors, the spectrum, at single points."""
+"""A problem's linearisation from Python: solves with borders, null vectors, multipliers and margins, at single points."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..interrupts import HELD
 from ..problems.protocol import Problem, array_of
+from .kernels import pair_of
+from .kinds import BRANCH, FLIP, FOLD
 
 SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
 STIRRED = 0.1  # part of a random vector in those of a neighbour
@@ -28,14 +30,6 @@ class Null(NamedTuple):
     test: float
 
 
-def sizes_of(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
-    """Typical sizes of a problem's unknowns and equations; 1 where it has natural units."""
-    scales, n = problem.scales, int(problem.dimension)
-    if scales is None or len(scales.unknowns) != n:
-        return np.ones(n), np.ones(n)
-    return np.asarray(scales.unknowns, dtype=float), np.asarray(scales.rows, dtype=float)
-
-
 class Linearisation:
     """F, F_u and F_p of a problem at one point, and solves with them through the problem's own kernels.
 
@@ -43,32 +37,45 @@ class Linearisation:
     ----------
     problem : Problem
         With the optional kernels of the protocol.
+
+    Attributes
+    ----------
+    units, rows : ndarray, shape (N,)
+        Typical sizes of the unknowns and of the equations; 1 where the problem has natural units.
+    largest : float
+        Largest residual.
+    residual, slope : ndarray, shape (N,)
+        F and F_p.
     """
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.kernels, self.data = problem, problem.kernels, problem.data
-        self.size = int(problem.dimension)
-        self.units, self.rows = sizes_of(problem)
+        self.size, self.m = int(problem.dimension), int(problem.n_multipliers)
+        self.flow = problem.spectrum == "flow"
+        self.units, self.rows = np.ones((2, self.size))
+        if (scales := problem.scales) is not None and len(scales.unknowns) == self.size:
+            self.units[:], self.rows[:] = scales.unknowns, scales.rows
         self.work, self.other = problem.workspace(), problem.workspace()
         column = self.kernels.column
         self.F, self.Q = array_of(self.work).reshape(-1), array_of(self.work, column).reshape(-1)
         self.other_F = array_of(self.other).reshape(-1)
-        self.line, self.step, self.tangent = (np.zeros(self.size + 1) for _ in range(3))
-        self.residual = self.slope = np.zeros(self.size)
+        self.line, self.step, self.tangent = np.zeros((3, self.size + 1))
+        self.largest, self.residual, self.slope = np.inf, *np.zeros((2, self.size))
         self.point: tuple[np.ndarray, float] = (np.zeros(self.size), 0.0)
+        self._row: np.ndarray | None = None
         self.overwritten = True  # F and F_p, by sides of a solve
         self.used_up = True  # all of it, by an inspection or a flip
 
-    def at(self, u: np.ndarray, p: float) -> float:
-        """Linearise; returns the largest residual. ``residual`` and ``slope`` are then copies of F and F_p."""
-        self.point = np.array(u, dtype=float), float(p)
-        largest = self._linearise()
+    def at(self, u: np.ndarray, p: float) -> Self:
+        """Linearise."""
+        self.point, self._row = (np.array(u, dtype=float), float(p)), None
+        self.largest = self._linearise()
         self.residual, self.slope = self.F.copy(), self.Q.copy()
-        return largest
+        return self
 
     def _linearise(self) -> float:
         self.overwritten = self.used_up = False
-        return float(self.kernels.linearise(self.data, self.point[0], self.point[1], self.work))
+        return float(self.kernels.linearise(self.data, *self.point, self.work))
 
     def _matrix(self) -> None:
         """Linearise at the same point once more if F_u has been used up; its F and F_p are about to be overwritten."""
@@ -76,6 +83,7 @@ class Linearisation:
             self._linearise()
         self.overwritten = True
 
+    # ------------------------------------------------------------------ solves
     def _solved(self, side: np.ndarray | float, b: np.ndarray, c: np.ndarray) -> None:
         """Solve with F_u, bordered by b and c: (side, 0) on the right, into `step`, and (0, 1), into `tangent`."""
         self._matrix()
@@ -119,9 +127,8 @@ class Linearisation:
         """
         v, w = np.random.default_rng(5).standard_normal((2, self.size)) / np.sqrt(self.size)
         b, c, sweeps = self.rows * w, v / self.units, SWEEPS
-        if (
-            near is not None
-        ):  # of another singular value, where those have passed one another: a part of all others must be left
+        if near is not None:
+            # of another singular value, where those have passed one another: a part of all others must be left
             b, c, sweeps = near.column + STIRRED * b, near.row + STIRRED * c, 1
         with self.flipped() if flipped else nullcontext():
             for _ in range(sweeps):
@@ -136,18 +143,85 @@ class Linearisation:
         scaled = direction / self.units
         return scaled / np.linalg.norm(scaled) / self.units
 
+    # ------------------------------------------------------------------ multipliers and margins
+    @property
     def row(self) -> np.ndarray:
         """Multipliers as (re, im) pairs, then margins."""
-        row = np.zeros(2 * int(self.problem.n_multipliers) + int(self.problem.n_margins))
-        if self.overwritten or self.used_up:
-            self._linearise()
-        with HELD:
-            self.kernels.inspect(self.data, self.point[0], self.point[1], self.work, row)
-        self.used_up = True
-        return row
+        if self._row is None:
+            self._row = np.zeros(2 * self.m + int(self.problem.n_margins))
+            if self.overwritten or self.used_up:
+                self._linearise()
+            with HELD:
+                self.kernels.inspect(self.data, *self.point, self.work, self._row)
+            self.used_up = True
+        return self._row
 
+    @property
+    def margins(self) -> np.ndarray:
+        """Distances from borders."""
+        return self.row[2 * self.m :]
+
+    @property
     def spectrum(self) -> NDArray[np.complex128]:
         """Raw multipliers, or eigenvalues."""
-        m = int(self.problem.n_multipliers)
-        row = self.row()
-        return row[0 : 2 * m : 2] + 1j * row[1 : 2 * m : 2]
+        return self.row[0 : 2 * self.m : 2] + 1j * self.row[1 : 2 * self.m : 2]
+
+    def pair(self, reference: float) -> tuple[float, float]:
+        """(test, position) of the pair of multipliers nearest to the boundary and to a reference; see ``pair_of``."""
+        return pair_of(self.row, self.m, self.flow, reference)
+
+    def positions(self) -> np.ndarray:
+        """Positions of all complex pairs, see ``pair_of``, the most critical one first."""
+        pairs = critical_first(self.spectrum, self.flow)
+        return np.abs(pairs) ** 2 if self.flow else pairs.real
+
+
+def critical_first(spectrum: NDArray[np.complex128], flow: bool) -> NDArray[np.complex128]:
+    """The multipliers, or eigenvalues, with positive imaginary part, those nearest to the stability boundary first."""
+    upper = spectrum[spectrum.imag > 0.0]
+    return upper[np.argsort(np.abs(upper.real if flow else np.abs(upper) - 1.0), kind="stable")]
+
+
+def singularity(problem: Problem, u: np.ndarray, p: float) -> float:
+    """The test that vanishes where the equations are singular, without its sign."""
+    return abs(Linearisation(problem).at(u, p).null_vectors().test)
+
+
+def fresh_borders(size: int) -> np.ndarray:
+    """Borders without a pattern, shape (4, size + 1)."""
+    return np.random.default_rng(5).standard_normal((4, size + 1)) / np.sqrt(size)
+
+
+def borders_at(
+    problem: Problem, wanted: int, u: np.ndarray, p: float, near: np.ndarray | None = None
+) -> np.ndarray:
+    """Borders of the bordered systems of a locus that belong to a point: null vectors of the matrix that is singular there.
+
+    Parameters
+    ----------
+    problem : Problem
+    wanted : int
+        The condition that is followed; see :mod:`contvines.loci.kinds`.
+    u, p
+        The point.
+    near : ndarray, optional
+        Borders of a neighbour, whose orientation is kept: the sign of the determinant depends on it.
+    """
+    if near is not None and wanted not in (FOLD, BRANCH, FLIP):
+        return near.copy()
+    line = Linearisation(problem).at(u, p)
+    n = line.size
+    borders = fresh_borders(n) if near is None else near.copy()
+    # columns and rows of a neighbour
+    before = [None, None] if near is None else [Null(c, b, c, 0.0) for b, c in near[:, :-1].reshape(2, 2, n)]
+    null = line.null_vectors(near=before[0])
+    if wanted in (FOLD, BRANCH):
+        borders[0, :n], borders[1, :n] = null.column, null.row
+    elif near is None:  # a regular matrix: any borders that are not special
+        b = line.rows * (np.random.default_rng(6).standard_normal(n) / np.sqrt(n))
+        v, _ = line.null(b, null.row)
+        borders[0, :n], borders[1, :n] = b, line.border_of(v)
+    if wanted == FLIP:
+        null = line.null_vectors(True, before[1])
+        borders[2, :n], borders[3, :n] = null.column, null.row
+    return borders

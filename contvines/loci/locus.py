@@ -1,19 +1,100 @@
-"""Locus: the special points of one kind in the plane of two parameters."""
+"""Locus: the special points of one kind in the plane of two parameters; PlanePoint: a point of codimension two on it, with its evidence."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..bifurcation.critical import critical
 from ..bifurcation.kind import Kind
 from ..branches.branch import Branch
+from ..branches.solutions import on_segment
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings, hinted
-from .plane_point import PlanePoint
+from ..shared.number_text import pairs
 from .problem import LocusProblem
 from .settings import PLACES
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
+
+
+@dataclass(eq=False)
+class PlanePoint:
+    """A point of codimension two.
+
+    Attributes
+    ----------
+    label, kind : str
+    parameters : (str, str)
+    value : (float, float)
+    u : ndarray, shape (N,)
+        The motion, in the unknowns of ``problem``.
+    on : list of str
+        Labels of the loci on which it lies.
+    coefficients : dict
+        Of its normal form; see :mod:`contvines.bifurcation.normal_forms.coefficients`.
+    multipliers : ndarray of complex
+        Of the full period.
+    real : bool
+    error : float
+        Of both values, relative: the last correction of Newton's method, of cycles on a mesh also what the mesh leaves.
+    residual : float
+    margins : tuple of int
+        Places of the margins that vanish there.
+    note : str
+    problem : Problem or None
+    """
+
+    label: str
+    kind: str
+    parameters: tuple[str, str]
+    value: tuple[float, float]
+    u: np.ndarray = field(repr=False)
+    on: list[str] = field(default_factory=list)
+    coefficients: dict[str, float] = field(default_factory=dict)
+    multipliers: np.ndarray = field(default_factory=lambda: np.zeros(0, complex), repr=False)
+    real: bool = True
+    error: float = 0.0
+    residual: float = 0.0
+    margins: tuple[int, ...] = ()
+    note: str = ""
+    problem: Problem | None = field(default=None, repr=False)
+
+    @property
+    def attached(self) -> Problem:
+        """The problem.
+
+        Raises
+        ------
+        ValueError
+            If the point was loaded without it.
+        """
+        if self.problem is None:
+            raise ValueError(f"{self.label} was loaded without its problem")
+        return self.problem
+
+    @property
+    def orbit(self) -> object:
+        """The motion as the object that its problem hands to users; see :attr:`contvines.SpecialPoint.orbit`."""
+        return critical(self.attached.orbit(self.u, self.value[0]), self.kind)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The entry of this point in the JSON of a chart."""
+        return {
+            "label": self.label,
+            "kind": self.kind,
+            "value": dict(zip(self.parameters, map(float, self.value))),
+            "on": list(self.on),
+            "coefficients": {name: float(value) for name, value in self.coefficients.items()},
+            "real": bool(self.real),
+            "multipliers": pairs(self.multipliers),
+            "error": float(self.error),
+            "residual": float(self.residual),
+            "note": self.note,
+        }
 
 
 @dataclass(frozen=True)
@@ -114,16 +195,15 @@ class Locus:
         return {point.label: point for _, point in self._marked()}
 
     def _marked(self) -> tuple[tuple[int, PlanePoint], ...]:
-        marked = self.marked
-        if marked is None:
+        if self.marked is None:
             if self.problem is None:
                 raise ValueError(
                     f"{self.label} was loaded without its problem; its points of codimension two cannot be sought"
                 )
-            from .marking import mark_locus
+            from .codimension_two import mark_locus
 
-            self.marked = marked = tuple(mark_locus(self))
-        return marked
+            self.marked = mark_locus(self)
+        return self.marked
 
     @property
     def ended(self) -> tuple[str, str]:
@@ -157,21 +237,17 @@ class Locus:
         ValueError
             If the locus was loaded without its problem.
         """
-        q, found = self.branch.values, []
+        branch, q = self.branch, self.branch.values
         if self.problem is None:
             raise ValueError(f"{self.label} was loaded without its problem; nothing can be solved on it")
-        engine = Engine(self.problem, _around(q, value), Settings())
-        for i in np.flatnonzero((q[:-1] - value) * (q[1:] - value) <= 0.0):
-            share = 0.0 if q[i + 1] == q[i] else (value - q[i]) / (q[i + 1] - q[i])
-            guess = (1.0 - share) * self.branch.points[i] + share * self.branch.points[i + 1]
-            point = engine.at_value(guess, value)
-            if point is not None:
-                found.append(float(self.problem.split(point.u)[1]))
-        kept: list[float] = []
-        for p in sorted(found):
-            if not kept or p - kept[-1] > PLACES.same * (1.0 + abs(p)):
-                kept.append(p)
-        return np.array(kept)
+        low, high = float(min(q.min(), value)), float(max(q.max(), value))
+        wide = high - low or 1.0 + abs(high)
+        engine = Engine(self.problem, (low - wide, high + wide), Settings())
+        crossed = np.flatnonzero((q[:-1] - value) * (q[1:] - value) <= 0.0)
+        points = [on_segment(engine, branch, int(i), value) for i in crossed]
+        found = np.sort([float(self.problem.split(point.u)[1]) for point in points if point is not None])
+        apart = np.diff(found, prepend=-np.inf) > PLACES.same * (1.0 + np.abs(found))
+        return found[apart]
 
     def to_dict(self) -> dict[str, Any]:
         """The entry of this locus in the JSON of a chart."""
@@ -189,9 +265,3 @@ class Locus:
             "closed": bool(self.closed),
             "points": [label for _, label in self.marks],
         }
-
-
-def _around(q: np.ndarray, value: float) -> tuple[float, float]:
-    low, high = min(float(q.min()), value), max(float(q.max()), value)
-    wide = high - low or 1.0 + abs(high)
-    return low - wide, high + wide

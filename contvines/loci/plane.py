@@ -1,16 +1,32 @@
-"""Plane: a problem at points of the plane of two parameters, and test functions there."""
+"""Plane: a problem at points of the plane of two parameters, and how margins change there along the branches.
+
+A border is degenerate where a branch touches it and does not cross it. Along the branch, at a fixed second parameter, the margin h then has a
+double zero: two borders of the diagram in one parameter meet there and are gone on the other side, where the motion keeps off the border. The locus
+of the border turns round in the second parameter. With h = a (p - p0)^2 + b (q - q0) + ... along the branches the borders are at
+p - p0 = +-sqrt(-b (q - q0) / a).
+"""
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .linear import Linearisation
-from .probing import pair_of
+from ..branches.branch import Branch
+from ..continuation.engine import Engine
+from ..continuation.settings import Settings
+from ..shared.floating_point import TINY
+from .linear import Linearisation, Null
 from .problem import LocusProblem
+from .settings import SCALING, VANISHING
+
+STEP = (
+    Settings.offset
+)  # of the first derivative, along the branch, relative to the sizes of unknowns and parameter
+NARROWER, WIDTHS = 0.35, 9  # widths of the differences, relative to the sizes of the parameters
+BEND = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / 180.0  # weights of a second derivative
 
 
 class Place(NamedTuple):
@@ -21,8 +37,8 @@ class Place(NamedTuple):
     q: float
 
 
-class Plane:
-    """Evaluates F and its derivatives, multipliers and margins at (u, p, q).
+class Plane(Linearisation):
+    """A problem's linearisation in the first parameter, multipliers and margins at points (u, p, q).
 
     Parameters
     ----------
@@ -31,41 +47,19 @@ class Plane:
     """
 
     def __init__(self, locus: LocusProblem) -> None:
-        self.locus, self.problem = locus, locus.base
-        self.flow = self.problem.spectrum == "flow"
-        self.m = int(self.problem.n_multipliers)
         # problems of its own: a trace changes the parameters of the locus in place
-        self.first = Linearisation(self.problem.against(locus.inner))
-        self.second = Linearisation(self.first.problem.against(locus.over))
-        self.place, self.residual = Place(np.zeros(locus.size), 0.0, 0.0), np.inf
-        self._row: np.ndarray | None = None
+        super().__init__(locus.base.against(locus.inner))
+        self.locus, self.second = locus, self.problem.against(locus.over)
+        self.place = Place(np.zeros(locus.size), 0.0, 0.0)
 
-    def at(self, place: Place) -> float:
-        """Linearise in the first parameter, unless the plane is there already; returns the largest residual."""
+    def to(self, place: Place) -> bool:
+        """Linearise there, unless the plane is there already; whether that can be done."""
         if place is not self.place:
-            assert self.first.kernels.assign is not None
-            self.first.kernels.assign(self.first.data, self.second.data, float(place.q))
-            self.place, self._row = place, None
-            self.residual = self.first.at(place.u, place.p)
-        return self.residual
-
-    @property
-    def row(self) -> np.ndarray:
-        """Multipliers as (re, im) pairs, then margins."""
-        if self._row is None:
-            self._row = self.first.row()
-        return self._row
-
-    @property
-    def spectrum(self) -> NDArray[np.complex128]:
-        """Raw multipliers, or eigenvalues."""
-        return self.row[0 : 2 * self.m : 2] + 1j * self.row[1 : 2 * self.m : 2]
-
-    def pair(self, reference: float) -> tuple[float, float]:
-        """(test, position) of the pair of multipliers nearest to the boundary and to a reference; see ``pair_of``."""
-        found = np.zeros(2)
-        pair_of(self.row, self.m, self.flow, reference, found)
-        return float(found[0]), float(found[1])
+            assert self.kernels.assign is not None
+            self.kernels.assign(self.data, self.second.data, float(place.q))
+            self.place = place
+            self.at(place.u, place.p)
+        return math.isfinite(self.largest)
 
     def other_pair(self, reference: float, second: float) -> float:
         """The test of the complex pair nearest to a second reference, of those that are not the one nearest to the first; see ``pair_of``."""
@@ -79,13 +73,83 @@ class Plane:
         rest = [i for i in range(len(upper)) if i != own]
         return float(tests[min(rest, key=lambda i: abs(places[i] - second))])
 
-    def two_nearest(self, place: float) -> float:
-        """Sum of the two multipliers nearest to a place of the real axis, less twice that place."""
-        spectrum = self.spectrum
-        nearest = spectrum[np.argsort(np.abs(spectrum - place), kind="stable")[:2]]
-        return float(np.real(np.sum(nearest)) - 2.0 * place)
+    # ------------------------------------------------------------------ along the branches
+    def branch_direction(self, null: Null) -> np.ndarray:
+        """The tangent (du, dp) of the branch, not of unit length; smooth where the branch folds."""
+        x, s = self.solve(-self.slope, null.column, null.row)
+        v, g = self.null(null.column, null.row)
+        return np.append(g * x - s * v, g)
 
-    def singular_test(self, b: np.ndarray, c: np.ndarray, flipped: bool = False) -> float:
-        """g of F_u, or of the flipped one, with given borders."""
-        with self.first.flipped() if flipped else nullcontext():
-            return self.first.null(b, c)[1]
+    def margin_at(self, place: Place) -> float:
+        """The margin of the locus at a place, which may be no solution: what its formula says; NaN where it says nothing."""
+        return float(self.margins[self.locus.index]) if self.to(place) else np.nan
+
+    def slope_along_branch(self, null: Null) -> float:
+        """Derivative of the margin along the branch through the place, over its arc."""
+        place, direction = self.place, self.branch_direction(null)
+        sizes = self.locus.sizes_at(*place)[:-1]
+        step = STEP * direction / (np.linalg.norm(direction / sizes) or np.nan)
+        h = [self.margin_at(_moved(place, k * step)) for k in (-2.0, -1.0, 1.0, 2.0)]
+        self.to(place)
+        return _slope(h) / STEP
+
+    def touching_form(self) -> dict[str, float]:
+        """a and b of the margin along the branches round the place; none where it cannot be evaluated there."""
+        u, p, q = self.place
+        *_, wide, high = self.locus.sizes_at(u, p, q)
+
+        def margin(p: float, q: float) -> float:
+            """Of the solution at other parameter values."""
+            engine = Engine(self.locus.at(q), (p - wide, p + wide), Settings())
+            found = engine.at_value(u, p)
+            return np.nan if found is None else float(engine.margins(found.row)[self.locus.index])
+
+        def bend(width: float) -> float:
+            h = [margin(p + k * width * wide, q) for k in range(-3, 4)]
+            return float(BEND @ h) / (2.0 * (width * wide) ** 2)
+
+        def slope(width: float) -> float:
+            return _slope([margin(p, q + k * width * high) for k in (-2, -1, 1, 2)]) / (width * high)
+
+        found = {"a": _best(bend), "b": _best(slope)}
+        return found if np.isfinite(list(found.values())).all() else {}
+
+
+def _moved(place: Place, direction: np.ndarray) -> Place:
+    return Place(place.u + direction[:-1], place.p + float(direction[-1]), place.q)
+
+
+def _slope(h: list[float]) -> float:
+    """The derivative from values at -2, -1, 1 and 2 steps, times the step."""
+    return (8.0 * (h[2] - h[1]) - (h[3] - h[0])) / 12.0
+
+
+def _best(value: Callable[[float], float]) -> float:
+    """A difference quotient at the width at which it changes least from one width to the next."""
+    best, error, before = np.nan, np.inf, np.nan
+    for width in SCALING.widest * NARROWER ** np.arange(WIDTHS):
+        now = value(float(width))
+        if abs(now - before) < error:
+            best, error = now, abs(now - before)
+        before = now
+    return best
+
+
+def impossible_side(locus: LocusProblem, branch: Branch) -> int:
+    """On which side of a border, in the plane (q, p), its margin is negative: see :class:`contvines.loci.locus.Locus`."""
+    i = len(branch) // 2
+    u, p = locus.split(branch.points[i])
+    plane, place = Plane(locus), Place(u, float(p), float(branch.values[i]))
+    start, null = plane.margin_at(place), plane.null_vectors()
+    if abs(null.test) < VANISHING.singular:
+        return 0
+    direction = plane.branch_direction(null)
+    direction = direction / direction[-1]  # of the motions themselves, over p
+    *sizes, own, _ = locus.sizes_at(*place)
+    largest = float((np.abs(direction[:-1]) / sizes).max())
+    step = SCALING.step * min(float(own), 1.0 / max(largest, TINY))
+    rise = plane.margin_at(_moved(place, step * direction)) - start
+    if not np.isfinite(rise) or rise == 0.0:
+        return 0
+    up_is_left = branch.tangents[i][-1] > 0.0  # going to the right, larger p is on the left
+    return -1 if (rise > 0.0) == up_is_left else 1

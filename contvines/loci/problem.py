@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
+from functools import cached_property
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -17,19 +18,13 @@ from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
 from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, array_of
-from .borders import borders_at, fresh_borders
-from .kernels import locus_bordered, locus_inspect, locus_linearise
-from .kinds import condition
-from .layout import BRANCH, FLIP, LONGEST, MARGIN, OWN, PAIR
-from .point_of_locus import PointOfLocus
+from .kernels import LONGEST, locus_bordered, locus_inspect, locus_linearise
+from .kinds import BRANCH, FLIP, MARGIN, OWN, PAIR, condition
+from .linear import borders_at, fresh_borders
 from .settings import SCALING
 
 FURTHER = 100.0  # times the sizes along the branch: no locus is measured with more
-
-
 IN_PYTHON = Kernels(locus_linearise, locus_bordered, locus_inspect)
-
-
 NOTHING = np.zeros(0)
 
 
@@ -59,10 +54,8 @@ class Work:
         self.base, self.trial = locus.first.workspace(), locus.first.workspace()
         self.residual = np.zeros(size)
         self.base_F, self.base_Q = array_of(self.base).reshape(-1), array_of(self.base, column).reshape(-1)
-        self.trial_F, self.trial_Q = (
-            array_of(self.trial).reshape(-1),
-            array_of(self.trial, column).reshape(-1),
-        )
+        self.trial_F = array_of(self.trial).reshape(-1)
+        self.trial_Q = array_of(self.trial, column).reshape(-1)
         self.point = np.zeros(size + 1)
         self.columns = np.zeros((2, n))
         self.solutions = np.zeros((6, n + 1))
@@ -142,17 +135,8 @@ class LocusProblem(ProblemDefaults):
         unit: float = 1.0,
         own_kind: Kind | None = None,
     ) -> None:
+        check_second(problem, over)
         kernels = problem.kernels
-        names = list(problem.parameters)
-        if over == problem.parameter:
-            raise ValueError(
-                f"over = {over!r} is the parameter of the diagram itself; name another one: "
-                + (", ".join(name for name in names if name != over) or "this problem has no other")
-            )
-        if over not in names:
-            raise ValueError(
-                f"over = {over!r}: the problem has no such parameter{did_you_mean(over, names)}; it has {', '.join(names) or 'none by name'}"
-            )
         if kernels.transpose is None:
             raise ValueError(
                 f"{type(problem).__name__} has no kernels for loci (assign, flip, transpose, column)"
@@ -172,9 +156,8 @@ class LocusProblem(ProblemDefaults):
         self.second = self.first.against(over)
         self.parameter = over
         self.inner = problem.parameter
-        self.unfolded = self.condition == BRANCH
         self.size = int(problem.dimension)
-        self.dimension = self.size + (2 if self.unfolded else 1)
+        self.dimension = self.size + (2 if self.condition == BRANCH else 1)
         self.bounds = (float(bounds[0]), float(bounds[1]))
         self.reference = float(reference)
         self.masked = tuple(int(j) for j in masked)
@@ -202,16 +185,8 @@ class LocusProblem(ProblemDefaults):
         first, kind = self.first, self.own_kind
         assert kind is not None and callable(kind.locus)
         first.kernels.inspect(first.data, u, p, work, row)
-
-        def jacobian() -> np.ndarray:
-            if first.kernels.matrix is None:
-                raise ValueError(f"a {type(first).__name__} does not tell its Jacobian")
-            first.kernels.linearise(first.data, u, p, work)
-            return first.kernels.matrix(first.data, work)
-
-        place = {self.inner: float(p), self.over: float(q)}
-        point = PointOfLocus(lambda: self.at(q), self.base.parameters, place, u, row, jacobian)
-        return number_of(kind, "locus", kind.locus, point, place)
+        point = PointOfLocus(self, first, u, p, q, row)
+        return number_of(kind, "locus", kind.locus, point, point.place)
 
     @property
     def tested(self) -> int:
@@ -224,7 +199,10 @@ class LocusProblem(ProblemDefaults):
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         """Typical sizes of unknowns, first parameter (and unfolding) and second parameter."""
-        scale = np.ones(self.dimension + 1)
+        scale, width = np.ones(self.dimension + 1), within[1] - within[0]
+        # of the second parameter: what it is at the start, or the interval where that says little
+        start = abs(self.base.parameters[self.over])
+        second = min(width, start) if start > SCALING.start * width else width
         if not self.natural:
             scales = self.base.scales
             if scales is None and np.isfinite(self.bounds).all():
@@ -234,28 +212,21 @@ class LocusProblem(ProblemDefaults):
                 largest = float(scales.unknowns.max())
                 # an unknown that is zero all along the branch has shown no size of its own
                 own = np.where(scales.unknowns < SCALING.unseen * largest, largest, scales.unknowns)
-                if (
-                    self.base.scales_learned
-                ):  # a locus goes further: as far as the second parameter alone moves the motion
+                if self.base.scales_learned:
+                    # a locus goes further: as far as the second parameter alone moves the motion
                     moved = self.second.scale_within(within)[:-1]
                     own = np.maximum(own, np.minimum(moved, FURTHER * own))
                 scale[: self.size], scale[self.size] = own, scales.parameter
                 self.rows[:] = scales.rows
-            scale[-1] = self._size_of_second(within)
+            scale[-1] = second
         self.sizes[: self.size + 1] = scale[: self.size + 1]
-        self.sizes[self.dimension] = self._size_of_second(within)
+        self.sizes[self.dimension] = second
         return scale
-
-    def _size_of_second(self, within: tuple[float, float]) -> float:
-        """Of the second parameter: what it is at the start, or the interval where that says little."""
-        width, start = within[1] - within[0], abs(self.base.parameters[self.over])
-        return min(width, start) if start > SCALING.start * width else width
 
     def sizes_at(self, u: np.ndarray, p: float, q: float) -> np.ndarray:
         """What changes of (u, p, q) are compared with near a place."""
-        own = np.append(
-            self.sizes[: self.size], [self.unit * self.sizes[self.size], self.sizes[self.dimension]]
-        )
+        parameters = self.unit * self.sizes[self.size], self.sizes[self.dimension]
+        own = np.append(self.sizes[: self.size], parameters)
         return np.maximum(own, np.abs(np.append(u, [p, q])))
 
     # ------------------------------------------------------------------ what a solution is
@@ -271,22 +242,23 @@ class LocusProblem(ProblemDefaults):
         """The problem of the branches at a value of the second parameter."""
         return self.base.against(self.inner, {self.over: float(q)})
 
-    def bordered_at(self, u: np.ndarray, p: float, q: float, reference: float) -> LocusProblem:
+    def again(self, problem: Problem, **changed: Any) -> Self:
+        """The same locus of another problem, with what is `changed` of the arguments that it was made with."""
+        about = {
+            "index": self.index,
+            "bounds": self.bounds,
+            "reference": self.reference,
+            "masked": self.masked,
+            "unit": self.unit,
+            "own_kind": self.own_kind,
+        }
+        return type(self)(problem, self.kind, self.over, **about | changed)
+
+    def bordered_at(self, u: np.ndarray, p: float, q: float, reference: float) -> Self:
         """The same locus, with the borders that belong to one of its points, and the pair at a position there."""
         problem = self.at(q)
         borders = borders_at(problem, self.condition, u, p)
-        about = (
-            self.kind,
-            self.over,
-            self.index,
-            self.bounds,
-            borders,
-            reference,
-            self.masked,
-            self.unit,
-            self.own_kind,
-        )
-        return type(self)(problem, *about)
+        return self.again(problem, borders=borders, reference=reference)
 
     def margin_kind(self, j: int) -> str:
         """Kind of the border, "end" where p leaves its interval, "resonance" where a pair becomes real."""
@@ -303,9 +275,8 @@ class LocusProblem(ProblemDefaults):
         """Of the special point, with its parameter value."""
         inner, value = self.split(np.asarray(u, dtype=float))
         key, vector = self.base.canonical(inner, float(value))
-        return (self.kind, self.index if self.condition == MARGIN else 0, key), np.append(
-            vector, value / self.unit
-        )
+        which = self.index if self.condition == MARGIN else 0
+        return (self.kind, which, key), np.append(vector, value / self.unit)
 
     @property
     def measure_names(self) -> tuple[str, ...]:
@@ -338,6 +309,7 @@ class LocusProblem(ProblemDefaults):
     def describe(self) -> dict[str, Any]:
         """A description from which `from_description` builds the problem again."""
         about = dict(self.base.describe())
+        rebuilds = about.get("factory") and self.own_kind is None
         return {
             **{key: about[key] for key in ("word", "periods", "impacts", "symmetric") if key in about},
             "name": f"{self.kind} locus",
@@ -351,9 +323,7 @@ class LocusProblem(ProblemDefaults):
             **({"unit": self.unit} if self.unit != 1.0 else {}),
             "borders": self.borders.tolist(),
             "problem": about,
-            "factory": "contvines.loci.problem:from_description"
-            if about.get("factory") and self.own_kind is None
-            else None,
+            "factory": f"{type(self).__module__}:from_description" if rebuilds else None,
         }
 
     @classmethod
@@ -364,16 +334,24 @@ class LocusProblem(ProblemDefaults):
         problem, (low, high) = rebuild(description["problem"], trust), description["bounds"]
         if problem is None:
             return None
+        about = {name: description[name] for name in ("index", "borders", "reference", "masked")}
+        unit = description.get("unit", 1.0)
         return cls(
-            problem,
-            description["kind"],
-            description["parameter"],
-            description["index"],
-            (low, high),
-            np.array(description["borders"]),
-            description["reference"],
-            description["masked"],
-            description.get("unit", 1.0),
+            problem, description["kind"], description["parameter"], bounds=(low, high), unit=unit, **about
+        )
+
+
+def check_second(problem: Problem, over: str) -> None:
+    """Refuse what is no second parameter of a problem, in a sentence."""
+    names = list(problem.parameters)
+    if over == problem.parameter:
+        raise ValueError(
+            f"over = {over!r} is the parameter of the diagram itself; name another one: "
+            + (", ".join(name for name in names if name != over) or "this problem has no other")
+        )
+    if over not in names:
+        raise ValueError(
+            f"over = {over!r}: the problem has no such parameter{did_you_mean(over, names)}; it has {', '.join(names) or 'none by name'}"
         )
 
 
@@ -385,3 +363,58 @@ def has_natural_units(problem: Problem) -> bool:
 def from_description(description: Mapping[str, Any], trust: bool = False) -> LocusProblem | None:
     """The LocusProblem that `describe` described; None where functions of the user's own are not at hand."""
     return LocusProblem.rebuilt(description, trust)
+
+
+class PointOfLocus:
+    """What functions of users' kinds see of a point along a locus: as :class:`~contvines.bifurcation.point_on_branch.PointOnBranch`, without a tangent.
+
+    ``value`` is the first parameter; ``parameters`` hold both that vary, and ``place`` these two alone, the first one first.
+
+    Parameters
+    ----------
+    locus : LocusProblem
+    there : Problem
+        One whose data are those of the second parameter's value.
+    u, p, q
+        The point.
+    row : ndarray
+        Its multipliers and margins.
+    """
+
+    def __init__(
+        self, locus: LocusProblem, there: Problem, u: np.ndarray, p: float, q: float, row: np.ndarray
+    ) -> None:
+        self.locus, self.there = locus, there
+        self.u, self.value, self.row = np.array(u), float(p), np.array(row)
+        self.place = {locus.inner: float(p), locus.over: float(q)}
+        self.parameters = {**locus.base.parameters, **self.place}
+
+    @property
+    def problem(self) -> Problem:
+        """That of the branches, at this value of the second parameter."""
+        return self.locus.at(self.place[self.locus.over])
+
+    @cached_property
+    def jacobian(self) -> np.ndarray:
+        """F_u of the problem's equations, shape (N, N)."""
+        kernels, data, work = self.there.kernels, self.there.data, self.there.workspace()
+        if kernels.matrix is None:
+            raise ValueError(f"a {type(self.there).__name__} does not tell its Jacobian")
+        kernels.linearise(data, self.u, self.value, work)
+        return np.array(kernels.matrix(data, work))
+
+    @cached_property
+    def multipliers(self) -> np.ndarray:
+        """Of the full period (eigenvalues for flows), complex."""
+        pairs = self.row[: 2 * self.locus.n_multipliers]
+        return np.asarray(self.locus.to_multipliers(pairs.view(complex)), dtype=complex)
+
+    @property
+    def margins(self) -> np.ndarray:
+        """Distances from borders."""
+        return self.row[2 * self.locus.n_multipliers :]
+
+    def measure(self, name: str) -> float:
+        """A measure of the solution by its name."""
+        found = self.problem.measures((name,), self.u[None, :], np.array([self.value]))
+        return float(found[name][0])

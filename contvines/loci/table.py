@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import html
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from contvines.shared.modulation import BAND
 
@@ -16,8 +19,7 @@ from .settings import PLACES
 
 if TYPE_CHECKING:
     from .chart import Chart
-    from .locus import Locus
-    from .plane_point import PlanePoint
+    from .locus import Locus, PlanePoint
     from .regions import Region
 
 
@@ -155,3 +157,36 @@ def _notes(point: PlanePoint) -> str:
     if not point.real:
         parts.append("virtual")
     return ", ".join([*parts, point.note] if point.note else parts)
+
+
+MOST = 8  # regions
+
+
+def chart_summary(chart: Chart, width: int | None = None) -> str:
+    """Loci and points by kind, then the largest regions.
+
+    Parameters
+    ----------
+    chart : Chart
+    width : int, optional
+        Characters to a line; those of the terminal by default.
+    """
+    width = terminal_width() if width is None else width
+    number = [figures_in(within) for within in chart.within]
+
+    def spread(values: list[float], text: Callable[[float], str]) -> str:
+        return "..".join(dict.fromkeys((text(min(values)), text(max(values)))))
+
+    loci = [(locus.sort, locus.values) for locus in chart.loci.values()]
+    points = [(point.kind, np.array([point.value])) for point in chart.points.values()]
+    rows = []
+    for each in (loci, points):
+        for kind, count in Counter(kind for kind, _ in each).most_common():
+            values = np.concatenate([values for own, values in each if own == kind])
+            across = (spread([values[:, k].min(), values[:, k].max()], number[k]) for k in (1, 0))
+            rows.append((kind, str(count), *across))
+    p, q = (with_unit(name, chart.units.get(name)) for name in chart.parameters)
+    lines = [title(chart), "", *Table(("loci and points", "number", q, p), rows).lines(width)]
+    if chart.regions:
+        lines += ["", *regions_table(chart, MOST).lines(width)]
+    return "\n".join(lines)

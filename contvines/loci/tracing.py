@@ -1,44 +1,55 @@
-"""How the special points of one kind are followed in the plane of two parameters."""
+"""How the special points of one kind are followed in the plane of two parameters, and how a side of their locus ends."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Container, Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
+from ..bifurcation.detect import Detector
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME, checked
+from ..bifurcation.located import Located, Role
 from ..branches.assembly import make_branch
 from ..branches.branch import Branch
 from ..branches.ending import Ending
+from ..branches.finer_mesh import Meshes
 from ..branches.half_branch import HalfBranch
 from ..branches.special_point import SpecialPoint
+from ..branches.tracing import trace_half
+from ..continuation.engine import Engine, Solved
 from ..continuation.layout import Status
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
 from ..interrupts import listening
-from ..journal import NullJournal
+from ..journal import Journal, NullJournal
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
-from .both_sides import BothSides
-from .ends import becoming, locus_of, sentence
-from .homoclinic import homoclinic_of
-from .layout import BRANCH, MARGIN, PERIOD
-from .locus import Locus, Turn
-from .long_period import lengthened, limit_of, with_suited_period
-from .on_mesh import on_mesh
-from .own_test import condition_of, of_own_kind
-from .plane_point import PlanePoint
+from ..shared.number_text import number_text
+from .adaptive import on_mesh
+from .codimension_two import bare_points, becomes, beginning, vanishing
+from .departures import homoclinic_of
+from .kinds import BRANCH, MARGIN, PERIOD
+from .locus import Locus, PlanePoint, Turn
+from .plane import Place, impossible_side
 from .problem import LocusProblem
 from .settings import VANISHING
-from .sides import impossible_side
-from .starts import begin, first_point, regular_side
+from .starts import Candidate, begin, candidate_of, check_start, first_point, limit_of, with_period
 
-if TYPE_CHECKING:
-    from ..journal import Journal
+MOST = 20  # borders that are passed on one side
+#: how a side may end where equations become singular
+SINGULAR = (
+    Status.STEP_TOO_SMALL,
+    Status.NOT_EVALUABLE,
+    Status.CREEPING,
+    Status.BORDER,
+    Status.COARSE,
+)
+
+Interval = tuple[float, float]
+Progress = Callable[[str, int, float], None]
 
 
 @hinting
@@ -90,72 +101,38 @@ def locus(
     """
     if point.kind in ("end", "user"):
         raise ValueError(f"{point.label} is no special point of the motion ({point.kind}); it has no locus")
-    if point.problem is None:
-        raise ValueError(without_problem(point.label))
     within = check_interval(within)
+    limits = (-np.inf, np.inf) if bounds is None else check_interval(bounds)
     own_kinds = tuple(kind for kind in checked(kinds) if BY_NAME.get(kind.name) is not kind)
-    beside = isinstance(point, PlanePoint)
     if isinstance(point, PlanePoint):
-        point = _beside(point, over, within, (-np.inf, np.inf) if bounds is None else check_interval(bounds))
+        start = _beside(point, over, within, limits)
+    else:
+        check_start(point, over, within)
+        start = candidate_of(point, over, own_kinds, suited=period is None)
     if period is not None:
-        if point.kind != "homoclinic":
+        if start.kind != "homoclinic":
             raise ValueError(
                 f"period = {period!r}: {point.label} is no homoclinic end of a branch ({point.kind})"
             )
         try:
-            longer, u, p = lengthened(on_mesh(point.attached), np.array(point.u), float(point.value), period)
+            start = with_period(start, period)
         except ValueError as error:
             raise ValueError(f"{point.label}: {error}") from error
-        point = replace(point, problem=longer, u=u, value=p)
-    elif not beside:
-        point = with_suited_period(point)
-    if not of_own_kind(point):
-        point = regular_side(point)
-    motion = point.attached
-    known = motion.parameters
-    own = of_own_kind(point)
-    problem = begin(
-        motion,
-        point.kind,
-        point.u,
-        point.value,
-        over,
-        point.margin_index or 0,
-        (-np.inf, np.inf) if bounds is None else check_interval(bounds),
-        condition_of(point, own_kinds) if own else None,
-    )
-    q = known[over]
-    if not within[0] <= q <= within[1]:
-        raise ValueError(
-            f"the diagram was made at {over} = {q:.10g}, outside of within = [{within[0]:.10g}, {within[1]:.10g}]; "
-            "widen the interval"
-        )
-    checked_ends(motion, over, within)
-    settings = Settings.of(settings)
     found = trace_locus(
-        problem,
-        point.u,
-        point.value,
-        q,
-        within,
-        settings,
-        label=point.label,
-        seed=point.label,
-        virtual=virtual,
-        progress=progress,
+        start, over, within, limits, Settings.of(settings), point.label, virtual, NullJournal(), progress
     )
     if found is None:
         raise ValueError(
-            f"the locus of {point.label} cannot be started: its equations do not converge at {over} = {q:.10g}"
+            f"the locus of {point.label} cannot be started: its equations do not converge at {over} = {start.q:.10g}"
         )
     found.kinds = own_kinds
     return found
 
 
-def _beside(
-    point: PlanePoint, over: str, within: tuple[float, float], bounds: tuple[float, float]
-) -> SpecialPoint:
+def _beside(point: PlanePoint, over: str, within: Interval, bounds: Interval) -> Candidate:
     """The homoclinic orbit beside a Bogdanov-Takens point of a flow."""
+    if point.problem is None:
+        raise ValueError(without_problem(point.label))
     if point.kind != "bogdanov-takens":
         raise ValueError(
             f"{point.label} is a point of codimension two ({point.kind}); only Bogdanov-Takens points of flows begin loci by themselves"
@@ -165,83 +142,89 @@ def _beside(
     found = next(homoclinic_of(point, bounds, within), None)
     if found is None:
         raise ValueError(f"no homoclinic orbit is found beside {point.label}")
-    nothing = np.zeros(len(found.u) + 1)
-    label, kind, inner = point.label, found.kind, point.parameters[0]
-    return SpecialPoint(label, kind, "", found.p, inner, found.u, nothing, np.zeros(0), problem=found.problem)
-
-
-def checked_ends(problem: Problem, over: str, within: tuple[float, float]) -> None:
-    """Refuse an interval whose ends are no sensible values of the parameter, where the problem can tell."""
-    for value in within:
-        problem.check_value(over, value)
+    return found
 
 
 def trace_locus(
-    problem: LocusProblem,
-    u: np.ndarray,
-    p: float,
-    q: float,
-    within: tuple[float, float],
+    start: Candidate,
+    over: str,
+    within: Interval,
+    bounds: Interval,
     settings: Settings,
     label: str,
-    seed: str | None = None,
-    virtual: bool = False,
-    journal: Journal | None = None,
-    progress: Callable[[str, int, float], None] | None = None,
+    virtual: bool,
+    journal: Journal,
+    progress: Progress | None,
 ) -> Locus | None:
-    """The locus through a special point, both ways; None if its equations do not converge there."""
-    engine, start = first_point(problem, u, p, q, within, settings)
-    if start is None:
+    """The locus through a special point, both ways; None if its equations do not converge there.
+
+    Parameters
+    ----------
+    start : Candidate
+    over, within, bounds, settings, virtual, progress
+        As for :func:`locus`.
+    label : str
+        Of the locus.
+    journal : Journal
+    """
+    problem = begin(start, over, bounds)
+    engine, first = first_point(problem, start.u, start.p, start.q, within, settings)
+    if first is None:
         return None
-    journal = NullJournal() if journal is None else journal
-    margins = engine.margins(start.row)
-    real = not np.any(margins[: int(problem.base.n_margins)] < -VANISHING.margin)
-    if start.tangent[-1] < 0.0:
-        start = start._replace(tangent=-start.tangent, sign=-start.sign)
+    real = not np.any(engine.margins(first.row)[: int(problem.base.n_margins)] < -VANISHING.margin)
+    if first.tangent[-1] < 0.0:
+        first = first._replace(tangent=-first.tangent, sign=-first.sign)
 
     def notice(points: int, value: float) -> None:
         if progress is not None:
             progress(label, points, value)
 
-    sides = BothSides(engine, within, settings, f"locus/{label}", journal, notice, real, virtual)
-    found = sides.followed(start)
-    whole = ahead = found["ahead"]
-    back = ahead if ahead.status == Status.CLOSED else found["back"]
-    flags = sides.real["ahead"]
-    if back is not ahead:
+    sides = BothSides(engine, f"locus/{label}", journal, notice, real, virtual)
+    found = sides.followed(first)
+    whole = back = ahead = found["ahead"]
+    closed, flags = ahead.status == Status.CLOSED, sides.real["ahead"]
+    if not closed:
+        back = found["back"]
         whole = back.reversed().extended(ahead, skip=1)
         flags = np.append(sides.real["back"][::-1], flags[1:])
     problem = locus_of(whole)
-    first, last = (_end(half, within) for half in (back, ahead))
-    endings = (first[0], last[0])
-    branch = make_branch(label, whole, real, endings, ahead.status == Status.CLOSED, seed)
-    branch.description["unfolded"] = problem.unfolded
-    for index, (_, end) in ((0, first), (-1, last)):
-        if end is not None:
-            _put_at_end(problem, branch, index, end)
-    if problem.condition == BRANCH and _unfolds(problem, branch.points):
-        return None
+    ends = [becoming(half, within) for half in (back, ahead)]
+    first_end, last_end = (
+        Ending.said(became or sentence(half)) for (became, _), half in zip(ends, (back, ahead))
+    )
+    branch = make_branch(label, whole, real, (first_end, last_end), closed, start.seed)
+    branch.description["unfolded"] = problem.condition == BRANCH
+    for index, (_, point) in zip((0, -1), ends):
+        if point is not None:
+            _put_at_end(problem, branch, index, point)
+    if (
+        problem.condition == BRANCH
+        and (np.abs(branch.points[:, problem.size + 1]) > VANISHING.singular).any()
+    ):
+        return None  # it unfolds
     turns = tuple(
         Turn(i, (float(problem.split(e.point.u)[1]), float(e.point.p)))
         for i, e in whole.events
         if e.kind == "fold"
     )
-    side = impossible_side(problem, branch) if problem.condition == MARGIN else 0
-    limit = _limit(problem, *ahead.at(0)[:2]) if problem.condition == PERIOD else ""
-    about = label, problem.kind, (problem.inner, problem.over), branch, flags, seed, turns, within, side
-    return Locus(*about, limit=limit)
-
-
-def _end(half: HalfBranch, within: tuple[float, float]) -> tuple[Ending, PlanePoint | None]:
-    became, point = becoming(half, within)
-    return Ending.said(became or sentence(half)), point
-
-
-def _limit(problem: LocusProblem, u: np.ndarray, q: float) -> str:
-    """What the cycles of a long period stand for where their locus begins."""
-    inner, p = problem.split(u)
-    found = limit_of(on_mesh(problem.at(q)), inner, float(p))
-    return "" if found is None else found.limit
+    limit = ""
+    if problem.condition == PERIOD:  # what the cycles stand for where their locus begins
+        u, q, _ = ahead.at(0)
+        inner, p = problem.split(u)
+        at = limit_of(on_mesh(problem.at(q)), inner, float(p))
+        limit = "" if at is None else at.limit
+    return Locus(
+        label,
+        problem.kind,
+        (problem.inner, over),
+        branch,
+        flags,
+        start.seed,
+        turns,
+        within,
+        beyond=impossible_side(problem, branch) if problem.condition == MARGIN else 0,
+        limit=limit,
+    )
 
 
 def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoint) -> None:
@@ -258,5 +241,149 @@ def _put_at_end(problem: LocusProblem, branch: Branch, index: int, end: PlanePoi
     branch.values[index] = end.value[1]
 
 
-def _unfolds(problem: LocusProblem, points: np.ndarray) -> bool:
-    return bool((np.abs(points[:, problem.size + 1]) > VANISHING.singular).any())
+class BothSides:
+    """The sides of a locus, "ahead" and "back", on meshes that suit both; of a closed one "ahead" alone.
+
+    Parameters
+    ----------
+    engine : Engine
+        Of the locus, on the mesh on which it begins.
+    name : str
+        Under which chunks are recorded.
+    journal : Journal
+    notice : callable
+        See :func:`contvines.branches.tracing.trace_half`.
+    real : bool
+        Whether the motion exists at the first point.
+    virtual : bool
+        Go on where the motion ceases to exist.
+
+    Attributes
+    ----------
+    real : dict of ndarray of bool
+        Of each side, at which of its points the motion exists.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        name: str,
+        journal: Journal,
+        notice: Callable[[int, float], None],
+        real: bool,
+        virtual: bool,
+    ) -> None:
+        self.engine, self.name, self.journal, self.notice = engine, name, journal, notice
+        self.begins_real, self.virtual = real, virtual
+        self.meshes = Meshes(self._engine_of, engine, Detector(engine), self._vanishes)
+        self.real: dict[str, np.ndarray] = {}
+
+    def followed(self, start: Solved) -> dict[str, HalfBranch]:
+        """Both sides on one mesh, from a point in the direction of its tangent and backwards."""
+        return self.meshes.followed(self.engine, start, self._halves, self.meshes.moved, self.begins_real)[0]
+
+    def _engine_of(self, problem: Problem) -> tuple[Engine, Detector]:
+        engine = Engine(problem, self.engine.within, self.engine.settings)
+        return engine, Detector(engine)
+
+    def _vanishes(self, half: HalfBranch) -> bool:
+        return becoming(half, self.engine.within)[1] is not None
+
+    def _halves(self, engine: Engine, start: Solved, known: Container[str]) -> dict[str, HalfBranch]:
+        turned = start._replace(tangent=-start.tangent, sign=-start.sign)
+        found: dict[str, HalfBranch] = {}
+        for side, first in (("ahead", start), ("back", turned)):
+            if side not in known:
+                found[side] = self._side(engine, first, side)
+                if found[side].status == Status.CLOSED:
+                    break
+        return found
+
+    def _side(self, engine: Engine, first: Solved, side: str) -> HalfBranch:
+        mesh = list(self.meshes.detectors).index(engine)
+        name = f"{self.name}/finer {mesh}/{side}" if mesh else f"{self.name}/{side}"
+        now, half, self.real[side] = self.begins_real, None, np.zeros(0, dtype=bool)
+        for part in range(MOST):
+            detector, key = self.meshes.detectors[engine], f"{name}/{part}"
+            more = trace_half(
+                engine, first, detector, self.journal, key, now, notice=self.notice, meshes=self.meshes
+            )
+            new = len(more) - (0 if half is None else 1)
+            self.real[side] = np.append(self.real[side], np.full(new, now))
+            half = more if half is None else self.meshes.read(half, more.engine).extended(more, skip=1)
+            border = border_of(more)
+            if border is None or not self.virtual:
+                break
+            if locus_of(more).margin_kind(border.index) in ("end", "resonance"):
+                break
+            engine, now, first = more.engine, not now, border.point
+        assert half is not None
+        return half
+
+
+# ------------------------------------------------------------------ how a side ends
+def locus_of(half: HalfBranch) -> LocusProblem:
+    """The problem of a side, on the mesh on which it is."""
+    problem = half.engine.problem
+    assert isinstance(problem, LocusProblem)
+    return problem
+
+
+def border_of(half: HalfBranch) -> Located | None:
+    """The border at which a side ends, if it ends at one."""
+    last = half.events[-1][1] if half.events and half.status == Status.BORDER else None
+    return last if last is not None and last.role is Role.BORDER else None
+
+
+def becoming(half: HalfBranch, within: Interval) -> tuple[str, PlanePoint | None]:
+    """What the motion becomes where its equations become singular, a shorter one run twice, or a symmetric one, and the point of
+    codimension two at which it does; empty where neither."""
+    if half.status not in SINGULAR:
+        return "", None
+    problem = locus_of(half)
+    points = bare_points(*half.joined()[:3])
+    (u, p), q = problem.split(points[-1].u), points[-1].p
+    if isinstance(problem.base, Adaptive):
+        end, what = vanishing(problem, points, within), "an equilibrium"
+        if end is None:
+            return "", None
+    else:
+        met = becomes(problem, Place(u, float(p), q))
+        if met is None:
+            return "", None
+        what = "a shorter one, run twice" if met.kind == "period-doubling" else "symmetric"
+        end = beginning(problem, points[-1], within)
+    p, q, digits = (float(p), q, 7) if end is None else (*end.value, 10)
+    return f"the motion becomes {what}, at {_place(half, p, q, digits)}", end
+
+
+def sentence(half: HalfBranch) -> str:
+    """Why a side of a locus ends, where the motion becomes no other one."""
+    problem = locus_of(half)
+    border = border_of(half)
+    if half.events and half.events[-1][1].role is Role.MEETING:
+        met, at = half.events[-1][1], half.events[-1][1].point
+        what = "an equilibrium" if met.kind == "hopf" else "a cycle of half the period"
+        return f"the cycle becomes {what}, at {_place(half, float(problem.split(at.u)[1]), at.p)}"
+    if border is None:
+        return half.status.sentence(problem.over, half.end)
+    kind, p, q = problem.margin_kind(border.index), float(problem.split(border.point.u)[1]), border.point.p
+    if problem.condition == PERIOD and kind == "homoclinic":
+        return (
+            f"a period of {problem.reference:.6g} is too short at {_place(half, p, q, 6)}: "
+            "the cycle comes no nearer to an equilibrium than 3 % of its size; give a longer period="
+        )
+    place = _place(half, p, q)
+    if kind == "end":
+        return f"reaches the end of the interval of {problem.inner}, {place}"
+    if kind == "resonance":
+        return f"the pair of multipliers becomes real at {place}"
+    return f"reaches a border ({kind}) at {place}"
+
+
+def _place(half: HalfBranch, p: float, q: float, digits: int = 10) -> str:
+    """Both parameters; what is rounding beside their largest values along the locus is 0."""
+    problem, whole = locus_of(half), half.joined()
+    largest = np.abs([problem.split(whole.points)[1], whole.values]).max(axis=1)
+    at = [number_text(value, digits, unit) for value, unit in zip((p, q), largest, strict=True)]
+    return f"{problem.inner} = {at[0]}, {problem.over} = {at[1]}"

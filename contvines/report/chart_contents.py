@@ -13,8 +13,7 @@ from .numbers import heading, scene, shortened
 
 if TYPE_CHECKING:
     from ..loci.chart import Chart
-    from ..loci.locus import Locus
-    from ..loci.plane_point import PlanePoint
+    from ..loci.locus import Locus, PlanePoint
     from ..loci.regions import Region
 
 RASTER = 180  # cells of the picture of the regions each way, at most

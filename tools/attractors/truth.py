@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 
 import contvines as cv
-from contvines.coexistence.solutions import solutions_at
+from contvines.branches.solutions import solutions_at
 from contvines.continuation.engine import Engine
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled

@@ -9,8 +9,7 @@ import pytest
 
 import contvines as cv
 from contvines.command.cli import app
-from contvines.loci.summary import chart_summary
-from contvines.loci.table import table
+from contvines.loci.table import chart_summary, table
 
 
 def cubic(u, p):

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.loci.codimension_two import find
-from contvines.loci.coefficients_at import coefficients
+from contvines.loci.codimension_two import coefficients, find
 from tests.contvines.bifurcation.normal_forms.test_critical import Bend, polar
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 import contvines as cv
-from contvines.loci.known_motions import KnownMotions
+from contvines.loci.regions import KnownMotions
 
 
 def test_a_cycle_whose_period_goes_to_zero_is_no_equilibrium():

@@ -6,8 +6,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import contvines as cv
-from contvines.loci.codimension_two import find
-from contvines.loci.coefficients_at import coefficients
+from contvines.loci.codimension_two import coefficients, find
 from orbits.machines.physical import physical
 from tests.contvines.loci.systems import generalized_henon
 from tests.contvines.loci.test_absorber_loci import closed_form

@@ -8,7 +8,7 @@ import pytest
 import contvines as cv
 from contvines.graph.attractor import Attractor
 from contvines.loci.chart import Chart
-from contvines.loci.plane_point import PlanePoint
+from contvines.loci.locus import PlanePoint
 from contvines.loci.regions import Region
 from contvines.report.page import write_report
 from contvines.survey import Survey, planned

@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.loci.codimension_two import find
-from contvines.loci.coefficients_at import coefficients
+from contvines.loci.codimension_two import coefficients, find
 from tests.contvines.loci.systems import generalized_henon, generalized_henon_at
 
 pytestmark = pytest.mark.slow

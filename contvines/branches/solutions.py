@@ -1,12 +1,23 @@
-"""The real solutions of a branch at a value of its parameter."""
+"""The solutions of a branch at a value of its parameter."""
 
 from __future__ import annotations
 
-from ..branches.branch import Branch
+from itertools import pairwise
+
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
 from ..continuation.mesh_motion import MeshMotion
 from ..continuation.settings import Settings
+from .branch import Branch
+
+
+def on_segment(engine: Engine, branch: Branch, i: int, at: float) -> Solved | None:
+    """The solution at a value of the parameter that lies on, or near, the segment from point i to the next one; None if there is none."""
+    first, last = branch.values[i : i + 2]
+    part = 0.5 if first == last else (at - first) / (last - first)
+    one, other = branch.points[i : i + 2]
+    read = MeshMotion(engine).carried(one, other, branch.tangents[i])
+    return engine.at_value((1.0 - part) * (one if read is None else read) + part * other, at)
 
 
 def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
@@ -19,18 +30,13 @@ def solutions_at(branch: Branch, at: float) -> tuple[Engine, list[Solved]]:
     """
     if branch.problem is None:
         raise ValueError(f"{branch.label} has no problem; see Graph.attach")
-    values = branch.values
-    engine = Engine(branch.problem, (float(values.min()), float(values.max())), Settings())
-    found: list[Solved] = []
-    for i in range(len(values) - 1):
-        first, last = values[i], values[i + 1]
+    values, found = branch.values, []
+    engine = Engine(branch.problem, branch.range, Settings())
+    for i, (first, last) in enumerate(pairwise(values)):
         ends_here = last == at and i < len(values) - 2  # the next segment has it
         if first == last or ends_here or (first - at) * (last - at) > 0.0:
             continue
-        part = (at - first) / (last - first)
-        one, other = branch.points[i], branch.points[i + 1]
-        read = MeshMotion(engine).carried(one, other, branch.tangents[i])
-        solved = engine.at_value((1.0 - part) * (one if read is None else read) + part * other, at)
+        solved = on_segment(engine, branch, i, at)
         if solved is not None and engine.smallest_margin(solved.row) >= MARGIN:
             found.append(solved)
     return engine, found
