@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contvines.shared.modulation import BAND
-from orbits.flows.protocol import Equations, Flow, SimulationError
+from orbits.flows.protocol import Equations, Flow
 from orbits.words import Word
 
 if TYPE_CHECKING:
@@ -43,31 +43,21 @@ class Simulated:
             "word" (None where there is none), "periods" and "kind" of each motion and "share" of the starts that lead to it, sorted; of
             one that does not recur "modulation" and its band, too (see `contvines.shared.modulation`), where it has one.
         """
-        from orbits.attractors.observation import described, modulated
-        from orbits.attractors.search import find_attractor
+        from orbits.attractors.observation import modulated
+        from orbits.attractors.search import met
 
-        params, generator = self.values(p), np.random.default_rng(7)
-        named: dict[str, Any] = self.model.named(params)
         found: dict[tuple[str, int, str], dict[str, Any]] = {}
-        met = 0
-        for i in range(starts):
-            start = None if i == 0 else self.model.random_start(params, generator)
-            try:
-                motion, measures = described(
-                    find_attractor(self.model, start, max_period=12, patience=1, observed=False, **named)
-                )
-            except SimulationError:
-                continue  # it lies within a wall
+        motions = list(met(self.model, self.values(p), starts, 7, max_period=12, patience=1))
+        for motion, measures in motions:
             text = None if motion.word is None else _canonical_text(motion.word)
             key = (text or "", int(motion.periods), motion.kind)
             if key not in found:
                 found[key] = {"word": text, "periods": key[1], "kind": motion.kind, "share": 0.0}
                 if modulation := modulated(motion, measures):
                     found[key] |= {"modulation": modulation, **{name: measures[name] for name in BAND}}
-            met += 1
             found[key]["share"] += 1
         for one in found.values():
-            one["share"] /= met
+            one["share"] /= len(motions)
         return [found[key] for key in sorted(found)]
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]:

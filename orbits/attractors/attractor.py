@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.flows.protocol import Simulator
 from orbits.flows.trajectory import Trajectory
 from orbits.orbit import Orbit
 from orbits.settings import REPLAYING
@@ -143,16 +144,6 @@ class Attractor:
         return np.empty((0, self.model.node)) if self.orbit is None else self.orbit.nodes
 
     @property
-    def codes(self) -> np.ndarray:
-        """The events of its word as numbers, int8 array (n,); none without one."""
-        return np.empty(0, np.int8) if self.word is None else self.word.codes
-
-    @property
-    def modes(self) -> np.ndarray:
-        """The modes after them, int8 array (n,)."""
-        return np.empty(0, np.int8) if self.word is None else self.word.mode_codes
-
-    @property
     def residual(self) -> float:
         """Largest residual of the orbit's equations; nan without an orbit."""
         return np.nan if self.orbit is None else self.orbit.residual
@@ -254,24 +245,28 @@ class Attractor:
             shown = shown[np.argsort(since % (2.0 * np.pi * self.periods))]
         return shown.tolist()
 
-    def follow(self, periods: float | None = None) -> Trajectory:
-        """The motion from `state`: over one cycle, or sixteen periods where nothing recurs."""
+    def simulator(self) -> Simulator:
+        """A simulator on the motion, at `state`."""
         simulator = simulator_of(self.model, self.params)
         simulator.go_on(self.state)
-        return simulator.run(periods or self.periods or (1 if self.recurrent else LASTING), MOST_EVENTS)
+        return simulator
+
+    def follow(self, periods: float | None = None) -> Trajectory:
+        """The motion from `state`: over one cycle, or sixteen periods where nothing recurs."""
+        return self.simulator().run(
+            periods or self.periods or (1 if self.recurrent else LASTING), MOST_EVENTS
+        )
 
     def distance(self, other: Attractor) -> float:
         """Largest difference of the canonical nodes, relative to 1 + nodes: over all rotations, whole periods and the mirror image; inf if the words differ."""
         if self.orbit is None or other.orbit is None:
             alike = self.orbit is other.orbit and (self.kind, self.periods) == (other.kind, other.periods)
             return 0.0 if alike and self.text == other.text else np.inf
-        one, two = (
-            x.orbit.problem(symmetric=False).canonical(*_seed(x.orbit)) for x in (self, other) if x.orbit
-        )
+        forms = []
+        for orbit in (self.orbit, other.orbit):
+            problem = orbit.problem(symmetric=False)
+            forms.append(problem.canonical(*orbit.seed(problem)))
+        one, two = forms
         if one[0] != two[0]:
             return np.inf
         return float(np.abs(one[1] - two[1]).max(initial=0.0) / (1.0 + np.abs(one[1]).max(initial=0.0)))
-
-
-def _seed(orbit: Orbit) -> tuple[np.ndarray, float]:
-    return orbit.seed(orbit.problem(symmetric=False))

@@ -16,7 +16,6 @@ from orbits.flows.protocol import Simulator
 from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.machines.varying import Varying
 from orbits.settings import SIMULATING
-from orbits.simulation.runs import simulator_of
 
 OFTEN = 32
 """A motion that does not recur is `chatter` if it rests on a wall at least once in so many periods, on average."""
@@ -33,7 +32,7 @@ def observe(found: Attractor, least: float = 0.0) -> Observation:
     grows, bursts and fades over tens or hundreds of periods, and a few of them show only a part of that. Where a simulation
     takes long, the last part of that by which the motion was recognised must do, or `least` periods where these are asked for.
     """
-    simulator = _simulator(found)
+    simulator = found.simulator()
     first, longest = simulator.observed
     tally = _Tally(simulator)
     if found.recurrent:
@@ -56,7 +55,7 @@ def observe(found: Attractor, least: float = 0.0) -> Observation:
 
 def lasting(found: Attractor, seen: Observation | None = None) -> Attractor:
     """The attractor with its kind and impacts as `observe` sees them; one that recurs, or rests, is returned as it is."""
-    simulator = simulator_of(found.model, found.params)
+    simulator = found.simulator()
     if found.recurrent or found.kind == simulator.resting or not simulator.observed[1]:
         return found
     seen = seen or observe(found)
@@ -90,8 +89,11 @@ def described(found: Attractor, least: float = 0.0) -> tuple[Attractor, dict[str
     seen = observe(found, least)
     rate = seen.impacts_per_period / (1.0 if model.forced else 2.0 * np.pi)
     known |= {**seen.extremes, speed: seen.impact_speed, "impacts_per_period": rate}
-    if BAND[0] in names and not found.recurrent and found.kind != _simulator(found).resting:
-        known |= modulation(_modulated_part(found)).measures
+    simulator = found.simulator()
+    if BAND[0] in names and not found.recurrent and found.kind != simulator.resting:
+        periods = simulator.modulated
+        run = simulator.run(periods, int(MOST_EVENTS * (periods + 1))) if periods else found.trajectory
+        known |= modulation(run).measures
     return lasting(found, seen), flow.in_units(model, params, known)
 
 
@@ -99,27 +101,7 @@ def modulated(found: Attractor, measures: Mapping[str, float]) -> str:
     """How a motion is modulated, chaotic by its largest Lyapunov exponent; empty where it recurs or nothing but the absorber moves."""
     if not modulation_of(measures):
         return ""
-    return modulation_of(measures, wandering(*_simulator(found).growth(), True) == "chaotic")
-
-
-def dots(found: Attractor, measures: Mapping[str, float]) -> list[float]:
-    """What a picture shows: one measure of the whole motion, B or the approach speed of every impact, or the extremes of the first state."""
-    names = flow_of(found.model).swept(found.model)
-    return [float(measures[name]) for name in names if name in measures] or found.dots
-
-
-def _simulator(found: Attractor) -> Simulator:
-    """On the motion."""
-    simulator = simulator_of(found.model, found.params)
-    simulator.go_on(found.state)
-    return simulator
-
-
-def _modulated_part(found: Attractor) -> Trajectory:
-    """Where the modulation is seen."""
-    simulator = _simulator(found)
-    periods = simulator.modulated
-    return simulator.run(periods, int(MOST_EVENTS * (periods + 1))) if periods else found.trajectory
+    return modulation_of(measures, wandering(*found.simulator().growth(), True) == "chaotic")
 
 
 class _Tally:

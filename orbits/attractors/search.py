@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -49,6 +50,23 @@ def find_attractor(
     tries = how.tries if patience is None else patience
     found = attracted(simulator, length, max_period, how.returned if tolerance is None else tolerance, tries)
     return lasting(found) if observed else found
+
+
+def met(
+    model: Varying,
+    params: np.ndarray,
+    count: int,
+    seed: int,
+    first: Mapping[str, float] | np.ndarray | None = None,
+    **options: int,
+) -> Iterator[tuple[Attractor, dict[str, float]]]:
+    """What a start (rest by default) and others that are drawn, always the same ones, lead to, as `described`; those within a wall are left out."""
+    generator = np.random.default_rng(seed)
+    values: dict[str, Any] = {**model.named(params), **options}
+    for i in range(count):
+        start = first if i == 0 else model.random_start(params, generator)
+        with suppress(SimulationError):
+            yield described(find_attractor(model, start, observed=False, **values))
 
 
 def goes_on(simulator: Simulator, transient: float, max_period: int, patience: int | None = 0) -> Attractor:
@@ -170,7 +188,7 @@ def recurring(simulator: Simulator, run: Trajectory, max_period: int, near: floa
     """The shortest cycle at the end of a run that its equations confirm and that attracts, or on which the motion is."""
     for orbit, _, gap in _candidates(simulator, run, max_period, near):
         if isinstance(orbit, Orbit) and (gap <= SIMULATING.closed or _attracts(orbit)):
-            return plainest(orbit)
+            return orbit
     return None
 
 
@@ -189,7 +207,7 @@ def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: fl
         if tried and length % tried:
             continue
         tried = length
-        orbit = _solved(run, len(run) - length, len(run), periods, FAR)
+        orbit = solved(run, len(run) - length, len(run), periods, FAR)
         if orbit is not None:
             yield orbit, orbit.periods, gap
 
@@ -204,7 +222,7 @@ def _attractor(simulator: Simulator, run: Trajectory, found: Orbit | int, period
     if isinstance(found, int):
         return Attractor(model, params, "chatter", periods, None, run, found, state)
     kind = found.flow.kind(found) if len(found.word) else "periodic"
-    return Attractor(model, params, kind, found.periods, plainest(found), run, len(found.word), state)
+    return Attractor(model, params, kind, found.periods, found, run, len(found.word), state)
 
 
 def returns(run: Trajectory, max_period: int, near: float) -> Iterator[tuple[int, int, float]]:
@@ -243,15 +261,11 @@ def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] |
 
 def solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
     """Events `first` to `last` - 1 of a run as an orbit, if its equations have a real solution within `far` of them; see `polished`."""
-    orbit = _solved(run, first, last, periods, far)
-    return None if orbit is None else plainest(orbit)
-
-
-def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
     word, nodes = run.cycle(first, last)
     if run.model.forced:
         nodes[:, 0] -= TWO_PI * np.floor(nodes[0, 0] / TWO_PI)
-    return polished(Orbit(run.model, word, periods, nodes, run.params), far)
+    orbit = polished(Orbit(run.model, word, periods, nodes, run.params), far)
+    return None if orbit is None else plainest(orbit)
 
 
 def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:

@@ -12,8 +12,9 @@ import numpy as np
 from contvines.shared.near_names import no_parameter
 from contvines.shared.processes import ATTEMPTS, spread
 from orbits.attractors.attractor import Attractor
-from orbits.attractors.observation import described, dots, modulated
+from orbits.attractors.observation import described, modulated
 from orbits.attractors.search import find_attractor, goes_on
+from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError
 from orbits.settings import SIMULATING
 from orbits.simulation.runs import simulator_of
@@ -58,8 +59,9 @@ class SweepRow:
 
     @property
     def dots(self) -> list[float]:
-        """What a picture shows of it."""
-        return dots(self.detail, self.measures)
+        """What a picture shows: one measure of the whole motion, B or the approach speed of every impact, or the extremes of the first state."""
+        names = flow_of(self.detail.model).swept(self.detail.model)
+        return [float(self.measures[name]) for name in names if name in self.measures] or self.detail.dots
 
 
 def sweep(
@@ -139,25 +141,17 @@ def find_attractors(
     starts: Sequence[Mapping[str, float] | np.ndarray | None],
     *,
     workers: int = 1,
-    **options: object,
+    **options: Any,
 ) -> list[Attractor]:
     """`find_attractor` from many starts; the result does not depend on the number of worker processes."""
-    return _many(partial(_one_attractor, model, options), starts, workers)
+    return _many(partial(find_attractor, model, **options), starts, workers)
 
 
 def sweeps(
-    model: Varying, over: str, runs: Sequence[Sequence[float]], *, workers: int = 1, **options: object
+    model: Varying, over: str, runs: Sequence[Sequence[float]], *, workers: int = 1, **options: Any
 ) -> list[list[SweepRow]]:
     """`sweep` over several lists of values, such as one up and one down, in worker processes if asked for."""
-    return _many(partial(_one_sweep, model, over, options), runs, workers)
-
-
-def _one_attractor(model: Varying, options: dict[str, Any], start: Mapping[str, float] | np.ndarray | None):
-    return find_attractor(model, start, **options)
-
-
-def _one_sweep(model: Varying, over: str, options: dict[str, Any], values: Sequence[float]) -> list[SweepRow]:
-    return sweep(model, over, values, **options)
+    return _many(partial(sweep, model, over, **options), runs, workers)
 
 
 def _many(work: Callable[[Any], Any], jobs: Sequence[Any], workers: int) -> list[Any]:

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.attractors import find_attractor
-from orbits.attractors.observation import described
+from orbits.attractors.search import find_attractor, met
 from orbits.attractors.sweeping import SweepRow, sweep
 from orbits.contacts.letters import Mode
 from orbits.flows.catalogue import flow_of
@@ -171,15 +170,8 @@ class Family:
         found = []
         for value in at:
             params = model.vector_at(over, value, loose)
-            numbers: dict[str, Any] = model.named(params)
-            generator = np.random.default_rng(20)
-            for trial in range(starts):
-                start = self.state if trial == 0 else model.random_start(params, generator)
-                try:
-                    attractor, numbers_of = described(find_attractor(model, start, observed=False, **numbers))
-                except SimulationError:
-                    continue  # it lies within a wall
-                found.append((float(value), numbers_of, attractor.text))
+            for attractor, measures in met(model, params, starts, 20, self.state):
+                found.append((float(value), measures, attractor.text))
         return found
 
     def swept(self, values: Mapping[str, float], over: str, at: Sequence[float]) -> list[tuple[float, float]]:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from orbits.attractors.search import solved
 from orbits.flows.protocol import SimulationError, Simulator, later
 from orbits.flows.trajectory import Trajectory
 from orbits.orbit import Orbit
 from orbits.settings import SIMULATING, SOLVING
 
+NEXT, WIDE = 0.01, 0.5
+"""Largest distance of a cycle from its guess, relative to 1 + states; beside a chaotic motion all that is real counts."""
 NEAR = 0.1  # largest difference of a return, relative to the spread of the motion
 TRIES = 3  # returns with one and the same list of events
 PER_LENGTH = 200  # nearest returns of each length
@@ -21,9 +23,7 @@ PER_PERIOD = (
 )
 
 
-def embedded_cycles(
-    simulator: Simulator, longest: int, solve: Callable[[Trajectory, int, int, int], Any]
-) -> Iterator[Any]:
+def embedded_cycles(simulator: Simulator, longest: int) -> Iterator[Orbit]:
     """Cycles next to the nearest returns of a motion, of up to `longest` forcing periods.
 
     Parameters
@@ -32,8 +32,6 @@ def embedded_cycles(
         On the motion; it is moved on.
     longest : int
         Of a self-excited machine: a fourth of the events of the longest cycle.
-    solve : callable
-        ``(record, first, last, periods)`` -> the cycle next to these events of a record, or None.
 
     Yields
     ------
@@ -58,11 +56,12 @@ def embedded_cycles(
         for i, j in _returns(record, marks, spread, length, PER_PERIOD * longest):
             if record.piled[i:j].any():
                 continue
-            key = _list_of_events(record.labels[i:j].tolist())
+            events = record.labels[i:j].tolist()
+            key = min(tuple(events[k:] + events[:k]) for k in range(j - i))  # wherever the cycle is begun
             tried[key] = tried.get(key, 0) + 1
             if tried[key] > TRIES:
                 continue
-            found = solve(record, i, j, max(length, 1))
+            found = solved(record, i, j, max(length, 1), WIDE)
             if found is not None:
                 yield found
 
@@ -90,11 +89,6 @@ def _returns(
     rows = np.concatenate(table)
     rows = rows[np.argsort(rows[:, 2], kind="stable")][:PER_LENGTH]
     return [(int(i), int(j)) for i, j, size in rows if size < NEAR and j - i <= LONGEST_WORD]
-
-
-def _list_of_events(events: Sequence[int]) -> tuple:
-    """The events and modes, the same wherever the cycle is begun."""
-    return min(tuple(events[k:]) + tuple(events[:k]) for k in range(len(events)))
 
 
 ITERATIONS = 12
@@ -138,7 +132,10 @@ def fixed_point(
             there = x.copy()
             there[j] += moved
             matrix[:, j] = (step(there) - image) / moved
-        change = _solved(matrix - one, rest)
+        try:
+            change = np.linalg.solve(matrix - one, rest)
+        except np.linalg.LinAlgError:
+            return None
         length = float(np.abs(change / size).max())
         if not length < np.inf:
             return None
@@ -158,16 +155,6 @@ def fixed_point(
     return None
 
 
-def _solved(matrix: np.ndarray, rest: np.ndarray) -> np.ndarray:
-    try:
-        return np.linalg.solve(matrix, rest)
-    except np.linalg.LinAlgError:
-        return np.full(len(rest), np.nan)
-
-
-Solve = Callable[[Trajectory, int, int, int], Orbit | None]
-"""(record, first, last, periods) -> the cycle next to these events of a record, or None."""
-
 WARM = (
     3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
 )
@@ -175,11 +162,7 @@ EVENTS = 400  # in a forcing period at most
 
 
 def returning_cycles(
-    simulator: Simulator,
-    starts: np.ndarray,
-    box: np.ndarray,
-    longest: int,
-    solve: Solve,
+    simulator: Simulator, starts: np.ndarray, box: np.ndarray, longest: int
 ) -> Iterator[Orbit]:
     """Cycles of up to `longest` forcing periods with events, each once.
 
@@ -192,8 +175,6 @@ def returning_cycles(
     box : float array (1 + d, 2)
         Smallest and largest value of these.
     longest : int
-    solve : callable
-        ``(record, first, last, periods)`` -> the cycle next to these events of a record, or None.
 
     Yields
     ------
@@ -232,12 +213,12 @@ def returning_cycles(
                 np.abs((np.array(points[1:]).reshape(-1, len(x)) - x) / size).max(axis=1) < SIMULATING.same
             )
             prime = int(np.argmax(again)) + 1 if again.any() else count
-            found = _cycle_through(simulator, x, prime if prime % 2 or length == 1.0 else prime // 2, solve)
+            found = _cycle_through(simulator, x, prime if prime % 2 or length == 1.0 else prime // 2)
             if found is not None:
                 yield found
 
 
-def _cycle_through(simulator: Simulator, x: np.ndarray, periods: int, solve: Solve) -> Orbit | None:
+def _cycle_through(simulator: Simulator, x: np.ndarray, periods: int) -> Orbit | None:
     """The cycle through a point; None if it is none that can be continued."""
     try:
         simulator.start(x)
@@ -246,4 +227,4 @@ def _cycle_through(simulator: Simulator, x: np.ndarray, periods: int, solve: Sol
         return None
     if not record.whole or not len(record) or record.piled.any():
         return None
-    return solve(record, 0, len(record), periods)
+    return solved(record, 0, len(record), periods, NEXT)

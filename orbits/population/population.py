@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,21 +10,18 @@ import numpy as np
 from contvines.shared.even_points import low_discrepancy
 from contvines.shared.motions import Motion
 from contvines.shared.near_names import no_parameter
-from orbits.attractors.search import solved
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.machines.base import Model
 from orbits.machines.notation import STARTS
 from orbits.orbit import Orbit
-from orbits.population.fleet import SOLVED, Fleet, Problem, Sorting, distinct
+from orbits.population.fleet import SOLVED, Fleet, Problem, distinct
 from orbits.problem import rebuild
 from orbits.simulation.runs import simulator_of
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
 
-FAR, WIDE = 0.01, 0.5
-"""Largest distance of a cycle from its guess, relative to 1 + states; beside a chaotic motion all that is real counts."""
 DRAWS = 64  # times as many starts are drawn at most to find those outside the walls
 
 
@@ -142,9 +138,9 @@ class Population:
             Whether it reaches the mirror image of that motion.
         """
         starts = np.asarray(starts, dtype=float)
-        fleet = Fleet(self._simulator(p), starts, self._longest, self.workers)
+        fleet = Fleet(self._simulator(p), starts, self._longest, self.workers, self.parameter, p)
         try:
-            return Sorting(len(starts), self.parameter, p).sort(fleet.sort)
+            return fleet.sorted()
         finally:
             self.work += fleet.work
 
@@ -161,7 +157,7 @@ class Population:
 
         simulator = self._simulator(p, state)
         begun = simulator.time
-        cycles = list(embedded_cycles(simulator, self._embedded, partial(solved, far=WIDE)))
+        cycles = list(embedded_cycles(simulator, self._embedded))
         self.work += simulator.time - begun + SOLVED * len(cycles)
         return distinct(cycles, self.parameter, p)
 
@@ -181,8 +177,8 @@ class Population:
         simulator = self._simulator(p)
         if not simulator.forced:
             return []
-        starts, solver = np.asarray(starts, dtype=float), partial(solved, far=FAR)
-        cycles = list(returning_cycles(simulator, starts, self.box(p), self._embedded, solver))
+        starts = np.asarray(starts, dtype=float)
+        cycles = list(returning_cycles(simulator, starts, self.box(p), self._embedded))
         self.work += SOLVED * (len(starts) + len(cycles))
         return distinct((*self._closed(p), *cycles), self.parameter, p)
 
