@@ -9,35 +9,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Iterator
-from itertools import chain, islice, product
+from itertools import chain, product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from orbits.borders.dead_ends import piled_up
 from orbits.borders.distance import CLOSE, distance, tends
-from orbits.borders.neighbours import (
-    Begun,
-    Grown,
-    Place,
-    grown,
-    margins_of,
-    parameter_unit,
-    place_at,
-    placed,
-    proposals,
-    readings,
-    turned,
-)
-from orbits.borders.rewriting import Edit, edits_at
-from orbits.borders.rounds import derivative, rounds_at
+from orbits.borders.neighbours import Grown, followed, margins_of, parameter_unit, placed, proposals
+from orbits.borders.rounds import escapes
 from orbits.contacts.letters import HIT, SLIP
 from orbits.cycles.identity import canonical, size_of_one
-from orbits.cycles.rounds import MOST, choices, escape
 from orbits.flows.solving import newton, solved_at
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem, Seed
-from orbits.settings import BORDERING, REPLAYING, SOLVING
+from orbits.settings import BORDERING, SOLVING
 from orbits.starts.find import StartError, find
 from orbits.words.margins import approaches_of
 
@@ -84,9 +70,10 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
     seeds = []
     # the simulator is asked only where no proposal stands
     border = placed(problem, u, p, index)
-    for found, note in chain(proposals(border), _with_room(problem, u, p, index), _simulated(problem, u, p)):
+    rooms = chain.from_iterable(map(proposals, border.with_room()))
+    for found, note in chain(proposals(border), rooms, _simulated(problem, u, p)):
         orbit = found.orbit()
-        if not _followed(found, orbit):
+        if not followed(orbit):
             continue
         simplest, persistence = _simplest(found, orbit), bool(np.sign(found.p - p) != old_side)
         kind = "persistence" if persistence else "nonsmooth fold"
@@ -95,8 +82,7 @@ def cross(problem: CycleProblem, point: BorderPoint, every: bool = True) -> list
             seeds.extend(_onwards(simplest.problem, simplest.u, p))
         break
     if (every or not seeds) and len(problem.word):
-        beside = [(*turned(problem, *near, index)[:2], near[1]) for near in nearby if near is not None]
-        seeds += escapes(border, beside)
+        seeds += escapes(border, [placed(problem, *near, index) for near in nearby if near is not None])
     return [_with_word(read_alike(seed, before)) for seed in seeds]
 
 
@@ -106,16 +92,6 @@ def _with_word(seed: Seed) -> Seed:
     if len(text) > LONG_WORD:
         text = f"one of {len(seed.problem.word)} events"
     return seed._replace(note=f"{seed.note}, the word becomes {text}")
-
-
-def _with_room(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Iterator[tuple[Grown, str]]:
-    """What the local rules propose where the border is read with more events on either side."""
-    for read, v, place in islice(readings(problem, u, p, index), 1, None):
-        yield from proposals(place_at(read, v, place, p))
-
-
-def _followed(found: Grown, orbit: Orbit) -> bool:
-    return bool(margins_of(*found[:3]).min() >= REAL) and orbit.replay() < REPLAYING.followed
 
 
 def _simplest(found: Grown, orbit: Orbit) -> Grown:
@@ -134,75 +110,9 @@ def _onwards(problem: CycleProblem, u: np.ndarray, p: float) -> Iterator[Seed]:
         return
     index = int(np.argmin(np.abs(margins_of(problem, at_border, p))))
     for found, note in proposals(placed(problem, at_border, p, index)):
-        if _followed(found, found.orbit()):
+        if followed(found.orbit()):
             yield Seed(*found, "border", f"{note}: the branches meet at the border", False)
             return
-
-
-def escapes(border: Place, beside: list[tuple[CycleProblem, np.ndarray, float]]) -> Iterator[Seed]:
-    """Orbits of less symmetry or longer period that leave at the border itself: the change happens in some rounds only.
-
-    A round is a whole cycle, or half a symmetric one. A change in every other round breaks the symmetry or doubles the
-    period, and is followed whether it is stable or not; of those that change in one of several rounds, or in all but one
-    (period adding), there may be many at once: the stable ones are followed.
-    """
-    problem, _, p, index, orbit, edits, _ = border
-    unchanged = [derivative(*solution) for solution in beside[-2:]]
-    known = [rounds_at(border, edit, unchanged) for edit in edits]
-    hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
-    if hopeless and all(len(no) == len(choices(MOST)) for no in hopeless):
-        return
-    wider, whole = _repeated(problem, orbit, 2)
-    first = edits_at(whole, index, problem.length)
-    if [edit.change for edit in first] != [edit.change for edit in edits]:
-        hopeless = [set() for _ in first]
-    for rounds in range(2, MOST + 1):
-        for changed in (1, rounds - 1) if rounds > 2 else (1,):
-            wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
-            if not wanted or (changed > 1 and not problem.forced):
-                continue
-            if rounds > 2:
-                wider, whole = _repeated(problem, orbit, rounds)
-            found = _grown_in(problem, wider, whole, p, wanted, rounds, changed)
-            if found is None:
-                continue
-            other, there = found[0].problem, found[0].orbit()
-            root = there.root()
-            if (len(root.word), root.periods) != (len(other.word), other.periods) or (
-                there.symmetric and not other.symmetric
-            ):
-                continue
-            if _followed(found[0], there):
-                note = f"{found[1]}: {escape(problem.symmetric, rounds)}"
-                yield Seed(*found[0], "border", note, False)
-
-
-def _repeated(problem: CycleProblem, orbit: Orbit, rounds: int) -> tuple[CycleProblem, Orbit]:
-    """The border orbit over some rounds, and the problem of the orbits with that many."""
-    if problem.symmetric and rounds % 2:
-        whole = orbit.repeat(rounds)  # an odd number of halves, and their mirror image
-        return problem.sibling(whole.word, whole.periods, True), whole
-    whole = orbit.repeat(rounds // 2 if problem.symmetric else rounds)
-    return problem.sibling(whole.word, whole.periods, False), whole
-
-
-def _grown_in(
-    problem: CycleProblem,
-    wider: CycleProblem,
-    whole: Orbit,
-    p: float,
-    choices: list[Edit],
-    rounds: int,
-    changed: int,
-) -> tuple[Grown, str] | None:
-    """The orbit in which the first rounds of the problem, as many as `changed`, go through one of the changes."""
-    for edit in choices:
-        ways = BORDERING.sizes if rounds == 2 else BORDERING.sizes[:2]
-        edits = [edit.later(k, problem, p) for k in range(changed)]
-        found = grown(Begun(wider, whole, p, edits), ways, steady=rounds > 2)
-        if found is not None:
-            return found, edit.change.what.value
-    return None
 
 
 def _real_part(
@@ -339,11 +249,7 @@ def from_rest(problem: CycleProblem, point: BorderPoint) -> list[Seed]:
             other = problem.sibling(orbit.word, orbit.periods, orbit.symmetric)
             u, q = other.reduce(orbit.nodes), other.value(orbit.params)
             length = orbit.model.natural_units(orbit.params)[0]
-            if (
-                orbit.real
-                and np.ptp(orbit.sample()["w"]) < CLOSE * length
-                and orbit.replay() < REPLAYING.followed
-            ):
+            if np.ptp(orbit.sample()["w"]) < CLOSE * length and followed(orbit):
                 sign = np.zeros(other.dimension + 1)
                 sign[-1] = side
                 note = "the stuck absorber begins to slip: persistence, the word becomes ss"

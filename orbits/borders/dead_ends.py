@@ -108,16 +108,12 @@ def _goes_to(problem: CycleProblem, orbit: Orbit, p: float) -> list[str]:
     return [f"simulation {what} just {name} it" for name, what in told.items()]
 
 
-def piled_up(orbit: Orbit, approaches: np.ndarray | None = None) -> bool:
-    """Whether a border orbit has an impact that is too slow, once the wall has sent it back, to see what the next ones do.
-
-    `approaches` are the orbit's own, where they are known.
-    """
-    speeds = (orbit.approaches if approaches is None else approaches).tolist()
+def piled_up(orbit: Orbit, approaches: np.ndarray) -> bool:
+    """Whether a border orbit with these speeds of impacts has one that is too slow, once the wall has sent it back, to see what the next ones do."""
     hits = [place for place in range(len(orbit.word)) if orbit.word.letter(place).kind == HIT]
     return any(
         speed > BORDERING.shown and orbit.flow.restitution(orbit, place) * speed < BORDERING.unresolved
-        for speed, place in zip(speeds, hits)
+        for speed, place in zip(approaches.tolist(), hits)
     )
 
 

@@ -20,16 +20,10 @@ INSTANTS = (
 )  # of a period by which motions near a border are compared, where they differ all along
 
 
-def tends_to(border: Orbit, near: Orbit, further: Orbit) -> bool:
-    """Whether orbits tend to a border orbit, measured twice: `further` is the same orbit at some distance from `near`.
-
-    An orbit that is only similar keeps its distance. All are read at the same phases.
-    """
-    return tends(gap(border, near), lambda: gap(border, further))
-
-
 def tends(close: float, further: Callable[[], float]) -> bool:
-    """The same from their distances; the larger one is asked for where it matters."""
+    """Whether an orbit tends to a border orbit, from its distance measured twice: the larger one, of the same orbit further away, is asked for
+    where it matters. An orbit that is only similar keeps its distance.
+    """
     return close < BORDERING.together or (close < CLOSE and close < SHRINKS * further())
 
 

@@ -9,17 +9,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orbits.borders.distance import SHRINKS, gap, tends, tends_to
+from orbits.borders.distance import SHRINKS, gap, tends
 from orbits.borders.rewriting import Edit, durations_after, edits_at, rewritten
 from orbits.contacts.letters import HIT, SLIP, STICK, Change, Grows, What
 from orbits.flows.solving import newton
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem
-from orbits.settings import BORDERING, GROWING, SOLVING
+from orbits.settings import BORDERING, GROWING, REPLAYING, SOLVING
 
 ASTRAY = 0.1  # part of the way from the border by which a solution may miss its prediction: else it is of another branch
 CLOSER = 3  # times that a solution which tends to the border orbit is looked at closer still
 ROOM = 4  # events that may stand before that of the margin
+
+
+def parameter_unit(problem: CycleProblem, p: float) -> float:
+    """What changes of the parameter near p are compared with: its own size, or where it started."""
+    return max(abs(p), abs(problem.equations.began)) or 1.0
 
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
@@ -40,41 +45,67 @@ def examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     return row
 
 
-def turned(
-    problem: CycleProblem, u: np.ndarray, p: float, index: int
-) -> tuple[CycleProblem, np.ndarray, int]:
-    """The same border read from another event, so that what changes does not straddle the end of the word."""
-    place = index // len(problem.word.alphabet.columns)
-    if not len(problem.word):
-        return problem, u, index
+class Border:
+    """A border orbit, read from one of its events, and what the local rules propose there.
+
+    Attributes
+    ----------
+    problem, u, p
+        The border orbit as a solution.
+    margin : int
+        Index of the margin that vanishes.
+    """
+
+    def __init__(self, problem: CycleProblem, u: np.ndarray, p: float, margin: int) -> None:
+        self.problem, self.u, self.p, self.margin = problem, u, p, margin
+        self._begun: dict[int, Begun | None] = {}
+
+    @cached_property
+    def orbit(self) -> Orbit:
+        """The border orbit."""
+        return self.problem.orbit(self.u, self.p)
+
+    @cached_property
+    def edits(self) -> list[Edit]:
+        """What the local rules propose."""
+        return edits_at(self.orbit, self.margin, self.problem.length)
+
+    @property
+    def event(self) -> int:
+        """The event of the margin."""
+        return self.margin // len(self.problem.word.alphabet.columns)
+
+    def begun(self, edit: Edit) -> Begun | None:
+        """What a single one of the edits begins, worked out once."""
+        if id(edit) not in self._begun:
+            self._begun[id(edit)] = begun(self.problem, self.orbit, self.p, [edit])
+        return self._begun[id(edit)]
+
+    def read_from(self, first: int) -> Border:
+        """The same border read from event `first`."""
+        problem, width = self.problem, len(self.problem.word.alphabet.columns)
+        orbit = self.orbit.rotate(first % len(problem.word))
+        other = problem.sibling(orbit.word, problem.periods, problem.symmetric)
+        margin = width * ((self.event - first) % problem.length) + self.margin % width
+        return Border(other, other.reduce(orbit.nodes), self.p, margin)
+
+    def with_room(self) -> Iterator[Border]:
+        """The same border read with more events before the margin's: a change may need room on either side."""
+        for ahead in range(min(ROOM, self.problem.length)):
+            if ahead != self.event and len(self.problem.word):
+                yield self.read_from(self.event - ahead)
+
+
+def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Border:
+    """The border at which margin `index` of a solution vanishes, read so that what changes does not straddle the end of the word."""
+    border = Border(problem, u, p, index)
+    place = border.event
+    if not len(problem.word) or problem.length < 2:
+        return border
     slip = problem.word.letter(place).kind == SLIP
-    if 0 < place < problem.length - 1 or (place == 0 and not slip) or problem.length < 2:
-        return problem, u, index
-    return read_from(problem, u, p, index, place - 1 if slip else place)
-
-
-def read_from(
-    problem: CycleProblem, u: np.ndarray, p: float, index: int, first: int
-) -> tuple[CycleProblem, np.ndarray, int]:
-    """The same border read from event `first`."""
-    width = len(problem.word.alphabet.columns)
-    place, column = divmod(index, width)
-    orbit = problem.orbit(u, p).rotate(first % len(problem.word))
-    other = problem.sibling(orbit.word, problem.periods, problem.symmetric)
-    return other, other.reduce(orbit.nodes), width * ((place - first) % problem.length) + column
-
-
-def readings(
-    problem: CycleProblem, u: np.ndarray, p: float, index: int
-) -> Iterator[tuple[CycleProblem, np.ndarray, int]]:
-    """The same border read as `turned` reads it, then with more events before the margin's: a change may need room on either side."""
-    first = turned(problem, u, p, index)
-    yield first
-    read, v, place = first
-    own = place // len(read.word.alphabet.columns)
-    for ahead in range(min(ROOM, read.length)):
-        if ahead != own and len(read.word):
-            yield read_from(read, v, p, place, own - ahead)
+    if 0 < place < problem.length - 1 or (place == 0 and not slip):
+        return border
+    return border.read_from(place - 1 if slip else place)
 
 
 class Grown(NamedTuple):
@@ -90,73 +121,14 @@ class Grown(NamedTuple):
         return self.problem.orbit(self.u, self.p)
 
 
-class Begun:
-    """The new word that edits make of a border orbit, and its solutions next to the border; each is worked out once.
-
-    Attributes
-    ----------
-    orbit : Orbit
-        The border orbit.
-    p : float
-    start : (Growing, unknowns) or None
-        What grows as the edits have it, and the new orbit at the border; None where the edits make no word.
-    """
-
-    def __init__(self, problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> None:
-        self.orbit, self.p = orbit, p
-        self.start = with_edits(problem, orbit, p, edits)
-        self._climbed: dict[tuple[float, ...], list[Held]] = {}
-
-    @cached_property
-    def growing(self) -> Growing | None:
-        """What grows from nothing; None where the new word is regular at the border."""
-        assert self.start is not None
-        stated, guess = self.start
-        return stated if stated.change.grows is not Grows.MARGIN else vanishing_in(stated, guess)
-
-    def climbed(self, sizes: tuple[float, ...]) -> list[Held]:
-        """The solutions in which what grows has these sizes; see `Growing.climb`."""
-        if sizes not in self._climbed:
-            assert self.start is not None and self.growing is not None
-            self._climbed[sizes] = self.growing.climb(self.start[1], sizes)
-        return self._climbed[sizes]
-
-
-class Place(NamedTuple):
-    """A border orbit, read so that what changes does not straddle the end of the word, and what the local rules propose there."""
-
-    problem: CycleProblem
-    u: np.ndarray
-    p: float
-    margin: int
-    orbit: Orbit
-    edits: list[Edit]
-    known: dict[int, Begun]
-
-    def begun(self, edit: Edit) -> Begun:
-        """What a single one of the edits begins."""
-        if id(edit) not in self.known:
-            self.known[id(edit)] = Begun(self.problem, self.orbit, self.p, [edit])
-        return self.known[id(edit)]
-
-
-def placed(problem: CycleProblem, u: np.ndarray, p: float, index: int) -> Place:
-    """The border at which margin `index` of a solution vanishes."""
-    return place_at(*turned(problem, u, p, index), p)
-
-
-def place_at(problem: CycleProblem, u: np.ndarray, index: int, p: float) -> Place:
-    """The same, read as it is."""
-    orbit = problem.orbit(u, p)
-    return Place(problem, u, p, index, orbit, edits_at(orbit, index, problem.length), {})
-
-
-def proposals(border: Place) -> Iterator[tuple[Grown, str]]:
+def proposals(border: Border) -> Iterator[tuple[Grown, str]]:
     """Solutions next to the border with the words that the local rules propose, and what changes."""
-    problem, u, p, index, orbit, edits, _ = border
-    values = margins_of(problem, u, p)
-    together = [j for j in range(problem.n_margins) if j != index and abs(values[j]) < BORDERING.together]
-    for first in edits:
+    problem, orbit, p = border.problem, border.orbit, border.p
+    values = margins_of(problem, border.u, p)
+    together = [
+        j for j in range(problem.n_margins) if j != border.margin and abs(values[j]) < BORDERING.together
+    ]
+    for first in border.edits:
         chosen = [first]
         for j in together:
             for edit in edits_at(orbit, j, problem.length):
@@ -164,53 +136,159 @@ def proposals(border: Place) -> Iterator[tuple[Grown, str]]:
                 if alike and not any(_overlap(edit.change, other.change) for other in chosen):
                     chosen.append(edit)
                     break
-        for several in [chosen, [first]] if len(chosen) > 1 else [chosen]:
-            begun = border.begun(first) if len(several) == 1 else Begun(problem, orbit, p, several)
-            found = grown(begun)
-            if found is not None:
-                yield found, first.change.what.value
+        if len(chosen) > 1 and (found := grown(begun(problem, orbit, p, chosen))) is not None:
+            yield found, first.change.what.value
+        if (found := grown(border.begun(first))) is not None:
+            yield found, first.change.what.value
+
+
+def followed(orbit: Orbit) -> bool:
+    """Whether every margin is kept, and the simulation follows the orbit."""
+    return orbit.real and orbit.replay() < REPLAYING.followed
 
 
 def _overlap(a: Change, b: Change) -> bool:
     return a.start < max(b.stop, b.start + 1) and b.start < max(a.stop, a.start + 1)
 
 
-def grown(
-    begun: Begun, ways: tuple[tuple[float, ...], ...] = BORDERING.sizes, steady: bool = False
-) -> Grown | None:
-    """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
+class Held(NamedTuple):
+    """A solution in which what grows beyond the border has a given size."""
 
-    None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable.
+    u: np.ndarray
+    p: float
+    tangent: np.ndarray
+    size: float
+
+
+class Growing(NamedTuple):
+    """What grows from nothing beyond a border at p: in orbits with a new word, at one of its events, by a change."""
+
+    problem: CycleProblem
+    first: int
+    change: Change
+    p: float
+
+    def climb(self, guess: np.ndarray, sizes: tuple[float, ...]) -> list[Held]:
+        """Solve with it held at each of the sizes in turn, as long as that converges."""
+        found: list[Held] = []
+        u, q = guess, self.p
+        for wanted in sizes:
+            held = self.hold(u, q, wanted)
+            if held is None:
+                break
+            found.append(held)
+            u, q = held.u, held.p
+        return found
+
+    def outwards(self, found: list[Held]) -> Iterator[Held]:
+        """The solutions found from small to large, and on to larger sizes."""
+        yield from found[-2::-1]
+        held: Held | None = found[0]
+        while held is not None and held.size < GROWING.first:
+            held = self.hold(held.u, held.p, min(10.0 * held.size, GROWING.first))
+            if held is not None:
+                yield held
+
+    def hold(self, guess: np.ndarray, q: float, wanted: float) -> Held | None:
+        """Solve with it held at a size; None where there is no such solution near the border."""
+        other, first, change, p = self
+        size = other.dimension
+        n = size // other.length
+        border = np.zeros(size + 1)
+        u, here, following = guess.copy(), first * n, (first + 1) * n % size
+        if change.grows is Grows.GAP and not other.forced:
+            border[here], u[here] = 1.0, wanted
+        elif change.grows is Grows.GAP:
+            border[here], border[following] = -1.0, 1.0
+            if change.what is What.CROSSINGS_APPEAR:
+                u[here] = 0.5 * (u[here] + u[following] - wanted)
+                u[following] = u[here] + wanted
+            elif change.start == change.stop:  # the later event stays: friction gives way there
+                u[here] = u[following] - wanted
+            else:
+                u[following] = u[here] + wanted
+        else:
+            near = BORDERING.together * parameter_unit(other, p)
+            speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
+            border[here : here + n], border[size] = slopes, by_parameter
+            u[here : here + n] += push * (wanted - speed) / float(slopes @ push)
+            if (
+                len(change.events) > 1
+                and other.word.letter(first + 1).kind == STICK
+                and abs(speed) > BORDERING.together
+            ):  # it comes to rest the sooner the slower it is
+                clock = here if not other.forced else following
+                since = u[following] - u[here] if other.forced else u[here]
+                u[clock] += since * (wanted / speed - 1.0)
+        u, q, residual, tangent = newton(other.equations, u, q, border)
+        if not residual < SOLVING.residual:
+            return None
+        return Held(u, q, tangent, wanted)
+
+
+class Begun:
+    """The new word that edits make of a border orbit, and its solutions next to the border; each is worked out once.
+
+    Attributes
+    ----------
+    orbit : Orbit
+        The border orbit.
+    stated : Growing
+        What grows as the edits have it.
+    guess : float array (N,)
+        The new orbit at the border.
     """
-    if begun.start is None:
+
+    def __init__(self, orbit: Orbit, stated: Growing, guess: np.ndarray) -> None:
+        self.orbit, self.stated, self.guess = orbit, stated, guess
+        self._climbed: dict[tuple[float, ...], list[Held]] = {}
+
+    @cached_property
+    def growing(self) -> Growing | None:
+        """What grows from nothing; None where the new word is regular at the border.
+
+        Where the edits say of nothing that it grows, it is what vanishes at the border and another round still has: an impact of vanishing
+        speed, or a stick of vanishing length. There the equations are singular.
+        """
+        (other, _, change, p), guess = self.stated, self.guess
+        if change.grows is not Grows.MARGIN:
+            return self.stated
+        if not len(other.word):
+            return None
+        orbit, near = other.orbit(guess, p), BORDERING.together * parameter_unit(other, p)
+        for place in range(other.length):
+            kind = other.word.letter(place).kind
+            if (
+                kind == HIT
+                and abs(other.equations.approach(guess, p, place, near).speed) < BORDERING.together
+            ):
+                grows = Grows.SPEED
+            elif (
+                kind == STICK
+                and place + 1 < other.length
+                and abs(orbit.durations[place]) < BORDERING.together
+            ):
+                grows = Grows.GAP
+            else:
+                continue
+            events = other.word.events[place : place + 2]
+            return Growing(
+                other, place, replace(change, start=place, stop=place, events=events, grows=grows), p
+            )
         return None
-    (stated, guess), orbit = begun.start, begun.orbit
-    other = stated.problem
-    if stated.change.grows is Grows.MARGIN:
-        found = _beside(other, guess, begun.p, orbit, steady)
-        if found is not None or begun.growing is None:
-            return found
-    assert begun.growing is not None
-    for sizes in ways:
-        found = begun.climbed(sizes)
-        if (
-            found and steady
-        ):  # beside a graze the multipliers grow without bound: stable from a flip close to it on
-            found = [held for held in found if stable_at(other, held.u, held.p)]
-            if not found:
-                return None
-        if found and _begins_at(orbit, begun.growing, found):
-            return Grown(other, *found[-1][:3])
-    return None
+
+    def climbed(self, sizes: tuple[float, ...]) -> list[Held]:
+        """The solutions in which what grows has these sizes; see `Growing.climb`."""
+        if sizes not in self._climbed:
+            assert self.growing is not None
+            self._climbed[sizes] = self.growing.climb(self.guess, sizes)
+        return self._climbed[sizes]
 
 
-def with_edits(
-    problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]
-) -> tuple[Growing, np.ndarray] | None:
-    """What grows in the new word, and the unknowns of its orbit at the border; None for no word."""
-    empty, half = not len(problem.word), problem.length
-    halved = problem.symmetric
-    if halved and not empty:  # edit the half, and mirror it
+def begun(problem: CycleProblem, orbit: Orbit, p: float, edits: list[Edit]) -> Begun | None:
+    """What edits of a border orbit begin; None where they make no word."""
+    half, halved = problem.length, problem.symmetric
+    if halved and len(problem.word):  # edit the half, and mirror it
         if any(edit.change.stop > half and edit.change.start != half for edit in edits):
             return None
         word, nodes, first = rewritten(orbit.word.head(half), orbit.nodes[:half], edits)
@@ -229,29 +307,34 @@ def with_edits(
         other = problem.sibling(word, problem.periods, halved)
     except ValueError:
         return None
-    return Growing(other, first, edits[0].change, p), other.reduce(nodes)
+    return Begun(orbit, Growing(other, first, edits[0].change, p), other.reduce(nodes))
 
 
-def vanishing_in(stated: Growing, guess: np.ndarray) -> Growing | None:
-    """What grows in another round, which still has what vanishes at the border.
+def grown(
+    begun: Begun | None, ways: tuple[tuple[float, ...], ...] = BORDERING.sizes, steady: bool = False
+) -> Grown | None:
+    """The new word's orbit next to the border orbit, with what vanishes there at the smallest size that converges.
 
-    An impact of vanishing speed, or a stick of vanishing length; there the equations are singular.
+    None if there is none that is real and tends to the border orbit, nor, if `steady`, if that one is unstable.
     """
-    other, _, change, p = stated
-    if not len(other.word):
+    if begun is None:
         return None
-    orbit, near = other.orbit(guess, p), BORDERING.together * parameter_unit(other, p)
-    for place in range(other.length):
-        kind = other.word.letter(place).kind
-        if kind == HIT and abs(other.equations.approach(guess, p, place, near).speed) < BORDERING.together:
-            grows = Grows.SPEED
-        elif kind == STICK and place + 1 < other.length and abs(orbit.durations[place]) < BORDERING.together:
-            grows = Grows.GAP
-        else:
-            continue
-        events = other.word.events[place : place + 2]
-        change = replace(change, start=place, stop=place, events=events, grows=grows)
-        return Growing(other, place, change, p)
+    (other, _, change, p), orbit = begun.stated, begun.orbit
+    if change.grows is Grows.MARGIN:
+        found = _beside(other, begun.guess, p, orbit, steady)
+        if found is not None or begun.growing is None:
+            return found
+    assert begun.growing is not None
+    for sizes in ways:
+        found = begun.climbed(sizes)
+        if (
+            found and steady
+        ):  # beside a graze the multipliers grow without bound: stable from a flip close to it on
+            found = [held for held in found if stable_at(other, held.u, held.p)]
+            if not found:
+                return None
+        if found and _begins_at(orbit, begun.growing, found):
+            return Grown(other, *found[-1][:3])
     return None
 
 
@@ -329,9 +412,8 @@ def _beside(other: CycleProblem, guess: np.ndarray, p: float, orbit: Orbit, stea
                 break
     if found is None or (steady and not stable_at(other, found.u, found.p)):
         return None
-    if not tends_to(orbit, other.orbit(at_border, p), other.orbit(found.u, found.p)):
-        return None
-    return found
+    apart = gap(orbit, other.orbit(at_border, p))
+    return found if tends(apart, lambda: gap(orbit, found.orbit())) else None
 
 
 def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.ndarray) -> Grown | None:
@@ -345,83 +427,3 @@ def _along(other: CycleProblem, at_border: np.ndarray, p: float, tangent: np.nda
             if residual < SOLVING.residual and margins_of(other, u, q).min() > BORDERING.growing * away:
                 return Grown(other, u, q, direction)
     return None
-
-
-def parameter_unit(problem: CycleProblem, p: float) -> float:
-    """What changes of the parameter near p are compared with: its own size, or where it started."""
-    return max(abs(p), abs(problem.equations.began)) or 1.0
-
-
-class Held(NamedTuple):
-    """A solution in which what grows beyond the border has a given size."""
-
-    u: np.ndarray
-    p: float
-    tangent: np.ndarray
-    size: float
-
-
-class Growing(NamedTuple):
-    """What grows from nothing beyond a border at p: in orbits with a new word, at one of its events, by a change."""
-
-    problem: CycleProblem
-    first: int
-    change: Change
-    p: float
-
-    def climb(self, guess: np.ndarray, sizes: tuple[float, ...]) -> list[Held]:
-        """Solve with it held at each of the sizes in turn, as long as that converges."""
-        found: list[Held] = []
-        u, q = guess, self.p
-        for wanted in sizes:
-            held = self.hold(u, q, wanted)
-            if held is None:
-                break
-            found.append(held)
-            u, q = held.u, held.p
-        return found
-
-    def outwards(self, found: list[Held]) -> Iterator[Held]:
-        """The solutions found from small to large, and on to larger sizes."""
-        yield from found[-2::-1]
-        held: Held | None = found[0]
-        while held is not None and held.size < GROWING.first:
-            held = self.hold(held.u, held.p, min(10.0 * held.size, GROWING.first))
-            if held is not None:
-                yield held
-
-    def hold(self, guess: np.ndarray, q: float, wanted: float) -> Held | None:
-        """Solve with it held at a size; None where there is no such solution near the border."""
-        other, first, change, p = self
-        size = other.dimension
-        n = size // other.length
-        border = np.zeros(size + 1)
-        u, here, following = guess.copy(), first * n, (first + 1) * n % size
-        if change.grows is Grows.GAP and not other.forced:
-            border[here], u[here] = 1.0, wanted
-        elif change.grows is Grows.GAP:
-            border[here], border[following] = -1.0, 1.0
-            if change.what is What.CROSSINGS_APPEAR:
-                u[here] = 0.5 * (u[here] + u[following] - wanted)
-                u[following] = u[here] + wanted
-            elif change.start == change.stop:  # the later event stays: friction gives way there
-                u[here] = u[following] - wanted
-            else:
-                u[following] = u[here] + wanted
-        else:
-            near = BORDERING.together * parameter_unit(other, p)
-            speed, slopes, by_parameter, push = other.equations.approach(u, q, first, near)
-            border[here : here + n], border[size] = slopes, by_parameter
-            u[here : here + n] += push * (wanted - speed) / float(slopes @ push)
-            if (
-                len(change.events) > 1
-                and other.word.letter(first + 1).kind == STICK
-                and abs(speed) > BORDERING.together
-            ):  # it comes to rest the sooner the slower it is
-                clock = here if not other.forced else following
-                since = u[following] - u[here] if other.forced else u[here]
-                u[clock] += since * (wanted / speed - 1.0)
-        u, q, residual, tangent = newton(other.equations, u, q, border)
-        if not residual < SOLVING.residual:
-            return None
-        return Held(u, q, tangent, wanted)

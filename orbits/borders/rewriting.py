@@ -5,21 +5,18 @@ The laws (`orbits.contacts`) say how the word changes and where the new events a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from orbits.contacts.letters import HIT, STICK, SWITCH, Change, Grows, Site, Spot, What
 from orbits.orbit import Orbit
+from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING
 from orbits.words.alphabet import Watch
 from orbits.words.margins import place_of
 from orbits.words.word import Word
-
-if TYPE_CHECKING:
-    from orbits.words.alphabet import Alphabet
 
 
 def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
@@ -43,10 +40,16 @@ def edits_at(orbit: Orbit, index: int, unit: int | None = None) -> list[Edit]:
 
 
 def rewritten(word: Word, nodes: np.ndarray, edits: list[Edit]) -> tuple[Word, np.ndarray, int]:
-    """The word and nodes after the edits (of disjoint places), and where the first edit's new events stand."""
-    changes = [edit.change for edit in edits]
-    new, first = applied(word, changes)
-    return new, spliced(nodes, changes, [edit.nodes for edit in edits], not len(word)), first
+    """The word and nodes after the edits (of disjoint places), and where the first edit's new events stand; where nothing is left one node to look from."""
+    full = len(word) > 0
+    events, modes, rows = list(word.events), list(word.modes) if full else [], list(nodes) if full else []
+    for change, new in sorted(edits, key=lambda edit: edit.change.start, reverse=True):
+        place = slice(change.start, change.stop)
+        events[place], modes[place], rows[place] = change.events, change.modes, list(new)
+    first = min(edit.change.start for edit in edits)
+    if full and not events:  # what the contacts did before goes on
+        return word.like((), (word.mode(first - 1),)), nodes[:1], 0
+    return word.like(events, modes), np.array(rows) if rows else nodes[:1], first
 
 
 def durations_after(durations: np.ndarray, nodes: np.ndarray, edit: Edit) -> np.ndarray:
@@ -137,73 +140,32 @@ def _swapped(site: Site) -> Change:
     return Change(place, place + 2, (there, here), modes, spots, Grows.MARGIN, What.ORDER_CHANGES)
 
 
-def applied(word: Word, changes: Sequence[Change]) -> tuple[Word, int]:
-    """The word after some changes of disjoint places, and where the first one's new events stand."""
-    events, modes = list(word.events), list(word.modes) if len(word) else []
-    for change in sorted(changes, key=lambda c: c.start, reverse=True):
-        events[change.start : change.stop] = change.events
-        modes[change.start : change.stop] = change.modes
-    first = min(change.start for change in changes)
-    if not events and len(word):  # nothing is left: what the contacts did before goes on
-        return word.like((), (word.mode(first - 1),)), 0
-    return word.like(events, modes), first
-
-
-def later(change: Change, places: int, alphabet: Alphabet, turned: bool) -> Change:
-    """The same change so many events later, of the mirror image if it is turned."""
-    events, modes = change.events, change.modes
-    if turned:
-        events = tuple(alphabet.images[text] for text in events)
-        modes = tuple(alphabet.mirrored_mode(mode) for mode in modes)
-    spots = tuple(
-        spot._replace(
-            node=None if spot.node is None else spot.node + places,
-            clock=None if spot.clock is None else spot.clock + places,
-        )
-        for spot in change.spots
-    )
-    start, stop = change.start + places, change.stop + places
-    return replace(change, start=start, stop=stop, events=events, modes=modes, spots=spots)
-
-
-def spliced(
-    nodes: np.ndarray, changes: Sequence[Change], placed: Sequence[np.ndarray], empty: bool
-) -> np.ndarray:
-    """The nodes after the same changes, from the new events' nodes for each of them; where nothing is left one to look from."""
-    rows = [] if empty else list(nodes)
-    for change, new in sorted(zip(changes, placed), key=lambda pair: pair[0].start, reverse=True):
-        rows[change.start : change.stop] = list(new)
-    return np.array(rows) if rows else nodes[:1]
-
-
-class Rounds(Protocol):
-    """The problem of the cycles that a word describes, of which a round is one cycle, or half a symmetric one."""
-
-    @property
-    def word(self) -> Word: ...
-    @property
-    def symmetric(self) -> bool: ...
-    @property
-    def shift(self) -> float: ...
-    @property
-    def length(self) -> int: ...
-    def middle(self, p: float) -> float: ...
-
-
 class Edit(NamedTuple):
     """A change of the word, and the nodes of its new events, a row each: phase or clock first, then what is held there."""
 
     change: Change
     nodes: np.ndarray
 
-    def later(self, rounds: int, problem: Rounds, p: float) -> Edit:
+    def later(self, rounds: int, problem: CycleProblem, p: float) -> Edit:
         """The same some rounds later, in a longer cycle; a round is a cycle of the problem, or half a symmetric one."""
         if rounds == 0:
             return self
+        change, alphabet, places = self.change, problem.word.alphabet, rounds * problem.length
         turned = problem.symmetric and rounds % 2 == 1
         nodes = -self.nodes if turned else self.nodes.copy()
         nodes[:, 0] = self.nodes[:, 0] + rounds * problem.shift
-        if turned and (middle := problem.middle(p)):  # images are taken about the middle between the walls
-            letters = problem.word.alphabet.letters
-            nodes[[letters[text].kind != HIT for text in self.change.events], 1] += 2.0 * middle
-        return Edit(later(self.change, rounds * problem.length, problem.word.alphabet, turned), nodes)
+        events, modes = change.events, change.modes
+        if turned:
+            if middle := problem.middle(p):  # images are taken about the middle between the walls
+                nodes[[alphabet.letters[text].kind != HIT for text in events], 1] += 2.0 * middle
+            events = tuple(alphabet.images[text] for text in events)
+            modes = tuple(alphabet.mirrored_mode(mode) for mode in modes)
+        spots = tuple(
+            spot._replace(
+                node=None if spot.node is None else spot.node + places,
+                clock=None if spot.clock is None else spot.clock + places,
+            )
+            for spot in change.spots
+        )
+        start, stop = change.start + places, change.stop + places
+        return Edit(replace(change, start=start, stop=stop, events=events, modes=modes, spots=spots), nodes)

@@ -5,8 +5,7 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber, Cavity
-from orbits.borders.crossing import _followed
-from orbits.borders.neighbours import Grown
+from orbits.borders.neighbours import Grown, followed
 
 MACHINE = Absorber(restitution=0.76, friction=0.2, gravity=0.211, mass_ratio=0.006)
 H = 0.5 * np.pi * 1.006 * 0.2 * 0.211
@@ -20,7 +19,7 @@ def test_pure_sliding_a_little_beyond_the_walls_is_none(room, real):
     """It turns at w = -+ sqrt(C^2 - H^2); the simulation that hits a wall so slowly still stays within a millionth."""
     orbit = MACHINE.orbit("tt", 1, amplitude=float(np.hypot(1.0 - room, H)))
     problem = orbit.problem()
-    assert _followed(Grown(problem, *orbit.seed(problem), None), orbit) is real
+    assert followed(Grown(problem, *orbit.seed(problem), None).orbit()) is real
     assert orbit.real is real
 
 
