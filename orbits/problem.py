@@ -19,10 +19,8 @@ from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import PLAIN
 from orbits.machines.building import build
 from orbits.machines.path import along
-from orbits.motions import Simulated
+from orbits.motions import Motions
 from orbits.orbit import Orbit
-from orbits.protocol import Answers
-from orbits.relatives import Relatives
 from orbits.words import Word
 from orbits.words.margins import border_kind
 
@@ -31,7 +29,7 @@ if TYPE_CHECKING:
     from orbits.protocol import BorderPoint, Seed
 
 
-class OrbitProblem(Simulated, Relatives, Answers):
+class OrbitProblem(Motions):
     """Periodic orbits with a given word, against one parameter of their machine.
 
     Parameters
@@ -57,6 +55,12 @@ class OrbitProblem(Simulated, Relatives, Answers):
     """
 
     spectrum = "map"
+    # unknowns are counted in units of the machine's own size, equations exact to roundoff and smooth between the borders:
+    # there is nothing to learn, to doubt or to explain
+    detection = ""
+    scales = None
+    scales_learned = False
+    noise = 0.0
 
     def __init__(
         self,
@@ -143,6 +147,22 @@ class OrbitProblem(Simulated, Relatives, Answers):
     def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
         """Multipliers of the full period from those of the closure map (half maps: squared)."""
         return self.equations.to_multipliers(spectrum)
+
+    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> None:
+        """A measure at every point of a cycle: those of a motion have no order."""
+        return None
+
+    def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
+        """Why a branch ends where Newton's method fails."""
+        return ""
+
+    def uncertainty(self) -> float:
+        """Relative accuracy of the equations."""
+        return 0.0
+
+    def check(self, u: np.ndarray, p: float) -> None:
+        """What is wrong with the derivatives at a solution."""
+        return None
 
     # ------------------------------------------------------------------ shapes
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from orbits.flows.protocol import Equations
+from orbits.flows.protocol import Equations, Flow
 from orbits.orbit import Orbit
 
 if TYPE_CHECKING:
@@ -29,9 +29,10 @@ class BorderPoint(Protocol):
 
 
 class CycleProblem(Protocol):
-    """What borders ask of the problem of the cycles with one word (`orbits.problem.OrbitProblem`)."""
+    """What borders, and answers about other motions, ask of the problem of the cycles with one word (`orbits.problem.OrbitProblem`)."""
 
     model: Any
+    flow: Flow
     word: Word
     periods: int
     parameter: str
@@ -53,6 +54,9 @@ class CycleProblem(Protocol):
     @property
     def scratch(self) -> object: ...
 
+    @property
+    def image_offset(self) -> Callable[[float], np.ndarray] | None: ...
+
     def values(self, p: float | np.ndarray) -> np.ndarray: ...
 
     def value(self, params: np.ndarray) -> float: ...
@@ -68,35 +72,6 @@ class CycleProblem(Protocol):
     def sibling(
         self, word: Word, periods: int, symmetric: bool, params: np.ndarray | None = None
     ) -> CycleProblem: ...
-
-
-class Answers:
-    """What every problem of a machine's motions answers a continuation code alike.
-
-    Its unknowns are counted in units of the machine's own size, its equations are exact to roundoff and smooth between the
-    borders, so that there is nothing to learn, to doubt or to explain.
-    """
-
-    detection = ""
-    scales = None
-    scales_learned = False
-    noise = 0.0
-
-    def at_each_point(self, name: str, u: np.ndarray, p: np.ndarray) -> None:
-        """A measure at every point of a cycle: those of a motion have no order."""
-        return None
-
-    def explain_end(self, u: np.ndarray, p: float, tangent: np.ndarray, evaluable: bool) -> str:
-        """Why a branch ends where Newton's method fails."""
-        return ""
-
-    def uncertainty(self) -> float:
-        """Relative accuracy of the equations."""
-        return 0.0
-
-    def check(self, u: np.ndarray, p: float) -> None:
-        """What is wrong with the derivatives at a solution."""
-        return None
 
 
 class Symmetry(NamedTuple):

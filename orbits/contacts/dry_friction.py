@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from heapq import heappop, heappush
 from typing import NamedTuple
 
 from contvines.shared.near_names import hinted
@@ -93,13 +92,17 @@ class FrictionLaw:
                 after[i - 1] = STUCK
             elif came is None and here is not None and (b.kind == TURN or (b.kind == HIT and b.sign)):
                 after[i - 1] = -here
-        _settle(beats, after)
+        _settle(beats, after, [i for i in range(n) if after[i] is not None])
+        for i, b in enumerate(beats):
+            if b.kind == SLIP and after[i] is None:
+                after[i] = SLIDE_ON
+                _settle(beats, after, [i])
         if all(mode is None for mode in after):  # turns alone
             after = [-SLIDE_ON if i % 2 else SLIDE_ON for i in range(n)]
         for i, mode in enumerate(after):  # an impact that may leave either direction keeps the one there was
             if mode is None:
                 after[i] = SLIDE_ON if after[i - 1] is None else after[i - 1]
-                _spread(beats, after, [i])
+                _settle(beats, after, [i])
         self._refuse(beats, after)
         return [int(mode) for mode in after]  # type: ignore[arg-type]
 
@@ -201,42 +204,27 @@ class FrictionLaw:
         return [gone, other]
 
 
-def _spread(beats: Sequence[Beat], after: list[int | None], known: list[int]) -> list[int]:
-    """Let known modes go on over turns; returns slips that nothing fixes yet, behind a stick that ended a known motion."""
-    n, ready = len(beats), []
-    while known:
+def _settle(beats: Sequence[Beat], after: list[int | None], known: list[int]) -> None:
+    """Let known modes go on over turns; then, where nothing fixes a slip, reverse the motion that its stick ended."""
+    n, slips = len(beats), []
+    while known or slips:
+        if not known:
+            slip = slips.pop()
+            before = after[slip - 2]
+            if after[slip] is None and before is not None:
+                after[slip] = -before
+                known = [slip]
+            continue
         i = known.pop()
-        mode, following, before = after[i], (i + 1) % n, (i - 1) % n
+        mode, following = after[i], (i + 1) % n
         assert mode is not None
-        for neighbour, joined in ((following, following), (before, i)):
+        for neighbour, joined in ((following, following), (i - 1, i)):
             if beats[joined].kind == TURN and after[neighbour] is None:
                 after[neighbour] = -mode
-                known.append(neighbour)
+                known.append(neighbour % n)
         slip = (i + 2) % n
-        if mode and beats[following].kind == STICK and beats[slip].kind == SLIP and after[slip] is None:
-            ready.append(slip)
-    return ready
-
-
-def _settle(beats: Sequence[Beat], after: list[int | None]) -> None:
-    """Let known modes go on over turns, and give slips that nothing fixes a direction, the first one first."""
-    n = len(beats)
-    ready: list[int] = []
-
-    def spread(known: list[int]) -> None:
-        for slip in _spread(beats, after, known):
-            heappush(ready, slip)
-
-    spread([i for i in range(n) if after[i] is not None])
-    for i in range(n):
-        while ready:
-            slip = heappop(ready)
-            if after[slip] is None:
-                after[slip] = -after[(slip - 2) % n]  # type: ignore[operator]
-                spread([slip])
-        if beats[i].kind == SLIP and after[i] is None:
-            after[i] = SLIDE_ON
-            spread([i])
+        if mode and beats[following].kind == STICK and beats[slip].kind == SLIP:
+            slips.append(slip)
 
 
 @hinted

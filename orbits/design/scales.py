@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from orbits.machines.coupled import Coupled
-from orbits.machines.parameters import ParameterError
+from orbits.machines.parameters import NOT_NEGATIVE, POSITIVE, Limits, ParameterError
 from orbits.settings import DESIGNING
 
 STANDARD_GRAVITY = 9.81
@@ -62,24 +62,22 @@ class Scales:
 
     def __post_init__(self) -> None:
         for name, unit in (("oscillator_mass", "kg"), ("absorber_mass", "kg"), ("half_width", "m")):
-            _positive(name, getattr(self, name), unit)
+            _checked(name, getattr(self, name), unit)
         for name, unit in (("damping", "N s/m"), ("friction", ""), ("gravity", "m/s^2")):
-            _not_negative(name, getattr(self, name), unit)
+            _checked(name, getattr(self, name), unit, NOT_NEGATIVE)
         if self.base_amplitude is not None:
-            _not_negative("base_amplitude", self.base_amplitude, "m")
+            _checked("base_amplitude", self.base_amplitude, "m", NOT_NEGATIVE)
         if self.stiffness is None and self.natural_frequency is None:
             raise ParameterError(
                 "neither stiffness nor natural_frequency is given: give one of them, in N/m or Hz"
             )
-        if self.stiffness is not None:
-            _number("stiffness", self.stiffness)
-            if not self.stiffness > 0.0:
-                raise ParameterError(
-                    f"stiffness = {self.stiffness:g} N/m leaves the oscillator without a natural frequency: give a "
-                    "stiffness above 0"
-                )
+        if self.stiffness is not None and _checked("stiffness", self.stiffness, "N/m", Limits()) <= 0.0:
+            raise ParameterError(
+                f"stiffness = {self.stiffness:g} N/m leaves the oscillator without a natural frequency: give a "
+                "stiffness above 0"
+            )
         if self.natural_frequency is not None:
-            _positive("natural_frequency", self.natural_frequency, "Hz")
+            _checked("natural_frequency", self.natural_frequency, "Hz")
         if self.stiffness is None:
             assert self.natural_frequency is not None
             omega = 2.0 * math.pi * self.natural_frequency
@@ -115,7 +113,7 @@ class Scales:
         ParameterError
             If it is not above 0.
         """
-        return 2.0 * math.pi * _positive("frequency", hertz, "Hz") / self.omega_0
+        return 2.0 * math.pi * _checked("frequency", hertz, "Hz") / self.omega_0
 
     def detuning(self, hertz: float) -> float:
         """sigma = (Omega - 1)/eps of a frequency in Hz."""
@@ -123,7 +121,9 @@ class Scales:
 
     def forcing(self, base_amplitude: float) -> float:
         """G of a base amplitude in m."""
-        return _not_negative("base_amplitude", base_amplitude, "m") / (self.half_width * self.mass_ratio)
+        return _checked("base_amplitude", base_amplitude, "m", NOT_NEGATIVE) / (
+            self.half_width * self.mass_ratio
+        )
 
     def machine(
         self,
@@ -203,13 +203,13 @@ class Scales:
         ParameterError
             If too little is given, or too much that contradicts.
         """
-        _positive("oscillator_mass", oscillator_mass, "kg")
+        _checked("oscillator_mass", oscillator_mass, "kg")
         for name, value, unit in (
             ("half_width", half_width, "m"),
             ("natural_frequency", natural_frequency, "Hz"),
         ):
             if value is not None:
-                _positive(name, value, unit)
+                _checked(name, value, unit)
         if half_width is None or natural_frequency is None:
             if machine.gravity == 0.0 or gravity == 0.0 or (half_width is None and natural_frequency is None):
                 raise ParameterError(
@@ -245,23 +245,10 @@ class Scales:
         )
 
 
-def _number(name: str, value: object) -> float:
+def _checked(name: str, value: object, unit: str, limits: Limits = POSITIVE) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise ParameterError(f"{name} = {value!r} is no finite number; give one")
+    if value not in limits:
+        shown = f"{value:g} {unit}".rstrip()
+        raise ParameterError(f"{name} = {shown} is out of range; give a number {limits.text}")
     return float(value)
-
-
-def _positive(name: str, value: object, unit: str) -> float:
-    number = _number(name, value)
-    if not number > 0.0:
-        raise ParameterError(f"{name} = {number:g} {unit} is out of range; give a number above 0")
-    return number
-
-
-def _not_negative(name: str, value: object, unit: str) -> float:
-    number = _number(name, value)
-    if number < 0.0:
-        raise ParameterError(
-            f"{name} = {number:g}{' ' + unit if unit else ''} is out of range; give a number 0 or above"
-        )
-    return number
