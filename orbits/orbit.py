@@ -58,9 +58,12 @@ class Orbit(Cycle):
         """Residual, multipliers of the period and margins."""
         half = self.symmetric and bool(self.flow.loose(self.model, self.word))
         system = self.system(half)
-        residual, spectrum, margins = examined(system, self.nodes)
+        residual, spectrum, margins = self._looked_at(system)
         rounding = (margins < 0.0) & (margins >= REAL)
         return residual, system.to_multipliers(spectrum), np.where(rounding, 0.0, margins)
+
+    def _looked_at(self, system: Equations) -> tuple[float, np.ndarray, np.ndarray]:
+        return examined(system, system.reduce(self.nodes), system.value(system.params))
 
     @property
     def residual(self) -> float:
@@ -85,7 +88,7 @@ class Orbit(Cycle):
         """
         if not self.symmetric:
             raise ValueError(f"the orbit {self.word.text!r} is not symmetric, so it has no half map")
-        return examined(self.system(symmetric=True), self.nodes)[1]
+        return self._looked_at(self.system(symmetric=True))[1]
 
     def with_multipliers(self, multipliers: np.ndarray) -> Self:
         """The same orbit, with multipliers that are known otherwise: at a border, one-sided limits.
@@ -291,10 +294,9 @@ class Orbit(Cycle):
         }
 
 
-def examined(system: Equations, nodes: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Residual, multipliers of the closure map and margins of a cycle in its equations."""
+def examined(system: Equations, u: np.ndarray, p: float) -> tuple[float, np.ndarray, np.ndarray]:
+    """Residual, multipliers of the closure map and margins at unknowns and a parameter value; the linearisation stays in the scratch."""
     count = 2 * system.n_multipliers
     row = np.empty(count + system.n_margins)
-    value = system.value(system.params)
-    residual = system.kernels.examine(system.data, system.reduce(nodes), value, system.scratch, row)
-    return float(residual), row[:count:2] + 1j * row[1:count:2], row[count:]
+    residual = system.kernels.examine(system.data, u, p, system.scratch, row)
+    return float(residual), row[:count].view(np.complex128), row[count:]

@@ -13,7 +13,7 @@ from orbits.borders.distance import SHRINKS, gap, tends
 from orbits.borders.rewriting import Edit, durations_after, edits_at, rewritten
 from orbits.contacts.letters import HIT, SLIP, STICK, Change, Grows, What
 from orbits.flows.solving import newton
-from orbits.orbit import REAL, Orbit
+from orbits.orbit import REAL, Orbit, examined
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING, REPLAYING, SOLVING
 
@@ -29,20 +29,12 @@ def parameter_unit(problem: CycleProblem, p: float) -> float:
 
 def margins_of(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
     """Margins of a solution; where one is not a number it is as far from real as can be."""
-    return np.nan_to_num(examined(problem, u, p)[2 * problem.n_multipliers :], nan=-np.inf, posinf=np.inf)
+    return np.nan_to_num(examined(problem.equations, u, p)[2], nan=-np.inf, posinf=np.inf)
 
 
 def stable_at(problem: CycleProblem, u: np.ndarray, p: float) -> bool:
     """Whether all multipliers of a solution lie inside the unit circle."""
-    pairs = examined(problem, u, p)[: 2 * problem.n_multipliers]
-    return bool(np.all(np.abs(pairs.view(np.complex128)) < 1.0))
-
-
-def examined(problem: CycleProblem, u: np.ndarray, p: float) -> np.ndarray:
-    """Multipliers as (re, im) pairs, then margins; the linearisation stays in the scratch."""
-    row = np.empty(2 * problem.n_multipliers + problem.n_margins)
-    problem.equations.kernels.examine(problem.data, u, p, problem.scratch, row)
-    return row
+    return bool((np.abs(examined(problem.equations, u, p)[1]) < 1.0).all())
 
 
 class Border:

@@ -184,3 +184,7 @@ class Site(NamedTuple):
             return False
         letter = self.word.letter(place)
         return letter.contact == contact and letter.kind in kinds
+
+
+class NotAlternating(ValueError):
+    """The crossings of a switch in a word do not alternate."""

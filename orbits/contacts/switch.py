@@ -12,12 +12,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from contvines.shared.near_names import hinted
-from orbits.contacts.letters import SLIP, STICK, SWITCH, TURN, Change, Grows, Letter, Site, Spot, What
+from orbits.contacts.letters import (
+    SLIP,
+    STICK,
+    SWITCH,
+    TURN,
+    Change,
+    Grows,
+    Letter,
+    NotAlternating,
+    Site,
+    Spot,
+    What,
+)
 from orbits.settings import GROWING
-
-
-class NotAlternating(ValueError):
-    """The crossings of a switch in a word do not alternate."""
 
 
 class SwitchLaw:

@@ -200,15 +200,11 @@ def from_sweep(
     generator = np.random.default_rng(20)
     params = _vector(model, unknown, fixed)
     starts = [None, *(model.random_start(params, generator) for _ in range(STARTS))]
-    tried = [known, *(_inside(share, bounds) for share in generator.random((TRIED, known.size)))]
+    low, high = np.array([*bounds.values()]).T
+    tried = [known, *(low + generator.random((TRIED, known.size)) * (high - low))]
     pairs = [(start, x) for x in tried for start in starts]
     start, x = min(pairs, key=lambda pair: float(np.square(residuals(pair[1], pair[0])).sum()))
     return fit(lambda y: residuals(y, start), dict(zip(unknown, map(float, x))), bounds, confidence)
-
-
-def _inside(share: np.ndarray, limits: Mapping[str, tuple[float, float]]) -> np.ndarray:
-    """Parameters at these shares of the way between their limits."""
-    return np.array([low + x * (high - low) for x, (low, high) in zip(share, limits.values())])
 
 
 def _measured(times: ArrayLike) -> np.ndarray:
@@ -411,28 +407,21 @@ def _effects(
     settle: there a derivative says nothing, or much too much. Where differences over four times the step do not agree, steps are
     widened until they reach as far as a residual of size `scatter` lets the parameter go.
     """
+
+    def slope_of(j: int, step: float) -> np.ndarray:
+        """Central difference with respect to parameter j; at a limit to one side."""
+        below, above = x.copy(), x.copy()
+        below[j], above[j] = max(x[j] - step, low[j]), min(x[j] + step, high[j])
+        return (residuals(above) - residuals(below)) / (above[j] - below[j])
+
     columns = []
     for j in range(x.size):
         step = DESIGNING.effect * (high[j] - low[j])
-        slope = _slope(residuals, x, j, step, low, high)
+        slope = slope_of(j, step)
         while step < WIDEST * (high[j] - low[j]) and np.linalg.norm(slope) * step > scatter:
-            wider = _slope(residuals, x, j, 4.0 * step, low, high)
+            wider = slope_of(j, 4.0 * step)
             if np.linalg.norm(wider - slope) < AGREEING * np.linalg.norm(slope):
                 break
             step, slope = 4.0 * step, wider
         columns.append(slope)
     return np.column_stack(columns)
-
-
-def _slope(
-    residuals: Callable[[np.ndarray], np.ndarray],
-    x: np.ndarray,
-    j: int,
-    step: float,
-    low: np.ndarray,
-    high: np.ndarray,
-) -> np.ndarray:
-    """Central difference with respect to parameter j; at a limit to one side."""
-    below, above = x.copy(), x.copy()
-    below[j], above[j] = max(x[j] - step, low[j]), min(x[j] + step, high[j])
-    return (residuals(above) - residuals(below)) / (above[j] - below[j])

@@ -9,8 +9,8 @@ White noise with E[xi(t) xi(t')] = 2 D delta(t - t') has the one-sided density S
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -120,7 +120,7 @@ class RandomResponse:
     densities: dict[str, np.ndarray]
     duration: float
     records: int
-    samples: Mapping[str, np.ndarray]
+    samples: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
 def random_base(
@@ -153,37 +153,34 @@ def random_base(
     """
     numbers = oscillator_numbers(model, params)
     eps, rate = numbers["mass_ratio"], numbers["mass_ratio"] * numbers["damping"]
-    _check(records, rate)
+    if not rate > 0.0:
+        raise ParameterError(
+            "an oscillator without damping does not settle under random excitation; give a damping above 0"
+        )
     count, omega = psd.grid(periods)
     step, length = psd.step, psd.step * count
-    hold = np.sinc(omega * step / TWO_PI) ** 2  # of a straight line from instant to instant
     warm = min(math.ceil(WARM * 2.0 / rate / step), 4 * count)
-    bare, tuned = (transfer(omega, rate, mass) for mass in (0.0, eps))
-    generator, rows, lines = np.random.default_rng(seed), [], []
-    for _ in range(records):
-        drawn = psd.harmonics(omega, generator)
-        signal = _signal(drawn / hold, count)
-        places = np.arange(-warm, count + 1) % count
-        times = np.arange(warm + count + 1) * step
+    places, times = np.arange(-warm, count + 1) % count, np.arange(warm + count + 1) * step
+    passive = {name: transfer(omega, rate, mass) for name, mass in (("bare", 0.0), ("tuned", eps))}
+
+    def answer(drawn: np.ndarray, signal: np.ndarray) -> tuple[Numbers, Lines]:
         seen = recorded(model, params, times, signal[places])
         inner = (len(seen.times) - 1) // (warm + count)
         first = warm * inner
         q, w = seen.oscillator[first:-1], seen.relative[first:-1]
-        spectra = {
-            "oscillator": np.fft.rfft(q[::inner]) * (2.0 / count),
-            "bare": bare * drawn,
-            "tuned": tuned * drawn,
-        }
-        lines.append({name: 0.5 * np.abs(values) ** 2 / omega[1] for name, values in spectra.items()})
+        spectra = {"oscillator": np.fft.rfft(q[::inner]) * (2.0 / count)}
         row = {"rms_oscillator": q.var(), "peak_oscillator": np.abs(q).max(), "rms_relative": w.var()}
-        for name in ("bare", "tuned"):
+        for name, response in passive.items():
+            spectra[name] = response * drawn
             motion = _signal(spectra[name], count)
             row |= {f"rms_{name}": motion.var(), f"peak_{name}": np.abs(motion).max()}
         row["impact_rate"] = np.count_nonzero(seen.impact_times >= warm * step) / length
         row["absorber_power"] = (seen.impacts + seen.friction) / float(seen.times[-1])
         row["absorber_share"] = seen.absorber_share
-        rows.append(row)
-    return _gathered(rows, lines, omega, psd, length, {})
+        return row, spectra
+
+    # instants are joined by straight lines
+    return _over_records(psd, count, omega, records, seed, np.sinc(omega * step / TWO_PI) ** 2, answer)
 
 
 def transfer(omega: np.ndarray, rate: float, mass: float) -> np.ndarray:
@@ -233,16 +230,12 @@ def random_page(
                 raise ParameterError(
                     f"{excited}: {e.contacts[j].described} depends on it, which must not jump; let a force or an acceleration be random"
                 )
-    _check(records, 1.0)
     count, omega = psd.grid(periods)
     length, early = psd.step * count, math.ceil(warm * count)
-    hold = np.sinc(omega * psd.step / TWO_PI)  # of a value that is held
-    generator, rows, lines, kept = np.random.default_rng(seed), [], [], []
-    for _ in range(records):
-        signal = _signal(psd.harmonics(omega, generator) / hold, count)
-        table, hits = _follow(
-            machine, params, place, signal[np.arange(-early, count) % count], psd.step, dict(start or {})
-        )
+    places, kept = np.arange(-early, count) % count, []
+
+    def answer(drawn: np.ndarray, signal: np.ndarray) -> tuple[Numbers, Lines]:
+        table, hits = _follow(machine, params, place, signal[places], psd.step, dict(start or {}))
         table = table[early:]
         kept.append(table)
         row: dict[str, float] = {}
@@ -251,13 +244,12 @@ def random_page(
             row |= {f"mean_{name}": x.mean(), f"rms_{name}": x.var(), f"peak_{name}": np.abs(x).max()}
         if machine.equations.gap:
             row["impact_rate"] = np.count_nonzero(hits >= early * psd.step) / length
-        rows.append(row)
         spectra = np.fft.rfft(table - table.mean(axis=0), axis=0) * (2.0 / count)
-        lines.append(
-            {name: 0.5 * np.abs(spectra[:, j]) ** 2 / omega[1] for j, name in enumerate(machine.states)}
-        )
-    whole = np.concatenate(kept)
-    return _gathered(rows, lines, omega, psd, length, dict(zip(machine.states, whole.T)))
+        return row, dict(zip(machine.states, spectra.T))
+
+    # values are held from instant to instant
+    found = _over_records(psd, count, omega, records, seed, np.sinc(omega * psd.step / TWO_PI), answer)
+    return replace(found, samples=dict(zip(machine.states, np.concatenate(kept).T)))
 
 
 def _follow(
@@ -290,20 +282,32 @@ def _follow(
     return table, np.array(hits)
 
 
-def _check(records: int, rate: float) -> None:
+Numbers = Mapping[str, float]
+Lines = Mapping[str, np.ndarray]
+
+
+def _over_records(
+    psd: Density,
+    count: int,
+    omega: np.ndarray,
+    records: int,
+    seed: int,
+    hold: np.ndarray,
+    answer: Callable[[np.ndarray, np.ndarray], tuple[Numbers, Lines]],
+) -> RandomResponse:
+    """Means and standard errors over records that are drawn.
+
+    ``answer(amplitudes, signal)`` has numbers of a record, squares for `rms_...`, and complex amplitudes of displacements at the harmonics; amplitudes
+    of the signal are divided by `hold`.
+    """
     if not 2 <= records <= 10_000:
         raise ParameterError(f"records = {records}: expected 2 to 10000; error bars need two or more")
-    if not rate > 0.0:
-        raise ParameterError(
-            "an oscillator without damping does not settle under random excitation; give a damping above 0"
-        )
-
-
-def _gathered(
-    rows: Sequence[Mapping[str, float]], lines: Sequence[Mapping[str, np.ndarray]], omega: np.ndarray, psd: Density, length: float,
-    samples: Mapping[str, np.ndarray],
-) -> RandomResponse:  # fmt: skip
-    """Means and standard errors; of `rms_...` the rows have squares."""
+    generator, rows, lines = np.random.default_rng(seed), [], []
+    for _ in range(records):
+        drawn = psd.harmonics(omega, generator)
+        row, spectra = answer(drawn, _signal(drawn / hold, count))
+        rows.append(row)
+        lines.append({name: 0.5 * np.abs(values) ** 2 / omega[1] for name, values in spectra.items()})
     numbers = {}
     for name in rows[0]:
         values = np.array([row[name] for row in rows])
@@ -316,6 +320,9 @@ def _gathered(
     top = int(np.searchsorted(omega, psd.frequencies[-1], side="right"))
     low, wide = max(low, 1), max(1, (top - low) // LINES)
     bins = [slice(low + k * wide, low + (k + 1) * wide) for k in range((top - low) // wide)]
-    pick: Callable[[np.ndarray], np.ndarray] = lambda values: np.array([values[one].mean() for one in bins])  # noqa: E731
-    densities = {name: pick(np.mean([line[name] for line in lines], axis=0)) for name in lines[0]}
-    return RandomResponse(numbers, pick(omega), densities, length, len(rows), samples)
+
+    def thinned(values: np.ndarray) -> np.ndarray:
+        return np.array([values[one].mean() for one in bins])
+
+    densities = {name: thinned(np.mean([line[name] for line in lines], axis=0)) for name in lines[0]}
+    return RandomResponse(numbers, thinned(omega), densities, psd.step * count, records)

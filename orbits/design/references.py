@@ -175,13 +175,11 @@ def reference(kind: str, model: Model, params: np.ndarray) -> np.ndarray:
     found = np.empty(len(params))
     for i, row in enumerate(params):
         f, G, lam, eps, chi = (float(model.column(row, name)) for name in names)
-        if kind == "bare":
-            value = bare(f, G, lam, eps, chi)
-        elif kind == "tuned":
-            value = tuned(f, G, lam, eps, chi)
-        else:
+        if kind == "friction":
             pull = float(model.column(row, "friction") * model.column(row, "gravity"))
             value = friction_damper(f, G, lam, eps, pull, chi)
+        else:
+            value = (bare if kind == "bare" else tuned)(f, G, lam, eps, chi)
         found[i] = float(value)
     return found
 

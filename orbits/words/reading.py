@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from orbits.contacts.dry_friction import ABSENT, STUCK, Beat, CannotFollow, FrictionLaw
-from orbits.contacts.letters import HIT, NAMES, SLIP, STICK, Letter
+from orbits.contacts.letters import HIT, NAMES, SLIP, STICK, Letter, NotAlternating
 from orbits.contacts.wall import FREE, WallLaw
 from orbits.words.alphabet import Alphabet
 
@@ -189,8 +189,6 @@ def _modes(
         elif isinstance(contact, FrictionLaw):
             columns.append(_directions(j, letters, signs, alphabet, noted, shown))
         else:
-            from orbits.contacts.switch import NotAlternating
-
             hits = {
                 i: alphabet.flips[letter.contact, j]
                 for i, letter in enumerate(letters)
