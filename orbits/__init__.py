@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from orbits.machines.coupled_two import coupled_two
     from orbits.machines.page.machine import Machine
     from orbits.machines.parameters import ParameterError
-    from orbits.machines.structure.structure import structure
+    from orbits.machines.structure import structure
     from orbits.orbit import Orbit
     from orbits.problem import OrbitProblem
     from orbits.words import Word, WordError
@@ -76,7 +76,7 @@ __getattr__ = on_demand(
         "Word": "orbits.words.word",
         "WordError": "orbits.words.reading",
         "coupled_two": "orbits.machines.coupled_two",
-        "structure": "orbits.machines.structure.structure",
+        "structure": "orbits.machines.structure",
         **{room: f"orbits.{room}" for room in _ROOMS},
     },
 )

@@ -17,7 +17,7 @@ from orbits.borders.distance import INSTANTS, distance
 from orbits.cycles.identity import canonical, size_of_one
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import PLAIN
-from orbits.machines.building import build
+from orbits.machines.catalogue import build
 from orbits.machines.path import along
 from orbits.motions import Motions
 from orbits.orbit import Orbit
@@ -388,7 +388,7 @@ def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem
     """
     settings, params = description["model"], np.array(description["params"], dtype=float)
     if "page" in settings:
-        from orbits.machines.page.stored import machine_again
+        from orbits.machines.page.loading import machine_again
 
         model: Varying | None = machine_again(settings, trust)
         if model is None:

@@ -383,12 +383,8 @@ class Stepping:
         Speed after an impact, or time, that is none.
     least_speed : float
         That of an impact which roundoff leaves none.
-    last_step : float
-        Newton's method ends with a step that is this small a share of the time.
     leave : float
         Time by which a zero is left behind, at least, when the next one is looked for.
-    minimum : float
-        Time to which the place of a minimum is known.
     slip : float
         Phase by which a slip may miss the instant at which friction gives way: the equations solve for it.
     """
@@ -397,9 +393,7 @@ class Stepping:
     chatter: float = 1e-7
     still: float = 1e-13
     least_speed: float = 1e-30
-    last_step: float = 1e-6
     leave: float = 1e-8
-    minimum: float = 1e-5
     slip: float = 1e-6
 
 

@@ -187,7 +187,7 @@ def _guesses(study: Study, names: list[str]) -> tuple[Any, dict[str, float]]:
     from orbits.machines.physical.quantities import near_quantity
 
     model = machine(study)
-    known = list(model.tables.QUANTITIES if study.sort is Sort.PHYSICAL else model.amount_names)
+    known = list(model.tables.quantities if study.sort is Sort.PHYSICAL else model.amount_names)
     for name in names:
         if name not in known:
             raise ValueError(

@@ -15,9 +15,8 @@ from contvines.command.study_data import Sort, Study, without_word, wrong_interv
 from contvines.command.study_errors import StudyError, refuse, validated
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
-from orbits.machines.building import build
-from orbits.machines.catalogue import model_class
-from orbits.machines.names import NAMES, PAGES, STRUCTURE
+from orbits.machines.catalogue import build
+from orbits.machines.names import NAMES, PAGES, STRUCTURE, model_class
 from orbits.machines.parameters import CONTACT_TIME
 from orbits.words import Word
 

@@ -11,8 +11,7 @@ from typing import Any
 
 from contvines.command.study_errors import StudyError
 from contvines.shared.near_names import did_you_mean
-from orbits.machines.conditions import Table
-from orbits.machines.parameters import ParameterError
+from orbits.machines.parameters import ParameterError, Table
 
 EXAMPLE = "{ temperature = [[20, 0.7], [80, 0.6]] }"
 

@@ -102,12 +102,12 @@ def _physical(name: str) -> dict[str, Any] | None:
     from pydantic import Field
 
     from contvines.command.schema import StudySections, study_model
-    from orbits.machines.catalogue import model_class
+    from orbits.machines.names import model_class
     from orbits.machines.physical.machine import CONTACT, tables
     from orbits.machines.physical.quantities import QuantityError
 
     try:
-        known = tables(model_class(name)).QUANTITIES
+        known = tables(model_class(name)).quantities
     except QuantityError:
         return None
     fields: dict[str, Any] = {

@@ -107,7 +107,7 @@ class Scales:
 
         if not isinstance(self.model, Physical):
             return self.model.units.get(kind, "") if kind == "time" else ""
-        quantity = self.model.tables.GAUGES.get(kind)
+        quantity = self.model.tables.gauges.get(kind)
         return units.unit_of(quantity) if quantity else ""
 
     def rows(self, rows: Rows) -> Rows:

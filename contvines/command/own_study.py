@@ -37,7 +37,7 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
         machine, plain = _structure(data, path)
         return _page(plain, path, machine)
     if said in PAGES:
-        from orbits.machines.catalogue import page_machine
+        from orbits.machines.names import page_machine
         from orbits.machines.page.machine import Machine
 
         machine = page_machine(said)
@@ -65,7 +65,7 @@ def _section(data: dict[str, Any], name: str) -> dict[str, Any]:
 def _structure(data: dict[str, Any], path: Path) -> tuple["Machine", dict[str, Any]]:
     """The structure of a study, and the study without its matrices and elements."""
     from orbits.machines.parameters import ParameterError
-    from orbits.machines.structure.structure import GIVEN, MATRICES, MEANT, structure
+    from orbits.machines.structure import GIVEN, MATRICES, MEANT, structure
 
     model, start, go = (_section(data, name) for name in ("model", "start", "continue"))
     for name in MATRICES:

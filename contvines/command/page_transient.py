@@ -36,7 +36,7 @@ def of_page(
 ) -> Told:
     """A transient of a declared machine: its states, its impacts and what these and friction take."""
     from orbits.design.page_transients import page_transient
-    from orbits.machines.page.energies import CONTACT
+    from orbits.machines.page.si import CONTACT
 
     machine = study.model
     params, shown = machine.vector(study.loose), machine.units

@@ -13,7 +13,7 @@ from contvines.command.catalogue_study import built, wrong_guess
 from contvines.command.schema import StudySections
 from contvines.command.study_data import Sort, Study, wrong_intervals
 from contvines.command.study_errors import refuse, validated
-from orbits.machines.catalogue import model_class
+from orbits.machines.names import model_class
 from orbits.machines.physical import units
 from orbits.machines.physical.machine import Physical, physical, tables
 from orbits.machines.physical.quantities import Quantity, QuantityError, near_quantity
@@ -77,7 +77,7 @@ def _machine(
         return None, [f'units = {said!r} is unknown; use "si", or leave it out.']
     name = str(model.get("name"))
     try:
-        known = tables(model_class(name)).QUANTITIES
+        known = tables(model_class(name)).quantities
     except ValueError as error:
         return None, [f"[model] {error}."]
     wrong = [
@@ -140,7 +140,7 @@ def _numbers(
             del changed["bounds"]
         unread = {key: texts for key, texts in lists.items() if any(isinstance(text, str) for text in texts)}
         return changed | {key: [float(i) for i in range(len(texts))] for key, texts in unread.items()}, []
-    name, known = _parameter(values) or usual, machine.tables.QUANTITIES
+    name, known = _parameter(values) or usual, machine.tables.quantities
     if name is None:
         return changed, wrong
     if name in known:
@@ -189,7 +189,7 @@ def number_of(
     """
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         return value, None
-    quantity = machine.tables.QUANTITIES[name]
+    quantity = machine.tables.quantities[name]
     own = machine.units.get(name, "")
     try:
         number, unit = units.read(quantity, value)

@@ -330,7 +330,7 @@ def given(section: Section, names: Iterable[str]) -> dict[str, Any]:
 
 def catalogue_model(name: str) -> type[StudySections]:
     """The model of a study of a machine of the catalogue."""
-    from orbits.machines.catalogue import model_class
+    from orbits.machines.names import model_class
 
     machine = model_class(name)
     defaults = machine.defaults()

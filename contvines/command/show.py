@@ -22,7 +22,7 @@ def show(file: FileArgument, json: JsonOption = False) -> None:
     if made:
         typer.echo(as_text(made))
     if "page" in graph.model:
-        from orbits.machines.page.stored import page_changed
+        from orbits.machines.page.loading import page_changed
 
         changed = page_changed(graph.model)
         if changed:

@@ -21,7 +21,7 @@ from contvines.shared.digests import digest_of
 
 if TYPE_CHECKING:
     from contvines.flows.problem import FlowProblem
-    from orbits.machines.conditions import Table
+    from orbits.machines.parameters import Table
 
 SHOWN = 60  # letters of a word that a refusal repeats
 

@@ -80,7 +80,7 @@ def names_of(study: Study) -> Iterable[str]:
     if study.sort is Sort.PAGE:
         return study.model.parameters
     if study.sort is Sort.PHYSICAL:
-        return study.model.tables.QUANTITIES
+        return study.model.tables.quantities
     return [entry.name for entry in study.model.settable]
 
 

@@ -45,7 +45,7 @@ def graph_beneath(path: Path, study: Study) -> "Graph":
 
 def _graph_machine(graph: "Graph") -> dict[str, Any]:
     """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
-    from orbits.machines.building import build
+    from orbits.machines.catalogue import build
     from orbits.machines.names import NAMES
 
     known = dict(graph.model)

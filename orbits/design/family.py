@@ -18,7 +18,7 @@ from orbits.attractors.sweeping import SweepRow, sweep
 from orbits.contacts.letters import Mode
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError
-from orbits.machines.conditions import Table, resolved
+from orbits.machines.parameters import Table, resolved
 from orbits.orbit import Orbit
 from orbits.population.population import Population
 from orbits.settings import DESIGNING

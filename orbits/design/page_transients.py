@@ -22,9 +22,9 @@ from orbits.design.record import settled
 from orbits.flows.page.loads import Impacts, friction_work
 from orbits.flows.page.stepper import TWO_PI
 from orbits.flows.protocol import SimulationError
-from orbits.machines.catalogue import usual
-from orbits.machines.page.formulas import Named, States
+from orbits.machines.names import usual
 from orbits.machines.page.machine import Machine
+from orbits.machines.page.page import Named, States
 from orbits.machines.page.run_up import phase_at_end, run_up
 from orbits.simulation.page import PageTrajectory
 from orbits.simulation.runs import simulator_of

@@ -11,7 +11,15 @@ import numpy as np
 from contvines.shared.near_names import hinting
 from orbits.machines.base import Model
 from orbits.machines.closed_forms import absorber as closed_forms
-from orbits.machines.parameters import FREQUENCY, FRICTION, GRAVITY, NOT_NEGATIVE, RESTITUTION, Parameter
+from orbits.machines.parameters import (
+    AMPLITUDE,
+    FREQUENCY,
+    FRICTION,
+    GRAVITY,
+    MASS_RATIO,
+    RESTITUTION,
+    Parameter,
+)
 from orbits.words import Word
 
 
@@ -54,13 +62,11 @@ class Absorber(Model):
     driven_by: ClassVar[str] = "amplitude"
     closed_words: ClassVar[tuple[str, ...]] = ("LR", "tt", "susu")
     table: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55),
+        AMPLITUDE,
         Parameter("restitution", "Newton's coefficient of the walls", RESTITUTION, "r", "", 0.76),
         FRICTION,
         GRAVITY,
-        Parameter(
-            "mass_ratio", "absorber's mass over the oscillator's", NOT_NEGATIVE, r"\varepsilon", "", 0.006
-        ),
+        MASS_RATIO,
         FREQUENCY,
     )
 

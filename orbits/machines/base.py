@@ -1,4 +1,4 @@
-"""What every machine offers.
+"""What every built-in machine offers: an absorber between two walls of a cavity.
 
 The contract, in words
 ----------------------
@@ -8,33 +8,48 @@ The contract, in words
    Studies, refusals and tables are made from the table.
 2. `name` is that of its flow: of its kernels and stepper in the native core, and of its numbers in their reference (`orbits.machines.reference`).
    `moving_cavity` says whether the cavity has a motion of its own.
-3. All that follows from the names in the table is composed once (`orbits.machines.mechanics`): walls, friction, losses, mirror images, random starts.
-   So is `rest`, the motion without events (`orbits.machines.rest`).
+3. All that follows from the names in the table is composed once: walls, friction, losses, mirror images, random starts, and `rest`, the motion
+   without events (`orbits.machines.rest`). A name that ends in ``_left`` and ``_right`` tells the sides apart; ``slope`` inclines the cavity,
+   ``distance_left`` and ``distance_right`` move its walls.
 4. `start_nodes` yields closed forms to start from; `own_measures` names what is measured beside the common ones (`orbits.flows.native.measures`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, fields
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean, no_parameter
-from orbits.machines.mechanics import Mechanics
+from orbits.machines.measures import COMMON, MEANS
 from orbits.machines.parameters import CONTACT_TIME, Limits, Parameter, ParameterError
 from orbits.machines.rest import Rest
+from orbits.machines.varying import Varying
+from orbits.words import Word
+from orbits.words.alphabet import shaken
+
+if TYPE_CHECKING:
+    from orbits.numbers import Reals
+
+ONE = np.float64(1.0)
 
 
-class Model(Mechanics):
+class Model(Varying):
     """Base of the machines; see the contract at the top of `orbits.machines.base`."""
 
     name: str
     flow: str = "native"
-    """What happens between two events: a name in `orbits.flows.catalogue`."""
     forced: bool = True
     in_cavity: ClassVar[bool] = True
+    moving_cavity: ClassVar[bool] = False
+    """Whether the cavity has a motion of its own, v and v' in the state and in its nodes; else it moves as v = C sin(Omega tau)."""
+    phase_rate: ClassVar[str] = "frequency"
+    """The parameter that is the forcing's frequency."""
+    driven_by: ClassVar[str]
+    """The parameter that drives the machine: an orbit must have it, a machine need not."""
     table: ClassVar[tuple[Parameter, ...]]
     default_measure: ClassVar[str] = "B"
     """What pictures show where no measure is named: ``B`` (in a sweep at every impact), or a measure of the whole motion."""
@@ -47,12 +62,7 @@ class Model(Mechanics):
     settable: ClassVar[tuple[Parameter, ...]]
     """What may be given: the table, and names that stand for several of its numbers."""
 
-    # derived from the table
-    default_parameter: str
-    node_names: tuple[str, ...]
-    node: int
     rest: ClassVar[Rest]
-    parameter_names: tuple[str, ...]
     limits: ClassVar[Mapping[str, Limits]]
 
     def __init_subclass__(cls) -> None:
@@ -109,10 +119,10 @@ class Model(Mechanics):
         ParameterError
             If there is none.
         """
-        for entry in cls.settable:
-            if entry.name == name:
-                return entry
-        raise ParameterError(no_parameter(name, f"the model {cls.name!r}", cls.parameter_names))
+        found = next((entry for entry in cls.settable if entry.name == name), None)
+        if found is None:
+            raise ParameterError(no_parameter(name, f"the model {cls.name!r}", cls.parameter_names))
+        return found
 
     @classmethod
     def field_names(cls) -> tuple[str, ...]:
@@ -158,9 +168,21 @@ class Model(Mechanics):
             if entry.name == name:
                 entry.number(value)
 
+    def _own(self) -> dict[str, Any]:
+        """Its fields by name."""
+        return {name: getattr(self, name) for name in self.field_names()}
+
+    @property
+    def measure_names(self) -> tuple[str, ...]:
+        """Measures that its orbits have; a peak force only where the contact time is known."""
+        known = (*COMMON, *self.own_measures)
+        if self.contact_time is None:
+            known = tuple(name for name in known if name != "peak_force")
+        return known + tuple(mean for mean, name in MEANS.items() if name in known)
+
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """The machine's own fields by name, ready for JSON; those of a declared machine are its parameters, at `params` where they are given."""
-        own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        own = self._own()
         return {"name": self.name} | {key: own[key] for key in own if key != "contact_time" or own[key]}
 
     def changed(self, **values: object) -> Self:
@@ -171,5 +193,201 @@ class Model(Mechanics):
         ParameterError
             If a value is one that the parameter cannot have.
         """
-        own = {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
-        return type(self)(**(own | values))
+        return type(self)(**(self._own() | values))
+
+    # ------------------------------------------------------------------ mechanics
+    @classmethod
+    def column(cls, params: np.ndarray, name: str) -> Reals:
+        """Entry `name` of a parameter vector, or that column of many of them."""
+        j = cls.parameter_names.index(name)
+        return params[j] if params.ndim == 1 else params[..., j]
+
+    def phase_speed(self, params: np.ndarray) -> Reals:
+        """How fast the phase grows, in radians per unit of the machine's own time; shapes follow `params` (..., P)."""
+        return self.column(params, self.phase_rate)
+
+    def shakes(self, name: str) -> bool:
+        """Whether a parameter says how strongly the machine is shaken."""
+        return name == self.driven_by
+
+    def unshaken(self, params: np.ndarray) -> tuple[str, str] | None:
+        """Where nothing shakes the machine: the parameter at fault with its value, and a value that shakes it; else None."""
+        if self.column(params, self.driven_by) != 0.0:
+            return None
+        return f"{self.driven_by} = 0", f"{self.driven_by} = {self.parameter(self.driven_by).example:g}"
+
+    def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool:
+        """Whether mirror images are motions of this machine, at these parameters and however `varying` varies.
+
+        Level, and with one coefficient of restitution and of friction; unlike distances of the walls have the middle between them.
+        """
+        if varying == "slope" or ("slope" in self.parameter_names and self.column(params, "slope") != 0.0):
+            return False
+        pairs = [(f"{name}_left", f"{name}_right") for name in ("restitution", "friction")]
+        unlike = [pair for pair in pairs if pair[0] in self.parameter_names]
+        return all(
+            varying not in pair and self.column(params, pair[0]) == self.column(params, pair[1])
+            for pair in unlike
+        )
+
+    @classmethod
+    def sides(cls, params: np.ndarray, name: str) -> tuple[Any, Any]:
+        """A number of the left and of the right side; one that the table has once is that of both."""
+        if f"{name}_left" in cls.parameter_names:
+            return cls.column(params, f"{name}_left"), cls.column(params, f"{name}_right")
+        both = cls.column(params, name)
+        return both, both
+
+    @classmethod
+    def weight(cls, params: np.ndarray) -> Reals:
+        """g cos(slope), with which gravity presses the absorber on its floor."""
+        gravity = cls.column(params, "gravity")
+        return gravity * np.cos(cls.column(params, "slope")) if "slope" in cls.parameter_names else gravity
+
+    @classmethod
+    def friction_acceleration(cls, params: np.ndarray) -> float:
+        """a = (1 + eps) mu g cos(slope), the friction's relative acceleration (dimensionless); the larger of both directions'."""
+        left, right = cls.sides(params, "friction")
+        return float((1.0 + cls.column(params, "mass_ratio")) * max(left, right) * cls.weight(params))
+
+    def frictionless(self, params: np.ndarray) -> bool:
+        """Whether turns are no events."""
+        return self.friction_acceleration(params) == 0.0
+
+    @classmethod
+    def cavity_motion(cls, nodes: np.ndarray, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """v and v' at nodes (m, L, n) with parameter vectors (m, P), each of shape (m, L)."""
+        if cls.moving_cavity:
+            return nodes[:, :, 2], nodes[:, :, 3]
+        amplitude, omega = (
+            params[:, cls.parameter_names.index(name), None] for name in (cls.driven_by, cls.phase_rate)
+        )
+        return amplitude * np.sin(nodes[:, :, 0]), amplitude * omega * np.cos(nodes[:, :, 0])
+
+    @classmethod
+    def cavity_speed(cls, node: np.ndarray, params: np.ndarray) -> tuple[float, np.ndarray]:
+        """v' at a node (n,), and its derivatives with respect to the node's entries, shape (n,)."""
+        if cls.moving_cavity:
+            return float(node[3]), np.array([0.0, 0.0, 0.0, 1.0])
+        speed, phase = (
+            float(cls.column(params, cls.driven_by) * cls.column(params, cls.phase_rate)),
+            float(node[0]),
+        )
+        return speed * math.cos(phase), np.array([-speed * math.sin(phase), 0.0])
+
+    @classmethod
+    def walls(cls, params: np.ndarray) -> tuple[Any, Any]:
+        """w at the left and at the right wall; shapes follow `params` (..., P)."""
+        if "distance_left" in cls.parameter_names:
+            left, right = cls.sides(params, "distance")
+            return left, -right
+        one = np.ones(params.shape[:-1]) if params.ndim > 1 else ONE
+        return one, -one
+
+    def natural_units(self, params: np.ndarray) -> tuple[float, float]:
+        if self.moving_cavity:
+            return super().natural_units(params)
+        left, right = self.walls(params)
+        length, rate = (
+            float(min(left, -right)),
+            float(self.column(params, self.phase_rate)),
+        )  # a far wall may be out of reach
+        return length if 0.0 < length < math.inf else 1.0, rate if 0.0 < rate < math.inf else 1.0
+
+    def middle(self, params: np.ndarray) -> Reals:
+        """w in the middle between the walls, about which mirror images are taken; shapes follow `params` (..., P)."""
+        left, right = self.walls(params)
+        return 0.5 * (left + right)
+
+    def image(self, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Nodes (..., L, n) of events `codes` mirrored about the middle between the walls, at the same phases."""
+        image = -nodes
+        image[..., 0] = nodes[..., 0]
+        middle = np.asarray(self.middle(params))
+        if middle.any():
+            image[..., 1] += np.where(codes < 2, 0.0, 2.0 * middle[..., np.newaxis])
+        return image
+
+    @classmethod
+    def restitutions(cls, params: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's coefficients of the left and of the right wall."""
+        return cls.sides(params, "restitution")
+
+    @classmethod
+    def bodies(cls, w: Reals, v: Reals, params: np.ndarray) -> tuple[Any, Any]:
+        """Displacements q1 of the cavity and q2 of the absorber from w = q1 - q2 and v = q1 + eps q2; velocities likewise.
+
+        Shapes follow `w` and `v`, against which `params` (..., P) is broadcast.
+        """
+        eps = cls.column(params, "mass_ratio")
+        return (v + eps * w) / (1.0 + eps), (v - w) / (1.0 + eps)
+
+    @classmethod
+    def relative(cls, cavity: Reals, absorber: Reals, params: np.ndarray) -> tuple[Any, Any]:
+        """w and v from the displacements of cavity and absorber, the inverse of `bodies`."""
+        return cavity - absorber, cavity + cls.column(params, "mass_ratio") * absorber
+
+    @classmethod
+    def at_home(cls, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Nodes (l, n); of a motion without impacts with the absorber moved so that the mean of w is the middle between the walls (q1 stays)."""
+        if not len(codes) or np.any(codes < 2) or np.any(codes > 4):
+            return nodes
+        moved = nodes.copy()
+        mean = nodes[:, 1].mean() - 0.5 * float(np.sum(cls.walls(params)))
+        moved[:, 1] -= mean
+        if nodes.shape[1] > 2:
+            moved[:, 2] += cls.column(params, "mass_ratio") * mean
+        return moved
+
+    @classmethod
+    def friction_loss(cls, steps: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """mu g cos(slope) times the path slid, from the displacements w between events (m, L); shape (m,)."""
+        left, right = (side[:, None] for side in cls.sides(params, "friction"))
+        return (np.where(steps > 0.0, left, right) * np.abs(steps)).sum(axis=1) * cls.weight(params)
+
+    def word(self, text: str | Word, params: np.ndarray) -> Word:
+        """Read a word of this machine."""
+        return Word.parse(text, frictionless=self.frictionless(params))
+
+    def word_of(self, events: Sequence[str], modes: Sequence[int], params: np.ndarray) -> Word | None:
+        """The word with these events and modes; None if the machine has none such at these parameters."""
+        if self.frictionless(params) and not {"L", "R"}.issuperset(events):
+            return None
+        return Word(tuple(events), tuple(modes), shaken(self.frictionless(params)))
+
+    # ------------------------------------------------------------------ starts
+    def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
+        """Nodes to start from in closed form, where there are any."""
+        return iter(())
+
+    def random_nodes(
+        self, word: Word, periods: int, params: np.ndarray, generator: np.random.Generator
+    ) -> np.ndarray | None:
+        """Nodes at random from which Newton's method may find an orbit; None if that is hopeless."""
+        if self.moving_cavity:
+            return None
+        amplitude, omega = (float(self.column(params, name)) for name in (self.driven_by, self.phase_rate))
+        phases = np.sort(generator.uniform(0.0, 2.0 * np.pi * periods, len(word)))
+        second = generator.uniform(-0.9, 0.9, len(word))
+        for i, letter in enumerate(word.events):
+            if letter in "LR":
+                sign = 1.0 if letter == "L" else -1.0
+                second[i] = sign * generator.uniform(0.0, 1.5) * (1.0 + amplitude) * omega
+        return np.column_stack([phases, second])
+
+    def random_start(
+        self, params: np.ndarray, generator: np.random.Generator, size: float = 1.0
+    ) -> dict[str, float]:
+        """A state at random, as `orbits.simulation.simulate` takes it."""
+        start = {
+            "phase": generator.uniform(0.0, 2.0 * np.pi),
+            "w": generator.uniform(-0.95, 0.95),
+            "w_rate": generator.uniform(-2.0, 2.0),
+        }
+        left, right = (float(wall) for wall in self.walls(params))
+        reach = min(max(left, -right), 10.0 * min(left, -right))  # a wall out of reach is no measure
+        low, high = max(right, -reach), min(left, reach)
+        start["w"] = 0.5 * (low + high) + 0.5 * (high - low) * start["w"]
+        if self.moving_cavity:
+            start |= {"v": generator.uniform(-1.0, 1.0), "v_rate": generator.uniform(-1.0, 1.0)}
+        return start

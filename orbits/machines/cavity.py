@@ -1,29 +1,38 @@
-"""The cavity: a mass with dry friction between two unlike walls, on a slope, shaken harmonically."""
+"""The cavity: a mass with dry friction between two unlike walls, on a slope, shaken harmonically.
+
+Its sides have numbers of their own, which one name may stand for at once: `restitution` for `restitution_left` and `restitution_right`. Where they are
+given together they vary together.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from orbits.machines.closed_forms import cavity as closed_forms
+from orbits.machines.base import Model
 from orbits.machines.parameters import (
+    AMPLITUDE,
     FREQUENCY,
     GRAVITY,
+    MASS_RATIO,
     NOT_NEGATIVE,
     POSITIVE,
     RESTITUTION,
     SLOPE,
     Parameter,
+    ParameterError,
 )
-from orbits.machines.sided import Sided
 from orbits.words import Word
+
+PAIRS = {name: (f"{name}_left", f"{name}_right") for name in ("restitution", "friction")}
+"""Names that stand for both sides at once."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cavity(Sided):
+class Cavity(Model):
     """A reduced absorber with two unlike walls and gravity along the cavity.
 
     ``w'' = -C Omega^2 sin(Psi) - (1 + eps) g sin(slope) - s (1 + eps) mu_s g cos(slope),   -distance_right <= w <= distance_left``,
@@ -85,7 +94,7 @@ class Cavity(Sided):
     default_parameter = "amplitude"
     driven_by: ClassVar[str] = "amplitude"
     table: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55),
+        AMPLITUDE,
         Parameter("restitution_left", "Newton's coefficient of the left wall", RESTITUTION, "r_L", "", 0.76),
         Parameter(
             "restitution_right", "Newton's coefficient of the right wall", RESTITUTION, "r_R", "", 0.76
@@ -93,9 +102,7 @@ class Cavity(Sided):
         Parameter("friction_left", "Coulomb coefficient to the left wall", NOT_NEGATIVE, r"\mu_L", "", 0.5),
         Parameter("friction_right", "Coulomb coefficient to the right wall", NOT_NEGATIVE, r"\mu_R", "", 0.5),
         GRAVITY,
-        Parameter(
-            "mass_ratio", "absorber's mass over the oscillator's", NOT_NEGATIVE, r"\varepsilon", "", 0.006
-        ),
+        MASS_RATIO,
         FREQUENCY,
         Parameter("slope", "angle of the cavity", SLOPE, r"\alpha", "rad", 0.1),
         Parameter("distance_left", "of the left wall from w = 0", POSITIVE, "d_L", "b", 1.0),
@@ -107,5 +114,67 @@ class Cavity(Sided):
         Parameter("friction", "Coulomb coefficient of both directions", NOT_NEGATIVE, r"\mu", "", 0.5),
     )
 
+    def _check_together(self) -> None:
+        for both, sides in PAIRS.items():
+            given = [side for side in sides if getattr(self, side) is not None]
+            if getattr(self, both) is not None and given:
+                raise ParameterError(
+                    f"{both} = {getattr(self, both):g} and {given[0]} = {getattr(self, given[0]):g} are both given: give {both} for "
+                    f"both sides, or {sides[0]} and {sides[1]}"
+                )
+            if getattr(self, both) is None and len(given) < 2:
+                missing = next(side for side in sides if side not in given)
+                raise ParameterError(
+                    f"{missing if given else both} is missing: give {both} for both sides, or {sides[0]} and {sides[1]}"
+                )
+
+    def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
+        given = dict(values or {})
+        for both, sides in PAIRS.items():
+            shared = given.pop(both, getattr(self, both))
+            if shared is not None:
+                given = dict.fromkeys(sides, shared) | given
+        return super().vector(given)
+
+    # ------------------------------------------------------------------ what varies
+    @property
+    def _amount_of(self) -> list[str]:
+        """The amount that each number is: the name that both sides share where they are given together, else its own."""
+        shared = {
+            side: both for both, sides in PAIRS.items() if getattr(self, both) is not None for side in sides
+        }
+        return [shared.get(name, name) for name in self.parameter_names]
+
+    @property
+    def amount_names(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(self._amount_of))
+
+    def amounts(self, params: np.ndarray) -> np.ndarray:
+        places = self._amount_of
+        return np.array([params[places.index(name)] for name in self.amount_names])
+
+    @property
+    def law(self) -> np.ndarray:
+        places, names = self._amount_of, self.amount_names
+        if len(names) == len(places):
+            return super().law
+        powers = [[float(own == name) for own in places] for name in names]
+        return np.array([[1.0] * len(places), *powers])
+
+    # ------------------------------------------------------------------ starts
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        return closed_forms.start_nodes(word, periods, self.named(params))
+        """Nodes of the bounce off one wall on a slope without friction, `R` (or `L` for a negative slope), in closed form.
+
+        Over k forcing periods, T = 2 pi k/Omega: B+ = -b T/2 and C Omega cos Psi = -(1 - r)/(1 + r) b T/2.
+        """
+        if not word.frictionless or word.events not in (("R",), ("L",)):
+            return
+        value = self.named(params)
+        b = (1.0 + value["mass_ratio"]) * value["gravity"] * np.sin(value["slope"])
+        r = value["restitution_right" if word.events == ("R",) else "restitution_left"]
+        half, speed = np.pi * periods / value["frequency"], value["amplitude"] * value["frequency"]
+        cosine = -(1.0 - r) / (1.0 + r) * b * half
+        if (b > 0.0) != (word.events == ("R",)) or abs(cosine) > speed:
+            return
+        for sign in (-np.sign(b), np.sign(b)):  # where the table brakes the more the later it is hit: stable
+            yield np.array([[sign * np.arccos(cosine / speed) % (2.0 * np.pi), -b * half]])

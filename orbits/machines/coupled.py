@@ -11,6 +11,7 @@ import numpy as np
 
 from orbits.machines.base import Model
 from orbits.machines.closed_forms import coupled as closed_forms
+from orbits.machines.measures import DRIVEN
 from orbits.machines.parameters import (
     FREQUENCY,
     FRICTION,
@@ -110,15 +111,7 @@ class Coupled(Model):
         ),
         Parameter("slope", "angle of the cavity", SLOPE, r"\alpha", "rad", 0.0),
     )
-    own_measures: ClassVar[tuple[str, ...]] = (
-        "max_abs_q1",
-        "amplitude",
-        "v_phase",
-        "input_work",
-        "damping_loss",
-        "force_work",
-        "grounded_damping_loss",
-    )
+    own_measures: ClassVar[tuple[str, ...]] = tuple(DRIVEN)
 
     def _check_together(self) -> None:
         _underdamped(self.damping, self.mass_ratio)

@@ -17,7 +17,7 @@ from orbits.machines.page.machine import Machine
 from orbits.symbols import cos, sin
 
 if TYPE_CHECKING:
-    from orbits.machines.page.formulas import Named, States
+    from orbits.machines.page.page import Named, States
     from orbits.symbols import Plain
 
 TURN = 6.283185307179586  # radians

@@ -41,11 +41,6 @@ class EventTable:
     v_rate: np.ndarray
 
 
-def parameter(model: Model, params: np.ndarray, name: str) -> np.ndarray:
-    """Column `name` of the parameter vectors, shape (m, 1)."""
-    return params[:, model.parameter_names.index(name)][:, None]
-
-
 def event_table(model: Model, word: Word, nodes: np.ndarray, params: np.ndarray) -> EventTable:
     """Positions and velocities at all events, from nodes (m, L, n) and parameter vectors (m, P)."""
     phase = nodes[:, :, 0]

@@ -1,58 +1,140 @@
-"""Names of the measures of orbits, and what kind of quantity each is."""
+"""Measures of orbits: their names, what kind of quantity each is and how it is written on axes; and how parameters are.
+
+Where a machine has units, a measure is told in words, else in the field's notation.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from contvines.shared.modulation import BAND
-from orbits.machines.base import Model
 
-LOADS = (
-    "impact_rate",
-    "impulse",
-    "impulse_left",
-    "impulse_right",
-    "impact_energy",
-    "mean_force",
-    "work_rate",
-    "peak_force",
-)
+
+class Measure(NamedTuple):
+    """What a measure is.
+
+    Attributes
+    ----------
+    kind : str
+        Of quantity.
+    label : str
+        On an axis; empty: its name.
+    words : str
+        The same of a number that has a unit, where it is written otherwise.
+    """
+
+    kind: str
+    label: str = ""
+    words: str = ""
+
+
+LOADS = {
+    "impact_rate": Measure("rate", "impacts per unit of time", "impacts per second"),
+    "impulse": Measure("impulse", "largest impulse"),
+    "impulse_left": Measure("impulse", "largest impulse at the left wall"),
+    "impulse_right": Measure("impulse", "largest impulse at the right wall"),
+    "impact_energy": Measure("energy", "energy of the hardest impact"),
+    "mean_force": Measure("force", "mean force at the walls"),
+    "work_rate": Measure("power", "power taken by impacts and friction"),
+    "peak_force": Measure("force", "peak force of the hardest impact"),
+}
+_LOSSES = {"impact_loss": "loss at impacts", "friction_loss": "loss by friction"}
+_WORKS = {
+    "input_work": "work of the base",
+    "damping_loss": "loss in the damper",
+    "force_work": "work of the equivalent force",
+    "grounded_damping_loss": "loss in a grounded damper",
+}
+
+
+def _energies(told: dict[str, str]) -> dict[str, Measure]:
+    return {name: Measure("energy", f"{what} per period of the orbit") for name, what in told.items()}
+
+
+COMMON = {
+    "B": Measure("velocity", "velocity at the first impact $B$"),
+    "B_post": Measure("velocity", "velocity after impact $B^+$"),
+    "B_pre": Measure("velocity", "velocity before impact $B^-$"),
+    "B_mean": Measure("velocity", "mean velocity at impacts $B$"),
+    "C2": Measure("area", "$C^2$"),
+    "phase": Measure("angle", "forcing phase at the first event"),
+    "impact_speed": Measure("velocity", "fastest impact $|w'_-|$", "fastest impact"),
+    "impact_speed_min": Measure("velocity"),
+    **_energies(_LOSSES),
+    "max_abs_w": Measure("length", r"largest $|w|$", "largest relative displacement"),
+    **LOADS,
+}
+"""Of all machines."""
+DRIVEN = {
+    "max_abs_q1": Measure(
+        "length", r"largest $|q_1|$ in units of $b$", "largest displacement of the oscillator"
+    ),
+    "amplitude": Measure("length", "amplitude $C$", "amplitude"),
+    "v_phase": Measure("angle"),
+    **_energies(_WORKS),
+}
+"""Of machines that ride on an oscillator."""
 WITHOUT_IMPACTS = (*LOADS, "impact_loss", "impact_speed", "impact_speed_min")
 """Measures that are 0 without impacts; others of impacts are not a number there."""
-COMMON = (
-    *("B", "B_post", "B_pre", "B_mean", "C2", "phase", "impact_speed", "impact_speed_min"),
-    *("impact_loss", "friction_loss", "max_abs_w"),
-    *LOADS,
-)
-
-ANGLES = ("phase", "v_phase")  # radians, modulo 2 pi
-ENERGIES = (  # per period of the orbit
-    "impact_loss",
-    "friction_loss",
-    "input_work",
-    "damping_loss",
-    "force_work",
-    "grounded_damping_loss",
-)
-MEANS = {f"{name}_mean": name for name in ENERGIES}  # per forcing period
-
-KINDS = {
-    **dict.fromkeys(("B", "B_post", "B_pre", "B_mean", "impact_speed", "impact_speed_min"), "velocity"),
-    "C2": "area",
-    **dict.fromkeys(("phase", "v_phase"), "angle"),
-    **dict.fromkeys(("max_abs_w", "max_abs_q1", *BAND, "amplitude"), "length"),
-    "impact_rate": "rate",
-    **dict.fromkeys(("impulse", "impulse_left", "impulse_right"), "impulse"),
-    "impact_energy": "energy",
-    **dict.fromkeys(("mean_force", "peak_force"), "force"),
-    "work_rate": "power",
-    **dict.fromkeys((*ENERGIES, *MEANS), "energy"),
+MEANS = {f"{name}_mean": name for name in _LOSSES | _WORKS}
+"""Energies per forcing period, and the same per period of the orbit."""
+MEASURES = {
+    **COMMON,
+    **DRIVEN,
+    **{
+        f"{name}_mean": Measure("energy", f"{what} per forcing period")
+        for name, what in (_LOSSES | _WORKS).items()
+    },
+    **dict.fromkeys(BAND, Measure("length")),
 }
-"""What kind of quantity each measure is, where it is more than a number."""
+KINDS = {name: measure.kind for name, measure in MEASURES.items()}
+"""What kind of quantity each measure is."""
+ANGLES = tuple(name for name, kind in KINDS.items() if kind == "angle")
+"""Radians, modulo 2 pi."""
+
+# ------------------------------------------------------------------ labels of axes
+SYMBOLS = {
+    **{name: measure.label for name, measure in MEASURES.items() if measure.label},
+    "w": "position $w$",
+    "w_rate": "velocity $w'$",
+    "v": "$v$",
+    "v_rate": "$v'$",
+    "frequency": r"frequency $\Omega$",
+    "restitution": "restitution $r$",
+    "friction": r"friction $\mu$",
+    "gravity": r"gravity $\tilde g$",
+    "mass_ratio": r"mass ratio $\varepsilon$",
+    "forcing": "forcing $G$",
+    "damping": r"damping $\lambda$",
+}
+"""Of measures, coordinates and parameters by name, in the field's notation."""
+WORDS = {
+    **{name: measure.words for name, measure in MEASURES.items() if measure.words},
+    "half_width": "half-width of the cavity (clearance to either side)",
+    "frequency": "excitation frequency",
+    "base_amplitude": "amplitude of the base",
+    "force_amplitude": "amplitude of the force",
+}
+"""The same in words, of numbers that have a unit."""
+STARTS = {
+    **{name: SYMBOLS[name] for name in ("v", "v_rate")},
+    "w": "position $w$ of the start",
+    "w_rate": "velocity $w'$ of the start",
+    "phase": "phase of the start",
+}
+"""Of the coordinates of a start."""
 
 
+def sign(name: str) -> str:
+    """The symbol of a parameter alone, as on axes; its name where it has none."""
+    _, dollar, symbol = SYMBOLS.get(name, "").partition("$")
+    return dollar + symbol or name
+
+
+# ------------------------------------------------------------------ forces at walls
 def loads(
     speeds: np.ndarray,
     restitution: np.ndarray,
@@ -96,11 +178,3 @@ def way_out(name: str) -> str:
         if name == "peak_force"
         else ""
     )
-
-
-def names(model: Model) -> tuple[str, ...]:
-    """Measures that orbits of this machine have; a peak force only where the contact time is known."""
-    known = COMMON + model.own_measures
-    if model.contact_time is None:
-        known = tuple(name for name in known if name != "peak_force")
-    return known + tuple(mean for mean, name in MEANS.items() if name in known)

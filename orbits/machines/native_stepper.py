@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from functools import cache
+from typing import Any
 
 import numpy as np
 
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function, native
-from orbits.machines.names import NATIVE
-from orbits.machines.stepping import PAUSED, TURNS
+from orbits.machines.names import NATIVE, model_class
+from orbits.machines.stepping import PAUSED, TURNS, Stepper
 from orbits.settings import STEPPING
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from orbits.machines.reference.machine import Reference
 
 
 def number(name: str) -> int | None:
@@ -45,17 +42,13 @@ def written(array: np.ndarray) -> int:
     return address(array)
 
 
-class NativeStepper:
-    """Launch, advance, sample, works, shapes and energies of one machine.
+class NativeStepper(Stepper):
+    """See the contract; `number`: the machine's in the native core."""
 
-    Parameters
-    ----------
-    machine : int
-        Its number in the native core.
-    """
-
-    def __init__(self, machine: int) -> None:
-        self.number = machine
+    def __init__(self, name: str, number: int) -> None:
+        self._model = model_class(name)
+        super().__init__(name, self._model.moving_cavity)
+        self.number = number
         self._launch = function("simulation_launch", NOTHING, WHOLE, POINTER, POINTER)
         self._advance = function(
             "simulation_advance", WHOLE, WHOLE, POINTER, POINTER, NUMBER, POINTER, POINTER, POINTER, WHOLE
@@ -65,9 +58,17 @@ class NativeStepper:
         self._sample = function("simulation_sample", NOTHING, *states, POINTER, POINTER)
         self._works = function("simulation_works", NOTHING, *states, POINTER, POINTER)
         self._energies = function("simulation_energies", NOTHING, *states, POINTER)
+        self._states = function(
+            "simulation_states", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, POINTER
+        )  # fmt: skip
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return stepper, (self.name,)
+
+    def walls(self, params: np.ndarray) -> tuple[Any, Any]:
+        return self._model.walls(params)
 
     def launch(self, state: np.ndarray, params: np.ndarray) -> None:
-        """Reduce the phase and set the mode of a start; contract, item 2."""
         params = floats(params)
         self._launch(self.number, written(state), address(params))
 
@@ -88,34 +89,22 @@ class NativeStepper:
         at_codes, at_modes, at_rows = written(codes), written(modes), written(rows)
         width = rows.itemsize * rows.shape[1]
         while status == PAUSED:
-            made = self._advance(
-                self.number,
-                here,
-                numbers,
-                until,
-                at_codes + count,
-                at_modes + count,
-                at_rows + count * width,
-                room - count,
-            )
+            places = at_codes + count, at_modes + count, at_rows + count * width
+            made = self._advance(self.number, here, numbers, until, *places, room - count)
             more, status = divmod(made, 8)
             count += more
         return count, status
 
     def sample(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
-        """w, w', v, v' at given phases after given states; contract, item 4."""
         self._each(self._sample, states, params, ahead, out)
 
     def works(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
-        """Works inside pieces of segments; contract, item 5."""
         self._each(self._works, states, params, ahead, out)
 
-    def shapes(self, states: np.ndarray, params: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
-        """See `orbits.machines.reference.motion.shapes`."""
-        self._each(self._shapes, states, params, lengths, out)
+    def shapes(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+        self._each(self._shapes, states, params, ahead, out)
 
     def energies(self, states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
-        """Energies of states; contract, item 5."""
         states, params = floats(states), floats(params)
         self._energies(self.number, len(states), address(states), address(params), written(out))
 
@@ -125,12 +114,22 @@ class NativeStepper:
         states, params, ahead = floats(states), floats(params), floats(ahead)
         work(self.number, len(states), address(states), address(params), address(ahead), written(out))
 
+    def states_of(
+        self, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray
+    ) -> np.ndarray:
+        states = np.zeros((len(nodes), self.state))
+        codes, modes, nodes, params = bytes_of(codes), bytes_of(modes), floats(nodes), floats(params)
+        events = address(codes), address(modes), address(nodes)
+        self._states(self.number, address(params), len(nodes), *events, *self.walls(params), address(states))
+        return states
 
-def stepper_functions(name: str) -> NativeStepper | Reference:
-    """The functions of the contract for the machine called `name`: the native core's, or those of its reference in plain Python."""
+
+@cache
+def stepper(name: str) -> Stepper:
+    """What moves the motions of the machine called `name` on: the native core, or its reference in plain Python."""
     machine = number(name)
     if machine is not None:
-        return NativeStepper(machine)
+        return NativeStepper(name, machine)
     from orbits.machines.reference.machine import reference
 
     return reference(name)

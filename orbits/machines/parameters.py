@@ -1,13 +1,16 @@
 """A machine's parameters: name, meaning, unit, symbol and limits, in one place.
 
-Refusals, studies, tables and axes read them from here; nothing else knows what a parameter may be.
+Refusals, studies, tables and axes read them from here; nothing else knows what a parameter may be. A parameter may depend on a condition, a
+temperature for example (`Table`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+
+import numpy as np
 
 LARGEST = 1_000_000.0
 """Of a number in a study, in the machine's own units, where all numbers are of order one; squares stay far from overflow."""
@@ -125,7 +128,68 @@ class Parameter:
         return next((word for word, code in self.words.items() if code == number), number)
 
 
+AMPLITUDE = Parameter("amplitude", "amplitude of v", NOT_NEGATIVE, "C", "b", 0.55)
+MASS_RATIO = Parameter(
+    "mass_ratio", "absorber's mass over the oscillator's", NOT_NEGATIVE, r"\varepsilon", "", 0.006
+)
 FRICTION = Parameter("friction", "Coulomb coefficient", NOT_NEGATIVE, r"\mu", "", 0.5)
 GRAVITY = Parameter("gravity", "g / (b omega_0^2)", NOT_NEGATIVE, r"\tilde g", "b omega_0^2", 0.211)
 CONTACT_TIME = Parameter("contact_time", "duration of an impact", POSITIVE, "T_c", "", 0.05)
 FREQUENCY = Parameter("frequency", "excitation frequency", POSITIVE, r"\Omega", "omega_0", 1.0)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A parameter over a condition.
+
+    Attributes
+    ----------
+    parameter, condition : str
+        Names.
+    places, values : tuple of float
+        Of the condition, ascending, and of the parameter.
+    """
+
+    parameter: str
+    condition: str
+    places: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        steps = np.diff(self.places)
+        if len(self.places) < 2 or len(self.places) != len(self.values) or not np.all(steps > 0.0):
+            raise ParameterError(
+                f"{self.parameter} over {self.condition}: give two rows or more [{self.condition}, {self.parameter}], {self.condition} ascending"
+            )
+
+    def __call__(self, condition: float) -> float:
+        """The parameter's value, linear between two rows.
+
+        Raises
+        ------
+        ParameterError
+            Outside of the table.
+        """
+        low, high = self.places[0], self.places[-1]
+        if not low <= condition <= high:
+            raise ParameterError(
+                f"{self.condition} = {condition:g} lies outside the table of {self.parameter}, which goes from {low:g} to {high:g}: "
+                f"give a row for it, or a {self.condition} within"
+            )
+        return float(np.interp(condition, self.places, self.values))
+
+
+def resolved(tables: Iterable[Table], values: Mapping[str, float]) -> dict[str, float]:
+    """Values with conditions replaced by the parameters that depend on them.
+
+    Raises
+    ------
+    ParameterError
+        If a condition lies outside of a table.
+    """
+    found = dict(values)
+    for table in tables:
+        if table.condition in values:
+            found[table.parameter] = table(values[table.condition])
+            found.pop(table.condition, None)
+    return found

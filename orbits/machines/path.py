@@ -55,6 +55,11 @@ def assign(data, other, value):
         path[0, j] = rest
 
 
+def products(law: np.ndarray, amounts: np.ndarray) -> np.ndarray:
+    """The numbers (P,) as products of powers of amounts (Q,): `law` (Q + 1, P) has factors, then exponents."""
+    return law[0] * np.prod(amounts[:, None] ** law[1:], axis=0)
+
+
 def single(count: int, index: int) -> np.ndarray:
     """The path (2, count) of a parameter that is the number `index` itself."""
     path = np.zeros((2, count))

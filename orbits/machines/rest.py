@@ -17,7 +17,7 @@ class Rest:
     def __init__(self, name: str) -> None:
         self._law, self.unknowns = LAWS[name], 2 if name in DRIVEN else 1
 
-    def law(self, params: np.ndarray) -> Law[float]:
+    def law(self, params: np.ndarray) -> Law:
         """The numbers of the equations of motion."""
         return self._law([*np.asarray(params, dtype=float)])
 
@@ -81,7 +81,7 @@ class Rest:
         }.get(name, np.nan)
 
 
-def share_of_the_base(law: Law[float], periods: int, overlap: float) -> float:
+def share_of_the_base(law: Law, periods: int, overlap: float) -> float:
     """What the base's motion adds to the loss in the damper: lambda times the integral of (q1' - e')^2 - q1'^2, per mass of the absorber.
 
     By parts the integral of q1' e' is Omega^2 times that of q1 e; `overlap` is the integral of q1 sin Psi over the phase.

@@ -1,4 +1,4 @@
-"""What every stepper offers: state, event rows, status, and the functions of a machine.
+"""What every stepper offers: state, event rows, status, and what moves a state on.
 
 1. *State*, float64, one vector for all models::
 
@@ -38,13 +38,13 @@
    ``energies(states[n, S], params, out[n])`` writes the energy that these works change. What an impact
    takes is the difference of the energies before and after it.
 
-6. Constants ``STATE`` (length of the state) and ``ROW`` (length of an event row).
+6. ``shapes(states[n, S], params, ahead[n], out[n, 4])`` writes the largest abs(q1) inside that piece of a segment, and the integrals of
+   v sin Psi, v cos Psi and q1 sin Psi over the phase; of machines with ``moving_cavity``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
@@ -63,34 +63,106 @@ STATUS: dict[int, str] = {
 }
 
 PSI, W, RATE, MODE, TURNS, LOW, V, V_RATE = range(8)
+TWO_PI = 2.0 * np.pi
 
 
-@dataclass(frozen=True)
-class Machine:
-    """The functions of one model; see the module's docstring."""
+class Stepper(ABC):
+    """What moves the motions of one machine on; see the module's docstring.
 
-    name: str
-    state: int
-    row: int
-    launch: Callable
-    advance: Callable
-    sample: Callable
-    works: Callable
-    energies: Callable
-    walls: Callable[[np.ndarray], tuple[Any, Any]]
-    moving_cavity: bool = False
+    Attributes
+    ----------
+    name : str
+    moving_cavity : bool
+    places : tuple of int
+        Where a state has the coordinates of the motion at a definite phase.
+    coordinates : tuple of str
+        Names of these: position and velocity in the cavity, then those of the centre of mass.
+    node : int
+        Unknowns per event: the phase, and all coordinates but one, which the event fixes.
+    state, row : int
+        Lengths of a state and of an event row.
+    """
 
-    @property
-    def places(self) -> tuple[int, ...]:
-        """Where a state has the coordinates of the motion at a definite phase."""
-        return (W, RATE, V, V_RATE) if self.moving_cavity else (W, RATE)
+    def __init__(self, name: str, moving_cavity: bool) -> None:
+        self.name, self.moving_cavity = name, moving_cavity
+        self.places = (W, RATE, V, V_RATE) if moving_cavity else (W, RATE)
+        self.node = len(self.places)
+        self.coordinates = ("w", "w_rate", "v", "v_rate")[: self.node]
+        self.state, self.row = 4 + self.node, 3 + self.node
 
-    @property
-    def coordinates(self) -> tuple[str, ...]:
-        """Names of these: position and velocity in the cavity, then those of the centre of mass."""
-        return ("w", "w_rate", "v", "v_rate")[: len(self.places)]
+    @abstractmethod
+    def walls(self, params: np.ndarray) -> tuple[Any, Any]:
+        """w at the left and at the right wall."""
 
-    @property
-    def node(self) -> int:
-        """Unknowns per event: the phase, and all coordinates but one, which the event fixes."""
-        return len(self.places)
+    @abstractmethod
+    def launch(self, state: np.ndarray, params: np.ndarray) -> None:
+        """Reduce the phase and set the mode of a start; contract, item 2."""
+
+    @abstractmethod
+    def advance(
+        self,
+        state: np.ndarray,
+        params: np.ndarray,
+        until: float,
+        codes: np.ndarray,
+        modes: np.ndarray,
+        rows: np.ndarray,
+    ) -> tuple[int, int]:
+        """Run from event to event; contract, item 3."""
+
+    @abstractmethod
+    def sample(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+        """w, w', v, v' at given phases after given states; contract, item 4."""
+
+    @abstractmethod
+    def works(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+        """Works inside pieces of segments; contract, item 5."""
+
+    @abstractmethod
+    def energies(self, states: np.ndarray, params: np.ndarray, out: np.ndarray) -> None:
+        """Energies of states; contract, item 5."""
+
+    @abstractmethod
+    def shapes(self, states: np.ndarray, params: np.ndarray, ahead: np.ndarray, out: np.ndarray) -> None:
+        """Largest displacement and harmonics inside pieces of segments; contract, item 6."""
+
+    # ------------------------------------------------------------------ nodes, which continuation solves for
+    def states_of(
+        self, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, nodes: np.ndarray
+    ) -> np.ndarray:
+        """The states, shape (n, S), just after events, from their nodes (Psi, B+ or w(, v, v'))."""
+        left, right = self.walls(params)
+        states = np.zeros((len(nodes), self.state))
+        turns = np.floor(nodes[:, 0] / TWO_PI)
+        psi = nodes[:, 0] - turns * TWO_PI
+        states[:, PSI] = np.where((psi >= 0.0) & (psi < TWO_PI), psi, 0.0)
+        states[:, TURNS], states[:, MODE] = turns, modes
+        states[:, V:] = nodes[:, 2:]
+        impact = codes < 2
+        states[:, W] = np.where(impact, np.where(codes == 0, left, right), nodes[:, 1])
+        states[:, RATE] = np.where(impact, self._cavity_speed(params, states) - nodes[:, 1], 0.0)
+        return states
+
+    def state_of(self, params: np.ndarray, code: int, mode: int, node: np.ndarray) -> np.ndarray:
+        """The same after one event, shape (S,)."""
+        return self.states_of(params, np.array([code]), np.array([mode]), node[None])[0]
+
+    def event_states(self, modes: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """States after events, shape (n, S), from their rows."""
+        states = np.zeros((len(rows), self.state))
+        states[:, [PSI, TURNS, W, RATE]] = rows[:, [0, 1, 2, 4]]
+        states[:, MODE], states[:, V:] = modes, rows[:, 5:]
+        return states
+
+    def nodes_of(
+        self, params: np.ndarray, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
+    ) -> np.ndarray:
+        """Nodes, shape (n, NODE), of events from their rows; phases are counted through (2 pi per turn)."""
+        states = self.event_states(modes, rows)
+        second = np.where(codes < 2, self._cavity_speed(params, states) - states[:, RATE], states[:, W])
+        return np.column_stack([states[:, PSI] + TWO_PI * states[:, TURNS], second, rows[:, 5:]])
+
+    def _cavity_speed(self, params: np.ndarray, states: np.ndarray) -> np.ndarray:
+        out = np.empty((len(states), 4))
+        self.sample(states, params, np.zeros(len(states)), out)
+        return out[:, 3]

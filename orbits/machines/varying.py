@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
-from orbits.machines.notation import SYMBOLS, WORDS
+from orbits.machines.measures import SYMBOLS, WORDS
 from orbits.machines.parameters import Parameter, ParameterError
-from orbits.machines.path import single
+from orbits.machines.path import products, single
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,7 +46,7 @@ class Varying:
         node_names: tuple[str, ...]
         patience: int
 
-        # what both kinds of machines answer: `orbits.machines.mechanics`, `orbits.machines.page.machine`
+        # what both kinds of machines answer: `orbits.machines.base`, `orbits.machines.page.machine`
         def has_mirror(self, params: np.ndarray, varying: str | None = None) -> bool: ...
         def phase_speed(self, params: np.ndarray) -> Reals: ...
         def check_value(self, name: str, value: float) -> None: ...
@@ -99,7 +99,12 @@ class Varying:
 
     def path(self, name: str, params: np.ndarray) -> np.ndarray:
         """How the numbers follow one of them while the others stay as in `params`, shape (2, P); see `orbits.machines.path`."""
-        return single(params.size, self.place_of(name))
+        place, law = self.place_of(name), self.law
+        if not len(law):
+            return single(params.size, place)
+        powers, others = law[1 + place], self.amounts(params).copy()
+        others[place] = 1.0
+        return np.array([np.where(powers != 0.0, products(law, others), 0.0), powers])
 
     @property
     def law(self) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from orbits.contacts.letters import NAMES
 from orbits.contacts.wall import Wall
 from orbits.machines.base import Model
-from orbits.machines.page.formulas import Named, NoPhase, States
+from orbits.machines.page.page import Named, NoPhase, States
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

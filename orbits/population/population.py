@@ -13,7 +13,7 @@ from contvines.shared.near_names import no_parameter
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.machines.base import Model
-from orbits.machines.notation import STARTS
+from orbits.machines.measures import STARTS
 from orbits.orbit import Orbit
 from orbits.population.fleet import SOLVED, Fleet, Problem, distinct
 from orbits.problem import rebuild

@@ -12,8 +12,7 @@ import numpy as np
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from contvines.shared.motions import mean_of_blocks
 from orbits.flows.protocol import Outcome
-from orbits.machines.catalogue import stepper as machine
-from orbits.machines.native_stepper import floats, number, written
+from orbits.machines.native_stepper import floats, number, stepper, written
 from orbits.machines.stepping import (
     EVENTS_FULL,
     FAILED,
@@ -24,7 +23,7 @@ from orbits.machines.stepping import (
     RATE,
     REST,
     TURNS,
-    Machine,
+    Stepper,
     W,
 )
 from orbits.settings import SIMULATING
@@ -49,7 +48,7 @@ class Settling(NamedTuple):
 
     Attributes
     ----------
-    engine : Machine
+    engine : Stepper
     params : ndarray, shape (P,)
     transient : float
         Forcing periods before a recurrence is looked for.
@@ -59,7 +58,7 @@ class Settling(NamedTuple):
         Largest difference of two states that counts as a return.
     """
 
-    engine: Machine
+    engine: Stepper
     params: np.ndarray
     transient: float
     longest: int
@@ -126,7 +125,7 @@ class Settling(NamedTuple):
 
 
 def _follow(
-    engine: Machine,
+    engine: Stepper,
     state: np.ndarray,
     params: np.ndarray,
     until: float,
@@ -141,7 +140,7 @@ def _follow(
     return status, hits, held
 
 
-def growth(engine: Machine, state: np.ndarray, params: np.ndarray, count: int) -> np.ndarray:
+def growth(engine: Stepper, state: np.ndarray, params: np.ndarray, count: int) -> np.ndarray:
     """Follow a motion and a neighbour between the walls, drawn back to it once a forcing period; growth factors, shape (count,)."""
     ratios, other, distance = np.empty(count), state.copy(), SIMULATING.nudge
     left, right = (float(wall) for wall in engine.walls(params))
@@ -207,7 +206,7 @@ def settle_all(
         "gaps": np.full(n, np.inf),
         "outcome": np.zeros(n, np.int64),
     }
-    engine, stopped = machine(name), Event()
+    engine, stopped = stepper(name), Event()
 
     def run(block: np.ndarray, transient: float) -> None:
         part, pieces = states[block], {key: column[block] for key, column in found.items()}
@@ -241,5 +240,5 @@ def lyapunov(name: str, state: np.ndarray, params: np.ndarray, periods: int = GR
     A neighbour 1e-7 away is drawn back once a period (Benettin et al., Meccanica 15 (1980) 9). The error is that of
     the mean over 19 blocks, which are long against the memory of the motion.
     """
-    logs = np.log(growth(machine(name), state.copy(), params, periods))[periods // 20 :]
+    logs = np.log(growth(stepper(name), state.copy(), params, periods))[periods // 20 :]
     return mean_of_blocks(logs[: BLOCKS * (len(logs) // BLOCKS)], BLOCKS)

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from orbits.flows.trajectory import TWO_PI
-from orbits.machines.stepping import HOLD, Machine, W
+from orbits.machines.stepping import HOLD, Stepper, W
 from orbits.settings import EVENTS, SIMULATING
 
 
@@ -47,7 +47,7 @@ def creep(nodes: np.ndarray, codes: np.ndarray, modes: np.ndarray, max_period: i
 
 
 def move_on(
-    engine: Machine,
+    engine: Stepper,
     params: np.ndarray,
     state: np.ndarray,
     nodes: np.ndarray,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.flows.protocol import SimulationError, checked_start
-from orbits.machines.stepping import EVENTS_FULL, PSI, RATE, V_RATE, Machine, V, W
+from orbits.machines.stepping import EVENTS_FULL, PSI, RATE, V_RATE, Stepper, V, W
 
 if TYPE_CHECKING:
     from orbits.machines.base import Model
@@ -20,7 +20,7 @@ _BODIES = ("q1", "q2", "q1_rate", "q2_rate")
 
 
 def first_state(
-    model: Model, engine: Machine, params: np.ndarray, start: Mapping[str, float] | np.ndarray | None
+    model: Model, engine: Stepper, params: np.ndarray, start: Mapping[str, float] | np.ndarray | None
 ) -> np.ndarray:
     """The state, shape (S,), that a start describes; `SimulationError` if it cannot be one."""
     state = np.zeros(engine.state)
@@ -59,7 +59,7 @@ def _check(state: np.ndarray, walls: tuple[float, float]) -> None:
 
 
 def collect(
-    engine: Machine, state: np.ndarray, params: np.ndarray, until: float, most: int
+    engine: Stepper, state: np.ndarray, params: np.ndarray, until: float, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
     """Run on from `state` (changed in place) for at most `most` events; returns codes, modes, rows and the status."""
     parts = []
@@ -80,7 +80,7 @@ def collect(
 
 
 def skip(
-    engine: Machine,
+    engine: Stepper,
     state: np.ndarray,
     params: np.ndarray,
     until: float,
@@ -96,6 +96,6 @@ def skip(
     return status
 
 
-def buffers(engine: Machine, size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def buffers(engine: Stepper, size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Empty event arrays for `size` events."""
     return np.empty(size, np.int8), np.empty(size, np.int8), np.empty((size, engine.row))

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.flows.protocol import Batch, SimulationError, Waiting
-from orbits.machines.catalogue import stepper
-from orbits.machines.states import state_of
+from orbits.machines.native_stepper import stepper
 from orbits.machines.stepping import FAILED, MODE, PSI, RATE, REST, TURNS, V, W
 from orbits.settings import REPLAYING, SIMULATING
 from orbits.simulation.batches import GROWTH, lyapunov, settle_all
@@ -129,7 +128,7 @@ class NativeSimulator:
 
     def begin(self, word: Word, node: np.ndarray) -> None:
         """Just after the first event of a cycle."""
-        self.state = state_of(self.engine, self.params, int(word.codes[0]), int(word.mode_codes[0]), node)
+        self.state = self.engine.state_of(self.params, int(word.codes[0]), int(word.mode_codes[0]), node)
         left, right = self.engine.walls(self.params)
         self.state[W] = min(
             max(self.state[W], right), left

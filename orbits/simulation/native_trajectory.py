@@ -11,8 +11,7 @@ import numpy as np
 
 from orbits.contacts import letters as kinds
 from orbits.flows.trajectory import TWO_PI, Trajectory
-from orbits.machines.states import event_states, nodes_of
-from orbits.machines.stepping import MODE, PSI, RATE, TURNS, Machine, W
+from orbits.machines.stepping import MODE, PSI, RATE, TURNS, Stepper, W
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
 from orbits.words.alphabet import shaken
@@ -59,7 +58,7 @@ class NativeTrajectory(Trajectory):
 
     Attributes
     ----------
-    machine : Machine
+    machine : Stepper
         Its stepper.
     start, end : ndarray, shape (S,)
         First and last state; see :mod:`orbits.machines.stepping`.
@@ -69,7 +68,7 @@ class NativeTrajectory(Trajectory):
         Event rows; see :mod:`orbits.machines.stepping`.
     """
 
-    machine: Machine
+    machine: Stepper
     start: np.ndarray
     end: np.ndarray
     codes: np.ndarray
@@ -81,7 +80,7 @@ class NativeTrajectory(Trajectory):
         cls,
         model: Model,
         params: np.ndarray,
-        machine: Machine,
+        machine: Stepper,
         start: np.ndarray,
         end: np.ndarray,
         events: tuple[np.ndarray, np.ndarray, np.ndarray, int],
@@ -125,13 +124,13 @@ class NativeTrajectory(Trajectory):
     @property
     def nodes(self) -> np.ndarray:
         """What continuation solves for, at every event, shape (n, NODE)."""
-        return nodes_of(self.machine, self.params, self.codes, self.modes, self.rows)
+        return self.machine.nodes_of(self.params, self.codes, self.modes, self.rows)
 
     def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:
         """Word and nodes of a cycle; touches of a wall are no impacts on it, and where no wall is hit it lies in the middle."""
         model, part = self.model, slice(first, last)
         codes, modes, rows = self.codes[part], self.modes[part], self.rows[part]
-        nodes = nodes_of(self.machine, self.params, codes, modes, rows)
+        nodes = self.machine.nodes_of(self.params, codes, modes, rows)
         speeds = np.abs(rows[:, 3]) / np.prod(model.natural_units(self.params))
         kept = ~_touches(codes, nodes, speeds)
         codes, modes = codes[kept], modes[kept]
@@ -172,7 +171,7 @@ class NativeTrajectory(Trajectory):
     @cached_property
     def states(self) -> np.ndarray:
         """State at the start and after every event, shape (n + 1, S)."""
-        return np.concatenate([self.start[None, :], event_states(self.machine, self.modes, self.rows)])
+        return np.concatenate([self.start[None, :], self.machine.event_states(self.modes, self.rows)])
 
     @cached_property
     def lengths(self) -> np.ndarray:

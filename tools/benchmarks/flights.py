@@ -6,8 +6,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from orbits import Absorber
-from orbits.machines.catalogue import stepper as machine
 from orbits.machines.coupled import Coupled
+from orbits.machines.native_stepper import stepper as machine
 from orbits.simulation.driver import buffers, first_state
 
 from .floor import PLAIN, library

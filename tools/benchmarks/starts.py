@@ -3,7 +3,7 @@
 import numpy as np
 
 from orbits import Absorber
-from orbits.machines.catalogue import stepper as machine
+from orbits.machines.native_stepper import stepper as machine
 from orbits.machines.stepping import PSI, RATE, TURNS, V, W
 from orbits.simulation.batches import Settling
 from orbits.simulation.driver import skip

@@ -9,7 +9,7 @@ import numpy as np
 
 from orbits.machines.base import Model
 from orbits.machines.events import event_table
-from orbits.machines.native_stepper import stepper_functions
+from orbits.machines.native_stepper import stepper
 from orbits.machines.rest import share_of_the_base
 from orbits.words import Word
 
@@ -44,7 +44,7 @@ def own_measures(
     result = {name: np.empty(count) for name in wanted}
     shape = np.empty((length, 4))
     work = np.empty((length, 3))
-    functions = stepper_functions(model.name)
+    functions = stepper(model.name)
     eps = np.asarray(model.column(params, "mass_ratio"))
     power = any(name in POWERS for name in wanted)
     for i in range(count):

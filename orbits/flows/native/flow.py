@@ -24,8 +24,7 @@ class NativeFlow:
     angles = measures.ANGLES
     points, sample = staticmethod(sampling.points), staticmethod(sampling.sample)
     equations = staticmethod(cycle_equations.equations)
-    measure_names, in_units = staticmethod(measures.names), staticmethod(measures.gauged)
-    measures = staticmethod(measures.measure)
+    in_units, measures = staticmethod(measures.gauged), staticmethod(measures.measure)
     placed, vanishing = staticmethod(vanishing.placed), staticmethod(vanishing.vanishing)
     closed_form = True
     resolution = SIMULATING.one  # two borders whose values agree to 1e-12 may be 5e-6 apart
@@ -57,6 +56,10 @@ class NativeFlow:
     def strobed(self, motion: Motion[Model]) -> np.ndarray:
         """Nothing to be seen: at rest there are no unknowns."""
         return np.zeros((motion.periods + 1, 0))
+
+    def measure_names(self, model: Model) -> tuple[str, ...]:
+        """As the machine says."""
+        return model.measure_names
 
     def default_measure(self, model: Model) -> str:
         """As the machine says."""

@@ -18,7 +18,7 @@ from orbits.machines.base import Model
 from orbits.machines.events import EventTable as EventTable
 from orbits.machines.events import contacts, event_table
 from orbits.machines.measures import ANGLES as ANGLES
-from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, WITHOUT_IMPACTS, loads, names, way_out
+from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, WITHOUT_IMPACTS, loads, way_out
 from orbits.words import Word
 
 
@@ -58,7 +58,7 @@ def dimensionless(
     KeyError
         If a name is unknown.
     """
-    known = names(model)
+    known = model.measure_names
     for name in wanted:
         if name not in known:
             raise KeyError(

@@ -11,6 +11,7 @@ from orbits.arguments import CycleData, Workspace
 from orbits.flows.native import rearranged
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.machines import path
+from orbits.machines.reference import maps
 from orbits.machines.reference.machine import Reference
 from orbits.words.alphabet import CODES
 
@@ -22,8 +23,8 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
 
     Parameters
     ----------
-    maps : Reference
-        `linearise`, `margins` and `unpin` of the model.
+    machine : Reference
+        `linearise` and `margins` of the model.
     """
 
     natural = True
@@ -32,14 +33,14 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
     assign = staticmethod(path.assign)
     transpose = staticmethod(rearranged.transpose)
 
-    def __init__(self, maps: Reference) -> None:
-        self.maps = maps
+    def __init__(self, machine: Reference) -> None:
+        self.machine = machine
 
     def linearise(self, data: CycleData, u: np.ndarray, p: float, work: Workspace) -> float:
         """Residual and derivatives into `work`; returns the largest residual, infinity where it cannot be evaluated."""
         with np.errstate(all="ignore"):
             try:
-                return float(self.maps.linearise(data, u, p, work))
+                return float(self.machine.linearise(data, u, p, work))
             except (ArithmeticError, ValueError):  # of functions in `math`, which have no infinity
                 return math.inf
 
@@ -49,12 +50,12 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
 
     def flip(self, data: CycleData, work: Workspace, sign: float) -> None:
         """Turn the linearisation's closure round."""
-        self.maps.unpin(data, work)
+        maps.unpin(data, work)
         rearranged.flip(data, work, sign)
 
     def inspect(self, data: CycleData, u: np.ndarray, p: float, work: Workspace, row: np.ndarray) -> None:
         """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""
-        self.maps.unpin(data, work)
+        maps.unpin(data, work)
         A, D = work.A, work.D
         length, n = A.shape[0], A.shape[1]
         # Nothing later depends on when a stick begins or ends: w' = 0 there and v'' is the same before and after, at a slip
@@ -76,6 +77,6 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
         row[0 : 2 * count : 2], row[1 : 2 * count : 2] = re, im
         with np.errstate(all="ignore"):
             try:
-                self.maps.margins(data, u, p, work, row[2 * count :])
+                self.machine.margins(data, u, work, row[2 * count :])
             except (ArithmeticError, ValueError):
                 row[2 * count :] = math.nan

@@ -7,9 +7,7 @@ import numpy as np
 from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from orbits.flows.protocol import Motion
 from orbits.machines.base import Model
-from orbits.machines.catalogue import stepper
-from orbits.machines.native_stepper import bytes_of, floats, number
-from orbits.machines.states import state_of, states_of
+from orbits.machines.native_stepper import bytes_of, floats, number, stepper
 
 GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
@@ -22,8 +20,8 @@ def flight(motion: Motion[Model], segment: int, ahead: np.ndarray) -> np.ndarray
 def _begins(motion: Motion[Model], segment: int) -> np.ndarray:
     word = motion.word
     engine = stepper(motion.model.name)
-    return state_of(
-        engine, motion.params, int(word.codes[segment]), int(word.mode_codes[segment]), motion.nodes[segment]
+    return engine.state_of(
+        motion.params, int(word.codes[segment]), int(word.mode_codes[segment]), motion.nodes[segment]
     )
 
 
@@ -58,7 +56,7 @@ def sample(motion: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
     ahead = (np.arange(ends[-1]) - (ends - counts)[segment]) * (durations / (counts - 1))[segment]
     ahead[ends - 1] = durations
     engine = stepper(motion.model.name)
-    states = states_of(engine, motion.params, motion.word.codes, motion.word.mode_codes, motion.nodes)
+    states = engine.states_of(motion.params, motion.word.codes, motion.word.mode_codes, motion.nodes)
     out = np.empty((len(ahead), 4))
     engine.sample(states[segment], motion.params, ahead, out)
     phase = motion.nodes[segment, 0] + ahead
@@ -103,7 +101,7 @@ def positions(motion: Motion[Model], instants: int) -> np.ndarray:
     begins = np.maximum.accumulate(nodes[:, 0] - nodes[0, 0])
     wanted = (np.arange(count) * (length / count) - nodes[0, 0]) % length
     segment = np.searchsorted(begins, wanted, side="right") - 1
-    states, out = states_of(engine, params, codes, modes, nodes), np.empty((count, 4))
+    states, out = engine.states_of(params, codes, modes, nodes), np.empty((count, 4))
     engine.sample(states[segment], params, wanted - begins[segment], out)
     return out[:, 0]
 
@@ -124,7 +122,7 @@ def _at_rest(motion: Motion[Model], points: int) -> dict[str, np.ndarray]:
 def points(motion: Motion[Model]) -> np.ndarray:
     """w, w' (, v, v') just after the events, shape (L, d)."""
     engine, word = stepper(motion.model.name), motion.word
-    states = states_of(engine, motion.params, word.codes, word.mode_codes, motion.nodes)
+    states = engine.states_of(motion.params, word.codes, word.mode_codes, motion.nodes)
     return states[:, list(engine.places)]
 
 

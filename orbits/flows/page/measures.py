@@ -10,8 +10,7 @@ import numpy as np
 from orbits.contacts.letters import HIT
 from orbits.flows.page.loads import Impacts, friction_work
 from orbits.machines.measures import loads, way_out
-from orbits.machines.page.energies import CONTACT
-from orbits.machines.page.si import OF_A_STATE
+from orbits.machines.page.si import CONTACT, OF_A_STATE
 from orbits.settings import EVENTS, SOLVING
 from orbits.words import Word
 
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
 def names(model: Machine) -> tuple[str, ...]:
     """max_x, min_x and max_abs_x (the larger of their sizes) over the period, first_x (after the first event), strobe_x (at phase zero) of every state; `phase` of the first
     event, `period`, `rate` (2 pi / period), `approach_speed` (of the fastest impact); forces and energies at the contacts
-    (`orbits.machines.page.energies`), the energies per period of the orbit."""
+    (`orbits.machines.page.patterns`), the energies per period of the orbit."""
     what = OF_A_STATE if model.forced else OF_A_STATE[:-1]
     own = [f"{kind}_{state}" for state in model.states for kind in what]
     return (

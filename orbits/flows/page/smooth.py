@@ -22,8 +22,8 @@ from orbits.flows.protocol import checked_start
 from orbits.flows.solving import newton
 from orbits.integrators.expressions import derivatives, variable, written
 from orbits.machines.page.compiled import moving
+from orbits.machines.page.loading import machine_again
 from orbits.machines.page.machine import Machine
-from orbits.machines.page.stored import machine_again
 from orbits.settings import EVENTS, SOLVING
 from orbits.words.margins import border_kind
 from orbits.words.word import Word

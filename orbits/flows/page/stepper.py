@@ -12,7 +12,7 @@ from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TUR
 from orbits.contacts.wall import FREE, HELD, Wall
 from orbits.flows.protocol import SimulationError
 from orbits.machines.page.machine import Machine
-from orbits.machines.page.singular import singular_at
+from orbits.machines.page.possible import singular_at
 from orbits.settings import EVENTS
 
 if TYPE_CHECKING:

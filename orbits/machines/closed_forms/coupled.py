@@ -46,7 +46,7 @@ class _Half:
     transition: np.ndarray
 
 
-def _law(params: np.ndarray) -> Law[float]:
+def _law(params: np.ndarray) -> Law:
     """The numbers of the equations; the response is infinite, or no number, at a resonance without damping."""
     with np.errstate(all="ignore"):
         return coupled([*params])

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.contacts.dry_friction import DryFriction
+from orbits.contacts.switch import Switch
 from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values, derivatives, replaced, variables_of
-from orbits.machines.page.formulas import PageError
+from orbits.machines.page.page import PageError
 from orbits.machines.page.patterns import Equations
+from orbits.machines.page.si import OF_A_STATE
 from orbits.settings import FORMULAS
 
 if TYPE_CHECKING:
     from orbits.symbols import Symbol
+
 
 DRAWS = 8  # random states at which formulas are compared
 
@@ -49,26 +55,25 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     """Walls, frictions and switches against the motion; returns what impacts do to frictions and switches (`Alphabet.flips`)."""
     e, draws = equations, Draws(equations, params)
     flips: dict[tuple[int, int], int | None] = {}
-    zero = {name: 0.0 for force in e.force.values() for name in variables_of(force)}
-    _check_periods(draws, zero)
+    _check_periods(draws)
     _check_surfaces(draws)
     for j, force in e.force.items():
         what = e.contacts[j].described
         limit = draws.of([e.limit[j]])[:, 0]
         if np.all(limit < 0.0):
             raise PageError(f"{what}: the limit is {limit[0]:.4g}; give the largest force, 0 or above")
-        (effect,) = derivatives([e.along(e.velocity[j], e.rates)], [force])
+        effect = e.friction_effect(j)
         (name,) = variables_of(force)
         if not any(name in variables_of(rate) for rate in e.rates):
             raise PageError(
                 f"{what}: motion ignores contact.{e.contacts[j].name}; add the force to the rate of a velocity it acts on"
             )
         slopes = [row[0] for row in derivatives(e.rates, [force])]
-        if any(name in variables_of(slope) for slope in (effect[0], *slopes)):
+        if any(name in variables_of(slope) for slope in (effect, *slopes)):
             raise PageError(
                 f"{what}: motion must be affine in contact.{e.contacts[j].name} (force times a mass factor)"
             )
-        sizes = draws.of([replaced(effect[0], zero)])[:, 0]
+        sizes = draws.of([replaced(effect, e.without_forces)])[:, 0]
         if not np.all(sizes[np.isfinite(sizes)] > FORMULAS.zero):
             raise PageError(
                 f"{what}: a positive contact.{e.contacts[j].name} must speed its velocity up; here it gives the acceleration "
@@ -79,7 +84,7 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
             continue
         what = contact.described
         rate = e.along(e.gap[j], e.rates)
-        if any(name in variables_of(rate) for name in zero):
+        if e.without_forces.keys() & variables_of(rate):
             raise PageError(
                 f"{what}: the rate of its gap contains a friction force; a gap is a distance, not a velocity"
             )
@@ -105,12 +110,12 @@ def check_contacts(equations: Equations, params: np.ndarray) -> dict[tuple[int, 
     return flips
 
 
-def _check_periods(draws: Draws, zero: Mapping[str, float]) -> None:
+def _check_periods(draws: Draws) -> None:
     """Whether everything on the page has the period 2 pi in the phase."""
     e = draws.equations
     if e.phase_rate is None:
         return
-    told = [(f"motion's rate of {n}", replaced(r, zero)) for n, r in zip(e.states, e.rates)]
+    told = [(f"motion's rate of {n}", replaced(r, e.without_forces)) for n, r in zip(e.states, e.rates)]
     for table, what in ((e.gap, "gap"), (e.velocity, "velocity"), (e.limit, "limit"), (e.surface, "surface")):
         told += [(f"the {what} of {e.contacts[j].described}", value) for j, value in table.items()]
     values = [value for _, value in told]
@@ -169,11 +174,10 @@ def _proportional(draws: Draws, one: Symbol, other: Symbol) -> bool:
 def riding(equations: Equations, params: np.ndarray) -> frozenset[tuple[int, int]]:
     """Switches whose surface moves with the velocity of a friction (`Alphabet.rides`): its rate is that velocity times a number."""
     e, draws = equations, Draws(equations, params)
-    forces = set().union(*map(variables_of, e.force.values()))
     found = set()
     for j, surface in e.surface.items():
         rate = e.along(surface, e.rates)
-        if forces & variables_of(rate):
+        if e.without_forces.keys() & variables_of(rate):
             continue
         for k, velocity in e.velocity.items():
             if _proportional(draws, rate, velocity):
@@ -191,3 +195,161 @@ def _flip(draws: Draws, value: Symbol, table: np.ndarray) -> int | None:
     if np.all(np.isfinite(ratio)) and np.ptp(ratio) < FORMULAS.same * np.abs(ratio).max():
         return 1 if ratio[0] > 0.0 else -1  # after the impact the gap opens
     return None
+
+
+def check_names(
+    name: object,
+    states: Sequence[str],
+    parameters: Mapping[str, Any],
+    phase_rate: object,
+    contacts: Sequence[Any],
+) -> None:
+    """Names, numbers and letters, before anything is traced."""
+    if not (isinstance(name, str) and name.isidentifier()):
+        raise PageError(
+            f"name = {name!r} must be a word of letters, digits and underscores, for example 'stop'"
+        )
+    if isinstance(states, str) or not states:
+        raise PageError(f"states = {states!r} must be a sequence of names, for example ('x', 'v')")
+    for what, names in (("states", list(states)), ("parameters", list(parameters))):
+        for item in names:
+            if not (isinstance(item, str) and item.isidentifier()):
+                raise PageError(f"{what}: {item!r} is no name; use letters, digits and underscores")
+        if len(set(names)) != len(names):
+            raise PageError(f"{what} = {names!r} has a name twice")
+    for item, value in parameters.items():
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            raise PageError(f"parameters: {item} = {value!r} is not a number") from None
+        if not math.isfinite(number):
+            raise PageError(f"parameters: {item} = {number} is not finite")
+    if phase_rate is not None and phase_rate not in parameters:
+        raise PageError(
+            f"phase_rate = {phase_rate!r} is no parameter; name the forcing's frequency, one of "
+            f"{', '.join(parameters) or 'none'}, or leave it out for a self-excited machine"
+        )
+    for item in (*states, *parameters):
+        if item == "phase":
+            raise PageError(
+                "phase is the name of the forcing's phase; give the state or parameter of this name another one"
+            )
+        if item in states and item in parameters:
+            raise PageError(f"{item!r} is a state and a parameter; give one of them another name")
+    _check_contacts(states, contacts)
+
+
+def _check_contacts(states: Sequence[str], contacts: Sequence[Any]) -> None:
+    if isinstance(contacts, str) or not isinstance(contacts, Sequence):
+        raise PageError(f"contacts = {contacts!r} must be a list, for example [Wall(...)]")
+    taken: dict[str, str] = {}
+    named: dict[str, str] = {}
+    for contact in contacts:
+        if not isinstance(contact, (Wall, DryFriction, Switch)):
+            raise PageError(f"contacts has {contact!r}; it may have Wall, DryFriction and Switch")
+        what = contact.described
+        if isinstance(contact, DryFriction) and len(tuple(contact.letters)) != 3:
+            raise PageError(
+                f"{what}: letters = {contact.letters!r} must be three, for a turn, a stick and a slip"
+            )
+        if not isinstance(contact, Wall):
+            if not str(contact.name).isidentifier():
+                raise PageError(f"{what}: the name must be one that contact.<name> can have")
+            if contact.name in named:
+                raise PageError(f"{named[contact.name]} and {what} share a name; give one of them another")
+            named[contact.name] = what
+        for letter in contact.letters:
+            if not isinstance(letter, str) or not letter or any(c in " []" or c.isspace() for c in letter):
+                raise PageError(f"{what}: {letter!r} is no letter of a word; use letters and digits")
+            if letter in taken:
+                hint = " (letters=('t2', 's2', 'u2'))" if isinstance(contact, DryFriction) else ""
+                raise PageError(
+                    f"{taken[letter]} and {what} share the letter {letter!r}; give one of them another{hint}"
+                )
+            taken[letter] = what
+        if isinstance(contact, Wall):
+            _check_wall(what, states, contact)
+
+
+def _check_wall(what: str, states: Sequence[str], contact: Wall) -> None:
+    if not isinstance(contact.push, Mapping):
+        raise PageError(
+            f"{what}: push = {contact.push!r} must say how an impulse changes the states by name, for example "
+            f"{{{states[-1]!r}: -1.0}}"
+        )
+    unknown = [k for k in contact.push if k not in states]
+    if unknown or not contact.push:
+        raise PageError(
+            f"{what}: push names {unknown[0] if unknown else 'nothing'!r}; "
+            f"say how an impulse changes the states, of {', '.join(states)}"
+        )
+    if isinstance(contact.restitution, str):
+        return
+    if not isinstance(contact.restitution, Real):
+        raise PageError(
+            f"{what}: restitution = {contact.restitution!r} must be a number or the name of a parameter"
+        )
+    check_restitution(what, float(contact.restitution))
+
+
+def check_restitution(what: str, value: float) -> None:
+    """Newton's coefficient."""
+    if not 0.0 < value <= 1.0:
+        raise PageError(
+            f"{what}: restitution = {value:g} is out of range; give a number above 0 and at most 1"
+        )
+
+
+def check_starts(
+    starts: Mapping[str, tuple[float, float]] | None, states: Sequence[str]
+) -> dict[str, tuple[float, float]]:
+    """Ranges of starts as numbers.
+
+    Raises
+    ------
+    PageError
+        If a state is unknown or a range no interval.
+    """
+    ranges = {}
+    for name, limits in dict(starts or {}).items():
+        if name not in states:
+            raise PageError(f"starts: {name!r} is no state; the machine has {', '.join(states)}")
+        try:
+            low, high = map(float, limits)
+        except (TypeError, ValueError):
+            raise PageError(f"starts: {name} = {limits!r}; give two numbers (low, high)") from None
+        if not (np.isfinite(low) and np.isfinite(high) and low < high):
+            raise PageError(
+                f"starts: {name} = ({low:g}, {high:g}) is no interval; give the lower number first"
+            )
+        ranges[name] = (low, high)
+    return ranges
+
+
+def check_response(response: str | None, states: Sequence[str], contacts: Sequence[Any]) -> None:
+    """Refuse a response that orbits or simulations do not tell.
+
+    Raises
+    ------
+    PageError
+        If it is none of the known names.
+    """
+    walls = any(isinstance(contact, Wall) for contact in contacts)
+    known = [*(f"{kind}_{states[0]}" for kind in OF_A_STATE[:3]), *(["approach_speed"] if walls else [])]
+    if response is not None and response not in known:
+        raise PageError(f"response = {response!r}: expected {', '.join(known)}")
+
+
+def check_energy(e: Equations, params: np.ndarray, wall: int) -> None:
+    """Refuse an energy in which a wall pushes no mass.
+
+    Raises
+    ------
+    PageError
+    """
+    values = Draws(e, params).of([e.impact_mass(wall)])[:, 0]
+    if not np.all(values > 0.0):
+        raise PageError(
+            f"energy: the push of {e.contacts[wall].described} moves a mass of {values.min():.4g}; give the energy of all bodies, "
+            "their kinetic energies among it, in joules"
+        )

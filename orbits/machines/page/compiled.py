@@ -12,7 +12,6 @@ from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN, Letter
 from orbits.integrators.engine import engine
 from orbits.integrators.expressions import Values, derivatives, replaced, variable, variables_of
 from orbits.integrators.protocol import Flight, Flights, Run, Watch
-from orbits.machines.page.energies import friction_power, impact_mass
 from orbits.machines.page.patterns import Equations, PatternKey
 from orbits.symbols import Symbol
 
@@ -160,12 +159,12 @@ class Compiled:
     def loads(self, wall: int) -> Values:
         """The rate of a gap, the wall's restitution and the mass of the relative motion."""
         e = self.equations
-        return self._values(e.gap_rate(wall), e.restitution[wall], impact_mass(e, wall))
+        return self._values(e.gap_rate(wall), e.restitution[wall], e.impact_mass(wall))
 
     @once
     def friction_power(self, key: PatternKey) -> Values:
         """The power that the frictions take: one value."""
-        return self._values(friction_power(self.equations.pattern(key)))
+        return self._values(self.equations.pattern(key).friction_power())
 
     @once
     def energy(self) -> Values:

@@ -13,16 +13,14 @@ from orbits.contacts.dry_friction import ABSENT, STUCK
 from orbits.contacts.letters import HIT
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import FREE, Wall
-from orbits.machines.notation import SYMBOLS
-from orbits.machines.page import checks, names
+from orbits.machines.measures import SYMBOLS
+from orbits.machines.page import checks
 from orbits.machines.page.compiled import Compiled
-from orbits.machines.page.energies import CONTACT, UNITS, check_energy, impact_mass, load_names
-from orbits.machines.page.formulas import PageError
 from orbits.machines.page.mirror import MirrorImage
-from orbits.machines.page.page import Page, again, object_name, page_of
+from orbits.machines.page.page import Page, PageError, again, object_name, page_of
 from orbits.machines.page.patterns import Contact, Equations
 from orbits.machines.page.possible import Possible
-from orbits.machines.page.si import Units
+from orbits.machines.page.si import CONTACT, OF_LOADS, Units, load_names
 from orbits.machines.parameters import ParameterError
 from orbits.machines.varying import Varying
 from orbits.numbers import Reals
@@ -97,12 +95,12 @@ class Machine(Varying):
         self._units = Units(units, states, tuple(parameters), phase_rate)
         self.given_units = self._units.said
         parameters = {key: self._units.number(key, value) for key, value in parameters.items()}
-        names.check_names(name, states, parameters, phase_rate, contacts)
+        checks.check_names(name, states, parameters, phase_rate, contacts)
         self.name = name
         self.states = tuple(states)
         self.parameters = {key: float(value) for key, value in parameters.items()}
         self.parameter_names = tuple(self.parameters)
-        self.starts = names.check_starts(starts, self.states)
+        self.starts = checks.check_starts(starts, self.states)
         self.phase_rate = phase_rate
         self.contacts: tuple[Any, ...] = tuple(contacts)
         self.forced = phase_rate is not None
@@ -117,14 +115,10 @@ class Machine(Varying):
         image = None if mirror is None else MirrorImage(self.equations, params, mirror)
         images, turned = (None, frozenset()) if image is None else (image.images, image.turned)
         self._image = image
-        names.check_response(response, self.states, self.contacts)
+        checks.check_response(response, self.states, self.contacts)
         rides = checks.riding(self.equations, params)
         for j in self.equations.push if energy is not None else ():
-            check_energy(
-                self.equations,
-                checks.Draws(self.equations, params).of([impact_mass(self.equations, j)])[:, 0].tolist(),
-                j,
-            )
+            checks.check_energy(self.equations, params, j)
         self.alphabet = Alphabet(self.contacts, images, turned, flips, rides)
         self._units.check(self.equations)
         self._possible = Possible(self.equations, self.units)
@@ -164,7 +158,7 @@ class Machine(Varying):
         """Units of parameters, states and measures by name; plain numbers have none."""
         shown = self._units.shown(self.states)
         return (
-            shown | {name: UNITS[name if name in UNITS else "impulse"] for name in self.load_names}
+            shown | {name: OF_LOADS[name if name in OF_LOADS else "impulse"] for name in self.load_names}
             if shown
             else {}
         )

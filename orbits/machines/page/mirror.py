@@ -15,7 +15,7 @@ from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
 from orbits.integrators.expressions import Values
 from orbits.machines.page.checks import DRAWS, Draws
-from orbits.machines.page.formulas import PageError
+from orbits.machines.page.page import PageError
 from orbits.machines.page.patterns import Equations
 from orbits.settings import FORMULAS
 

@@ -4,6 +4,10 @@ The page is run once with symbols. A *pattern* says which frictions stick and wh
 follow from what they keep at rest, and the signs of sliding frictions and of switches stay numbers, so that one compiled flow
 serves all of them.
 
+With the energy E, quadratic in the speeds, and a contact whose unit of force changes the states at the rates d, the force is conjugate to the
+contact's speed s: the mass of the relative motion is m = (d . H d) / (ds/dx . d)^2 with the Hessian H of E, an impulse of J newton seconds changes s
+by J/m, and a unit of the contact's own force is (d . H d) / (ds/dx . d) newton. Work of what moves a wall or a belt is not counted.
+
 Independent variable (`clock`) of every compiled flow: the forcing phase (radians) of a forced machine, time of a self-excited one.
 """
 
@@ -22,7 +26,7 @@ from orbits.contacts.letters import HIT, RELEASE, SLIP, SWITCH, TURN
 from orbits.contacts.switch import Switch
 from orbits.contacts.wall import HELD, Wall
 from orbits.integrators.expressions import Layout, constant, derivatives, replaced, variable, variables_of
-from orbits.machines.page.formulas import Named, NoPhase, PageError, States, called
+from orbits.machines.page.page import Named, NoPhase, PageError, States, called
 from orbits.symbols import Symbol
 
 if TYPE_CHECKING:
@@ -88,6 +92,17 @@ class Pattern:
         omega = self.equations.phase_rate
         return self.rates if omega is None else [rate / omega for rate in self.rates]
 
+    def friction_power(self) -> Symbol:
+        """Power that the frictions take, where the machine tells its energy."""
+        e, total = self.equations, constant(0.0)
+        for j, force in e.force.items():
+            if j in self.stuck or j in self.absent:
+                continue
+            push = [row[0] for row in derivatives(e.rates, [force])]
+            newtons = e.curvature(push) / e.toward(e.velocity[j], push)
+            total = total - newtons * self.forces[j] * e.velocity[j]
+        return total
+
     @cached_property
     def guards(self) -> list[Guard]:
         """What stays positive in this pattern, contact by contact."""
@@ -130,6 +145,8 @@ class Equations:
         Of all bodies, in joules.
     force : dict of int to Symbol
         Of each friction, as an unknown.
+    without_forces : dict of str to float
+        Names of these unknowns, each with 0.
     flips : dict of (wall, contact) to int or None
         What impacts do to the signs of frictions and switches (`orbits.words.alphabet.Alphabet`), as `checks` finds it.
     """
@@ -182,6 +199,7 @@ class Equations:
                 self.surface[j] = self.value(contact.surface, f"the surface of switch {contact.name!r}")
         self.energy: Symbol | None = None if energy is None else self.value(energy, "energy")
         self.force = {j: variable(f"force_{contacts[j].name}") for j in self.velocity}
+        self.without_forces = {f"force_{contacts[j].name}": 0.0 for j in self.velocity}
 
     @cached_property
     def rates(self) -> list[Symbol]:
@@ -259,6 +277,31 @@ class Equations:
         for slope, part in zip(slopes, direction):
             total = total + slope * part
         return total
+
+    def curvature(self, direction: Sequence[Symbol]) -> Symbol:
+        """d . H d, with the Hessian H of the energy."""
+        assert self.energy is not None
+        return self.toward(self.toward(self.energy, direction), direction)
+
+    def impact_mass(self, j: int) -> Symbol:
+        """Mass of the relative motion at wall j."""
+        turned = self.toward(self.gap_rate(j), self.push[j])
+        return self.curvature(self.push[j]) / (turned * turned)
+
+    def body_masses(self) -> dict[str, Symbol]:
+        """Speeds that a wall or a friction changes, by name, and the mass that moves with each; none without an energy."""
+        found = {}
+        for k, name in enumerate(self.states if self.energy is not None else ()):
+            moved = self.without_forces.keys() & variables_of(self.rates[k])
+            if moved or any(push[k].number != 0.0 for push in self.push.values()):
+                unit = [constant(float(k == place)) for place in range(len(self.states))]
+                found[name] = self.curvature(unit)
+        return found
+
+    def friction_effect(self, j: int) -> Symbol:
+        """What a unit of friction j adds to the rate of its velocity."""
+        (effect,) = derivatives([self.along(self.velocity[j], self.rates)], [self.force[j]])
+        return effect[0]
 
     def gap_rate(self, j: int) -> Symbol:
         """Rate of a wall's gap: contact forces do not enter it (`checks` sees to that)."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.wall import Wall
-from orbits.machines.page.formulas import Named, PageError, States
 from orbits.machines.page.machine import Machine
+from orbits.machines.page.page import Named, PageError, States
 from orbits.machines.page.patterns import Contact
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
-"""Units in a machine file: numbers are given and shown in them, the page's formulas see SI units."""
+"""Units in a machine file, in which numbers are given and shown (the page's formulas see SI units), and the measures that have them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypeVar
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from contvines.shared.modulation import BAND
 from contvines.shared.near_names import did_you_mean
-from orbits.machines.page.formulas import PageError
+from orbits.machines.page.page import PageError
 from orbits.machines.physical.quantities import QuantityError
 from orbits.machines.physical.units import counted, in_si, size
 
@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 
 OF_A_STATE = ("max", "min", "max_abs", "first", "strobe")
 """Measures that are values of a state; the last one only of forced machines."""
+CONTACT = "contact_time"
+"""Name of the parameter that is the duration of an impact, in seconds; it moves nothing."""
+OF_LOADS = {
+    "impact_rate": "Hz", "impulse": "N s", "impact_energy": "J", "impact_loss": "J", "friction_loss": "J", "mean_force": "N",
+    "work_rate": "W", "peak_force": "N",
+}  # fmt: skip
+"""Units of measures of contacts; that of ``impulse_R`` is that of ``impulse``."""
 LONGEST = 50.0  # typical sizes of a state
 
 
@@ -130,3 +137,23 @@ def _terms(value: Symbol) -> list[str]:
             return [""]
         value = other if other.number is None else one
     return [value.operands[0] if value.operation == "variable" else ""]
+
+
+def load_names(e: Equations, parameters: Collection[str]) -> tuple[str, ...]:
+    """Measures of the contacts that a page has: those of forces and energies need its energy, a peak force the duration of an impact."""
+    if e.energy is None:
+        return ("impact_rate",) if e.gap else ()
+    found: list[str] = []
+    if e.gap:
+        letters = [e.contacts[j].letter for j in e.gap]
+        found += ["impact_rate", "impulse", *(f"impulse_{letter}" for letter in letters if len(letters) > 1)]
+        found += ["impact_energy", "impact_loss", "mean_force"]
+        found += ["peak_force"] if CONTACT in parameters else []
+    return (*found, *(["friction_loss"] if e.force else []), *(["work_rate"] if found or e.force else []))
+
+
+UNITS = {
+    "impact_rate": "Hz", "impulse": "N s", "impact_energy": "J", "impact_loss": "J", "friction_loss": "J", "mean_force": "N",
+    "work_rate": "W", "peak_force": "N",
+}  # fmt: skip
+"""Of these measures; that of ``impulse_R`` is that of ``impulse``."""

@@ -7,42 +7,39 @@ multiplied by what one dimensionless unit is.
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from types import ModuleType
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from contvines.shared.modulation import BAND
 from orbits.machines.base import Model
+from orbits.machines.measures import KINDS
+from orbits.machines.names import model_class
 from orbits.machines.parameters import POSITIVE, Parameter
-from orbits.machines.path import along
+from orbits.machines.path import along, products
 from orbits.machines.physical import units
 from orbits.machines.physical.quantities import Basis, Quantity, QuantityError, independent, near_quantity
-from orbits.machines.physical.ratios import check_ratios
-from orbits.machines.physical.tables import PLACES
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from orbits.machines.physical.tables import TABLES, Table, check_ratios
 
 CONTACT = Quantity("contact_time", "s", "1 ms", {}, (1e-7, 1.0), "the duration of an impact")
 
 
-def tables(model: type[Model]) -> ModuleType:
-    """The module with a machine's `QUANTITIES`, `GAUGES`, `SCALES` and `completed`.
+def tables(model: type[Model]) -> Table:
+    """The quantities of a machine.
 
     Raises
     ------
     QuantityError
-        If the machine has none.
+        If it has none.
     """
-    if model.name not in PLACES:
+    if model.name not in TABLES:
         raise QuantityError(
             f'units = "si": the machine {model.name!r} has no physical quantities of its own; leave units out'
         )
-    return importlib.import_module(f"orbits.machines.physical.tables.{PLACES[model.name]}")
+    return TABLES[model.name]
 
 
 def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Physical:
@@ -67,36 +64,26 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Phys
     QuantityError
         If a quantity is unknown, missing, of the wrong dimension, implausible, or said twice.
     """
-    from orbits.machines.catalogue import model_class
-
     base = model_class(name)
-    if issubclass(base, Physical):
-        raise QuantityError(f"the machine {name!r} has units already")
     table = tables(base)
-    known: dict[str, Quantity] = table.QUANTITIES
+    known = table.quantities
     counted: dict[str, tuple[float, str]] = {}
     values: dict[str, float] = {}
-    given = dict(given)
-    contact = given.pop(CONTACT.name, None)
     for key, value in given.items():
-        if key not in known:
+        quantity = CONTACT if key == CONTACT.name else known.get(key)
+        if quantity is None:
             raise QuantityError(
                 f"{key} = {value!r}: the machine {name!r} has no such quantity{near_quantity(key, known)}; "
                 f"it has {', '.join(known)}"
             )
         if isinstance(value, str) and key in base.parameter_names:
             value = base.parameter(key).words.get(value, value)
-        counted[key] = units.read(known[key], value)
-        values[key] = units.si(known[key], *counted[key])
-        units.check_limits(known[key], *counted[key], base.limits)
+        counted[key] = units.read(quantity, value)
+        values[key] = units.si(quantity, *counted[key])
+        units.check_limits(quantity, *counted[key], base.limits)
         if not unusual:
-            units.check_usual(known[key], values[key], f"{key} = {value!r}")
-    contact_time = None
-    if contact is not None:
-        number, unit = units.read(CONTACT, contact)
-        contact_time = units.si(CONTACT, number, unit)
-        if not unusual:
-            units.check_usual(CONTACT, contact_time, f"{CONTACT.name} = {contact!r}")
+            units.check_usual(quantity, values[key], f"{key} = {value!r}")
+    contact_time = values.pop(CONTACT.name, None)
     chosen = independent(known, values)
     values = table.completed(values)
     for quantity in chosen:
@@ -110,22 +97,22 @@ def physical(name: str, given: Mapping[str, Any], unusual: bool = False) -> Phys
             would = f'"{quantity.example}"' if quantity.unit else quantity.example
             raise QuantityError(f"{quantity.name} is missing{said}: for example {would}")
         counted[quantity.name] = units.read(quantity, quantity.default)
-    return _assembled(base, table, chosen, counted, unusual, contact_time)
+    return _assembled(base, chosen, counted, unusual, contact_time)
 
 
 def _assembled(
     base: type[Model],
-    table: ModuleType,
     chosen: tuple[Quantity, ...],
     counted: Mapping[str, tuple[float, str]],
     unusual: bool,
     contact_time: float | None,
 ) -> Physical:
+    """The machine with these quantities, each counted in a unit."""
     said = tuple(counted[q.name][1] for q in chosen)
     sizes = np.array([units.si(q, 1.0, unit) for q, unit in zip(chosen, said)])
-    basis = Basis(chosen, (*base.parameter_names, *table.SCALES), sizes)
+    basis = Basis(chosen, (*base.parameter_names, *tables(base).scales), sizes)
     amounts = np.array([counted[q.name][0] for q in chosen])
-    numbers = dict(zip(basis.numbers, (float(v) for v in basis.numbers_of(amounts))))
+    numbers = dict(zip(basis.numbers, products(basis.law, amounts).tolist()))
     machine = _made(base, numbers, basis, amounts, said, unusual, contact_time)
     if not unusual:
         told = {q.name: "{:.6g} {}".format(*counted[q.name]).rstrip() for q in chosen}
@@ -157,13 +144,13 @@ def _made(
 @cache
 def _class_of(base: type[Model]) -> type[Physical]:
     """The machine's class with the scales among its fields."""
-    table = tables(base)
+    scales = tables(base).scales
     body: dict[str, Any] = {
-        "__annotations__": dict.fromkeys(table.SCALES, float),
+        "__annotations__": dict.fromkeys(scales, float),
         "__module__": __name__,
         "__doc__": base.__doc__,
-        "table": (*base.table, *(Parameter(name, "a scale", POSITIVE, name) for name in table.SCALES)),
-        "tables": table,
+        "table": (*base.table, *(Parameter(name, "a scale", POSITIVE, name) for name in scales)),
+        "tables": tables(base),
     }
     made = type(f"Physical{base.__name__}", (Physical, base), body)
     return dataclass(frozen=True, kw_only=True)(made)
@@ -172,7 +159,7 @@ def _class_of(base: type[Model]) -> type[Physical]:
 class Physical(Model):
     """What a physical machine does otherwise than the machine of numbers behind it; see the top of this file."""
 
-    tables: ClassVar[ModuleType]
+    tables: ClassVar[Table]
     base: type[Model]
     basis: Basis
     counts: np.ndarray
@@ -188,12 +175,9 @@ class Physical(Model):
     def amounts(self, params: np.ndarray) -> np.ndarray:
         return self.basis.amounts_of(np.asarray(params, dtype=float))
 
-    def path(self, name: str, params: np.ndarray) -> np.ndarray:
-        return self.basis.path(self.place_of(name), self.amounts(params))
-
     @property
     def law(self) -> np.ndarray:
-        return self.basis.law.copy()
+        return self.basis.law
 
     @property
     def quantities(self) -> dict[str, float]:
@@ -203,16 +187,12 @@ class Physical(Model):
     @property
     def units(self) -> dict[str, str]:
         """Units of quantities and measures by name; plain numbers have none."""
-        return self._all_units
+        return self._units
 
     @cached_property
-    def _all_units(self) -> dict[str, str]:
-        from contvines.shared.modulation import BAND
-        from orbits.machines.measures import KINDS, names
-
-        gauges: dict[str, Quantity] = self.tables.GAUGES
-        found = dict(zip(self.amount_names, self.said))
-        for name in (*names(self), *(BAND if self.moving_cavity else ())):
+    def _units(self) -> dict[str, str]:
+        gauges, found = self.tables.gauges, dict(zip(self.amount_names, self.said))
+        for name in (*self.measure_names, *(BAND if self.moving_cavity else ())):
             kind = KINDS.get(name, "")
             found.setdefault(
                 name, "rad" if kind == "angle" else units.unit_of(gauges[kind]) if kind in gauges else ""
@@ -229,7 +209,7 @@ class Physical(Model):
 
     def gauge(self, kind: str, params: np.ndarray) -> np.ndarray | float:
         """What one dimensionless unit of a kind of measure is, in the unit that is shown; params (..., P), result (...)."""
-        quantity: Quantity | None = self.tables.GAUGES.get(kind)
+        quantity = self.tables.gauges.get(kind)
         if quantity is None:
             return 1.0
         powers = np.array([quantity.powers.get(name, 0.0) for name in self.basis.numbers])
@@ -240,9 +220,8 @@ class Physical(Model):
     def gauges(self, names: Sequence[str], params: np.ndarray) -> dict[str, tuple[float, str]]:
         """What one of these coordinates is in the unit that is shown, and that unit."""
         kinds = {name: "velocity" if name.endswith("_rate") else "length" for name in names}
-        table: dict[str, Quantity] = self.tables.GAUGES
         return {
-            name: (float(self.gauge(kind, params)), units.unit_of(table[kind]))
+            name: (float(self.gauge(kind, params)), units.unit_of(self.tables.gauges[kind]))
             for name, kind in kinds.items()
         }
 
@@ -250,14 +229,9 @@ class Physical(Model):
     def vector(self, values: Mapping[str, Any] | None = None) -> np.ndarray:
         """The parameter vector; text is a quantity (``frequency="7.9 Hz"``), a number one of the machine's own numbers."""
         given = dict(values or {})
-        told = {
-            name: value
-            for name, value in given.items()
-            if isinstance(value, str) and name in self.tables.QUANTITIES
-        }
+        told = [name for name in given if isinstance(given[name], str) and name in self.tables.quantities]
         if told:
-            rest = {name: value for name, value in given.items() if name not in told}
-            return self.with_(**told).vector(rest)
+            return self.with_(**{name: given.pop(name) for name in told}).vector(given)
         return super().vector({**self.loose, **given})
 
     def vector_at(self, name: str, value: float, values: Mapping[str, Any] | None = None) -> np.ndarray:
@@ -268,7 +242,7 @@ class Physical(Model):
 
     def check_value(self, name: str, value: float) -> None:
         """Refuse a value of quantity `name`, counted in `units`, that it cannot have; of other names, one of the machine's own numbers."""
-        quantity: Quantity | None = self.tables.QUANTITIES.get(name)
+        quantity = self.tables.quantities.get(name)
         if quantity is None:
             super().check_value(name, value)
             return
@@ -290,7 +264,7 @@ class Physical(Model):
         check_ratios(numbers, {key: str(text) for key, text in told.items()}, wide=True)
 
     def shakes(self, name: str) -> bool:
-        return name in self.tables.QUANTITIES and self.driven_by in self.tables.QUANTITIES[name].powers
+        return name in self.tables.quantities and self.driven_by in self.tables.quantities[name].powers
 
     def unshaken(self, params: np.ndarray) -> tuple[str, str] | None:
         if super().unshaken(params) is None:
@@ -300,7 +274,7 @@ class Physical(Model):
 
     def with_(self, **changes: str | float) -> Physical:
         """The machine with other quantities, as text or as numbers counted in `units`."""
-        known: dict[str, Quantity] = self.tables.QUANTITIES
+        known = self.tables.quantities
         groups = {known[name].choice for name in changes if name in known}
         own = {
             n: value for n, value in self._texts.items() if n not in known or known[n].choice not in groups
@@ -321,7 +295,7 @@ class Physical(Model):
         ParameterError
             If the machine has no such quantity.
         """
-        known: dict[str, Quantity] = self.tables.QUANTITIES
+        known = self.tables.quantities
         if name in self.amount_names or name not in known:
             self.place_of(name)
             return self
@@ -335,7 +309,7 @@ class Physical(Model):
         }
         kept = dict(zip(self.amount_names, zip(self.quantities.values(), self.said)))
         counts = {**counted, **kept}
-        return _assembled(self.base, self.tables, chosen, counts, self.unusual, self.contact_time)
+        return _assembled(self.base, chosen, counts, self.unusual, self.contact_time)
 
     @property
     def _texts(self) -> dict[str, Any]:
@@ -353,10 +327,10 @@ class Physical(Model):
         return _made(self.base, numbers, self.basis, counts, self.said, self.unusual, self.contact_time)
 
     def __reduce__(self) -> tuple[Callable, tuple]:
-        return _again, (self.settings(),)
+        return physical_again, (self.settings(),)
 
 
-def _again(settings: Mapping[str, Any]) -> Physical:
-    """The machine with these settings."""
+def physical_again(settings: Mapping[str, Any]) -> Physical:
+    """The machine with these settings, as files keep them."""
     values = {key: value for key, value in settings.items() if key not in ("name", "units", "unusual")}
-    return physical(settings["name"], values, bool(settings["unusual"]))
+    return physical(settings["name"], values, bool(settings.get("unusual", False)))

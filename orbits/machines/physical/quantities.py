@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from contvines.shared.near_names import did_you_mean
-from orbits.machines.base import ParameterError
+from orbits.machines.parameters import ParameterError
 
 
 class QuantityError(ParameterError):
@@ -106,16 +106,12 @@ class Basis:
 
     @cached_property
     def law(self) -> np.ndarray:
-        """The numbers as products of powers of the quantities, shape (Q + 1, P): factors, then exponents."""
+        """The numbers as products of powers of the quantities, shape (Q + 1, P): factors, then exponents; see `orbits.machines.path.products`."""
         exponents = (
             np.round(4.0 * np.linalg.inv(self.powers)) / 4.0 + 0.0
         )  # they are halves and whole numbers
         sizes = self.units / np.array([quantity.constant for quantity in self.quantities])
         return np.vstack([np.prod(sizes**exponents, axis=1), exponents.T])
-
-    def numbers_of(self, amounts: np.ndarray) -> np.ndarray:
-        """The numbers, shape (P,), of quantities (Q,) counted in their units."""
-        return self.law[0] * np.prod(amounts[:, None] ** self.law[1:], axis=0)
 
     def amounts_of(self, numbers: np.ndarray) -> np.ndarray:
         """The quantities, counted in their units, of numbers (..., P); shape (..., Q)."""
@@ -123,13 +119,6 @@ class Basis:
             found = self.sizes * np.prod(numbers[..., None, :] ** self.powers, axis=-1)
         # the ratio of two zeros is what it is without them
         return np.where(np.isnan(found), self.usual, found)
-
-    def path(self, place: int, amounts: np.ndarray) -> np.ndarray:
-        """How the numbers follow quantity number `place` while the others stay, shape (2, P); see `orbits.machines.path`."""
-        exponents = self.law[1 + place]
-        others = amounts.copy()
-        others[place] = 1.0
-        return np.array([np.where(exponents != 0.0, self.numbers_of(others), 0.0), exponents])
 
 
 def independent(quantities: Mapping[str, Quantity], given: Collection[str]) -> tuple[Quantity, ...]:

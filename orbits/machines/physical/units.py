@@ -264,7 +264,7 @@ def check_limits(quantity: Quantity, number: float, unit: str, limits: Mapping[s
     QuantityError
         With the limits in this unit.
     """
-    of = next(iter(quantity.powers))
+    of = next(iter(quantity.powers), "")
     if quantity.powers != {of: 1} or quantity.constant != 1.0 or of not in limits:
         return
     limit = limits[of]

@@ -12,35 +12,21 @@ Parameters may be numbers or arrays, real or complex (`orbits.machines.reference
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
-Number = TypeVar("Number", float, np.ndarray)
+Number = Any
 """A number, or an array of them, real or complex: all that one formula is given are of one kind."""
-
-
-class Elementary(Protocol):
-    """A function that gives a number of a number, an array of an array."""
-
-    def __call__(self, x: Number, /) -> Number: ...
-
-
-def _of_numbers(function: np.ufunc) -> Elementary:
-    return function
-
-
-sin, cos, exp, sqrt = (_of_numbers(each) for each in (np.sin, np.cos, np.exp, np.sqrt))
 
 
 def where(condition: np.ndarray | bool, one: Number, other: Number) -> Number:
     """numpy's ``where``, a number where all are numbers."""
-    found: Any = np.where(condition, one, other)[()]
-    return found
+    return np.where(condition, one, other)[()]
 
 
-class Response(NamedTuple, Generic[Number]):
+class Response(NamedTuple):
     """The forced harmonic X sin Psi + Y cos Psi of q1, and decay rate and angular frequency of its own oscillation."""
 
     X: Number
@@ -57,7 +43,7 @@ class Side(NamedTuple):
     restitution: float
 
 
-class Law(NamedTuple, Generic[Number]):
+class Law(NamedTuple):
     """The numbers of the equations of motion.
 
     omega: the forcing's frequency. friction_left, friction_right: accelerations of q2 by friction while sliding to either wall; lean: by the
@@ -73,8 +59,8 @@ class Law(NamedTuple, Generic[Number]):
     restitution_right: Number
     left: Number
     right: Number
-    slide: Response[Number]
-    stuck: Response[Number]
+    slide: Response
+    stuck: Response
     eps: Number
     force: Number
     base: Number
@@ -101,72 +87,54 @@ class Law(NamedTuple, Generic[Number]):
         """q2'' while sliding to the right wall."""
         return self.lean - self.friction_right
 
-    def side(self: Law[float], s: float) -> Side:
+    def side(self, s: float) -> Side:
         """Sliding to the left wall (s > 0) or to the right one."""
         if s > 0.0:
             return Side(self.whole * self.friction_left, self.left, self.restitution_left)
         return Side(self.whole * self.friction_right, -self.right, self.restitution_right)
 
     @property
-    def frictionless(self: Law[float]) -> bool:
+    def frictionless(self) -> bool:
         """Whether turns are no events."""
         return self.pull_left == self.pull_right
 
     @property
-    def strength(self: Law[float]) -> float:
+    def strength(self) -> float:
         """Amplitude of the excitation."""
-        return abs(self.force) * sqrt(1.0 + self.base * self.base)
+        return abs(self.force) * np.sqrt(1.0 + self.base * self.base)
 
 
-def absorber(par: Sequence[Number]) -> Law[Number]:
+def absorber(par: Sequence[Number]) -> Law:
     """Amplitude, restitution, friction, gravity, mass ratio, frequency."""
     C, r, mu, g, eps, omega = par[:6]
-    a = (1.0 + eps) * mu * g
-    zero, one = 0.0 * eps, 1.0 + 0.0 * eps
-    return _shaken(C, omega, a, a, zero, r, r, one, -one)
+    one = 1.0 + 0.0 * eps
+    return cavity([C, r, r, mu, mu, g, eps, omega, 0.0 * eps, one, one])
 
 
-def cavity(par: Sequence[Number]) -> Law[Number]:
+def cavity(par: Sequence[Number]) -> Law:
     """Amplitude, restitutions, frictions, gravity, mass ratio, frequency, slope, distances of the walls."""
     C, r_left, r_right, mu_left, mu_right, g, eps, omega, slope, left, right = par[:11]
-    cosine, weight = cos(slope), (1.0 + eps) * g
-    to_left, to_right = (1.0 + eps) * mu_left * g * cosine, (1.0 + eps) * mu_right * g * cosine
-    return _shaken(C, omega, to_left, to_right, weight * sin(slope), r_left, r_right, left, -right)
-
-
-def _shaken(
-    C: Number,
-    omega: Number,
-    to_left: Number,
-    to_right: Number,
-    lean: Number,
-    r_left: Number,
-    r_right: Number,
-    left: Number,
-    right: Number,
-) -> Law[Number]:
-    """Of a cavity that moves as prescribed, C sin Psi."""
-    zero = 0.0 * omega
-    free = Response(C, zero, zero, 1.0 * omega)
+    whole, cosine, zero = 1.0 + eps, np.cos(slope), 0.0 * omega
+    free = Response(C, zero, zero, 1.0 * omega)  # it moves as prescribed, C sin Psi
     return Law(
-        omega, to_left, to_right, lean, r_left, r_right, left, right,
-        free, free, zero, zero, zero, zero, prescribed=True,
+        omega, whole * mu_left * g * cosine, whole * mu_right * g * cosine, whole * g * np.sin(slope),
+        r_left, r_right, left, -right, free, free, zero, zero, zero, zero, prescribed=True,
     )  # fmt: skip
 
 
-def coupled(par: Sequence[Number]) -> Law[Number]:
+def coupled(par: Sequence[Number]) -> Law:
     """Forcing, frequency, damping, mass ratio, restitution, friction, gravity, excitation, slope."""
     G, omega, damping, eps, r, mu, g, chi, slope = par[:9]
-    a, drag, force = mu * g * cos(slope), eps * damping, eps * G
+    a, drag, force = mu * g * np.cos(slope), eps * damping, eps * G
     one = 1.0 + 0.0 * eps
     slide, stuck = (_response(mass, force, chi, drag, omega) for mass in (one, 1.0 + eps))
     return Law(
-        omega, a, a, g * sin(slope), r, r, one, -one,
+        omega, a, a, g * np.sin(slope), r, r, one, -one,
         slide, stuck, eps, force, chi * drag * omega, drag, prescribed=False,
     )  # fmt: skip
 
 
-def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: Number) -> Response[Number]:
+def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: Number) -> Response:
     """Of a mass to the moving base: infinite at an undamped resonance; beta is not a number where it is overdamped."""
     drag, stiffness = damping * omega, 1.0 - mass * omega * omega
     scale = force / (stiffness * stiffness + drag * drag)
@@ -174,7 +142,7 @@ def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: 
     still = np.real(force) == 0.0
     alpha = 0.5 * damping / mass
     square = 1.0 / mass - alpha * alpha
-    beta = sqrt(where(np.real(square) > 0.0, square, np.nan * square))
+    beta = np.sqrt(where(np.real(square) > 0.0, square, np.nan * square))
     return Response(
         where(still & ~np.isfinite(X), 0.0 * force, X),
         where(still & ~np.isfinite(Y), 0.0 * force, Y),
@@ -183,12 +151,8 @@ def _response(mass: Number, force: Number, chi: Number, damping: Number, omega: 
     )
 
 
-class LawOf(Protocol):
-    """A machine's parameters in the order of its table, as the numbers of its equations."""
-
-    def __call__(self, par: Sequence[Number], /) -> Law[Number]: ...
-
-
+LawOf = Callable[[Sequence[Number]], Law]
+"""A machine's parameters in the order of its table -> the numbers of its equations."""
 DRIVEN = frozenset({"coupled"})
 """Machines whose cavity rides on an oscillator."""
 LAWS: dict[str, LawOf] = {"absorber": absorber, "cavity": cavity, "coupled": coupled}

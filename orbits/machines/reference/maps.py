@@ -122,8 +122,8 @@ def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Wor
 
 
 def _flight(
-    law: Law[np.ndarray], events: np.ndarray, modes: np.ndarray, node: np.ndarray, phase: np.ndarray
-) -> tuple[State[np.ndarray], State[np.ndarray], Point[np.ndarray], np.ndarray, np.ndarray]:
+    law: Law, events: np.ndarray, modes: np.ndarray, node: np.ndarray, phase: np.ndarray
+) -> tuple[State, State, Point, np.ndarray, np.ndarray]:
     """Start and end of each segment, the motion at its end, q2'' in it, its duration."""
     hit = events < 2
     if law.prescribed:

@@ -12,12 +12,11 @@ from orbits.machines.reference.oscillation import (
     Point,
     State,
     after,
-    certain,
     first_zero,
     leg,
     push,
 )
-from orbits.numbers import ROUNDOFF, SMALLEST
+from orbits.numbers import ROUNDOFF
 from orbits.settings import EVENTS, STEPPING
 from orbits.words.alphabet import CODES
 
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 LEFT_IMPACT, TURN, STICK, SLIP = (CODES[letter] for letter in "Ltsu")
 
 
-def margins(law: Law[float], data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
+def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.ndarray) -> None:
     """Margins of admissibility, none negative for an orbit that a machine can follow.
 
     `out` has shape (4 L,), four numbers per node; infinity where there is nothing to watch. Reads sines and cosines of the last `linearise` from
@@ -87,7 +86,7 @@ def margins(law: Law[float], data: CycleData, u: np.ndarray, work: Workspace, ou
                 bound = q.driven(4) + q.own(4, 0.0)
                 tau = min(abs(jerk) / bound, 0.5 * d) if bound > 0.0 else 0.0
             if event != TURN or mode * against > friction[mode]:  # else the turn's own margin says it
-                flight = _slowest(law, q, mode, tau, until)
+                flight = _slowest(q, psi, mode, tau, until)
         else:
             tau = 0.0
             while (tau := first_zero(_slide(q), tau, d, *_bounds(q, 1, tau, d), psi)) < d:
@@ -113,7 +112,7 @@ def margins(law: Law[float], data: CycleData, u: np.ndarray, work: Workspace, ou
             out[4 * following + 1] = side * rate
 
 
-def _late(law: Law[float], psi: float, d: float) -> float:
+def _late(law: Law, psi: float, d: float) -> float:
     """Of a stick in a shaken cavity its duration, or how far in phase it does not end the first time that friction gives way."""
     peak, first = law.amplitude * law.omega * law.omega, np.inf
     for pull, base in ((law.pull_left, np.pi), (-law.pull_right, 0.0)):
@@ -128,7 +127,7 @@ def _late(law: Law[float], psi: float, d: float) -> float:
     return -1.0 if first == np.inf else d if abs(late) < STEPPING.slip else -abs(late)
 
 
-def _bounds(q: Oscillation[float], order: int, start: float, end: float) -> tuple[float, float]:
+def _bounds(q: Oscillation, order: int, start: float, end: float) -> tuple[float, float]:
     """Of a derivative of q1: what bounds its second derivative from a time on, and its rounding."""
     drift = abs(q.q2_rate) + abs(q.q2_pull) * end if order == 1 else 0.0
     return q.driven(order + 2) + q.own(order + 2, start), 2.0 * ROUNDOFF * (
@@ -136,7 +135,7 @@ def _bounds(q: Oscillation[float], order: int, start: float, end: float) -> tupl
     )
 
 
-def _slide(q: Oscillation[float]) -> Callable[[float], tuple[float, float]]:
+def _slide(q: Oscillation) -> Callable[[float], tuple[float, float]]:
     """w' and w'' by time."""
 
     def look(tau: float) -> tuple[float, float]:
@@ -146,7 +145,7 @@ def _slide(q: Oscillation[float]) -> Callable[[float], tuple[float, float]]:
     return look
 
 
-def _extrema(q: Oscillation[float], order: int, psi: float, end: float) -> Iterator[Point[float]]:
+def _extrema(q: Oscillation, order: int, psi: float, end: float) -> Iterator[Point]:
     """The motion where q1''' vanishes."""
 
     def look(tau: float) -> tuple[float, float]:
@@ -155,35 +154,19 @@ def _extrema(q: Oscillation[float], order: int, psi: float, end: float) -> Itera
 
     tau = 0.0
     while (tau := first_zero(look, tau, end, *_bounds(q, order, tau, end), psi)) < end:
-        at: Point[float] = q.at(tau)
+        at: Point = q.at(tau)
         yield at
 
 
-def _slowest(law: Law[float], q: Oscillation[float], s: float, start: float, end: float) -> float:
-    """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none.
+def _slowest(q: Oscillation, psi: float, s: float, start: float, end: float) -> float:
+    """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none."""
 
-    w'' = q1'' - q2'' is followed from zero to zero by steps that cannot pass one (`certain`). A zero need not be known well (`STEPPING.minimum`): the minimum is then taken from
-    the Taylor series, exact to roundoff.
-    """
-    brake = s * q.q2_pull
-    smallest, tau, bound = np.inf, start, -1.0
-    while True:
+    def look(tau: float) -> tuple[float, float]:
         at = q.at(tau)
-        y, slope = s * (at.h2 + at.z2) - brake, s * (at.h3 + at.z3)
-        if bound < 0.0:
-            bound = q.bound(at, 4, law.strength, end - start)
-            if not bound > SMALLEST:
-                return smallest
-        sign = 1.0 if y > 0.0 else -1.0
-        step = certain(abs(y), sign * slope, bound)
-        if step < STEPPING.minimum:
-            zero = -y / slope if sign * slope < 0.0 else 0.0
-            if tau + zero >= end:
-                return smallest
-            if slope > 0.0:
-                speed = s * (q.h1 + q.z1 + at.speed - q.q2_rate) - brake * tau
-                smallest = min(smallest, speed + (y + 0.5 * slope * zero) * zero)
-            step = zero + max(abs(slope) / bound, STEPPING.minimum)
-        tau += step
-        if not tau < end:
-            return smallest
+        return at.h2 + at.z2 - q.q2_pull, at.h3 + at.z3
+
+    smallest, tau = np.inf, start
+    while (tau := first_zero(look, tau, end, *_bounds(q, 2, tau, end), psi)) < end:
+        if s * look(tau)[1] > 0.0:
+            smallest = min(smallest, s * _slide(q)(tau)[0])
+    return smallest

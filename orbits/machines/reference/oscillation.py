@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Generic, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from orbits.machines.reference.law import Law, Number, Response, cos, exp, sin, where
+from orbits.machines.reference.law import Law, Number, Response, where
 from orbits.machines.stepping import MODE, PSI, RATE, V_RATE, V, W
 from orbits.numbers import ROUNDOFF, SMALLEST
 from orbits.settings import STEPPING
@@ -16,7 +16,7 @@ from orbits.settings import STEPPING
 NEAR = 0.03  # Taylor series to order 8 up to here: relative error below roundoff
 
 
-class State(NamedTuple, Generic[Number]):
+class State(NamedTuple):
     """Absorber in its cavity and centre of mass, with their rates."""
 
     w: Number
@@ -25,7 +25,7 @@ class State(NamedTuple, Generic[Number]):
     v_rate: Number
 
 
-class Point(NamedTuple, Generic[Number]):
+class Point(NamedTuple):
     """q1 and q1' less those at the start, the mean of q1'' since then; second and third derivatives of h and of z; the way less that at q1' of the start."""
 
     way: Number
@@ -39,7 +39,7 @@ class Point(NamedTuple, Generic[Number]):
 
 
 @dataclass(frozen=True)
-class Oscillation(Generic[Number]):
+class Oscillation:
     """The motion of q1, and q2' and q2'' at its start.
 
     Parameters
@@ -75,26 +75,26 @@ class Oscillation(Generic[Number]):
             z.append(-2.0 * self.alpha * z[-1] - self.kappa * z[-2])
         return h, z
 
-    def at(self, tau: Number) -> Point[Number]:
+    def at(self, tau: Number) -> Point:
         """The motion after a time: from Taylor series close to the start, from the closed form beyond."""
         if np.ndim(tau) == 0:
             return self._near(tau) if abs(tau) < NEAR else self._far(tau)
         near = np.abs(np.real(tau)) < NEAR
         return Point(*(where(near, a, b) for a, b in zip(self._near(tau), self._far(tau))))
 
-    def _near(self, tau: Number) -> Point[Number]:
+    def _near(self, tau: Number) -> Point:
         h, z = self.derivatives()
         d = [a + b for a, b in zip(h, z)]
         mean, bend = d[2] + _beyond(d, 1, tau), tau * _beyond(d, 0, tau)
         h2, z2, h3, z3 = (of[k] + tau * (of[k + 1] + _beyond(of, k, tau)) for k in (2, 3) for of in (h, z))
         return Point(tau * d[1] + bend, tau * mean, mean, h2, z2, h3, z3, bend)
 
-    def _far(self, tau: Number) -> Point[Number]:
-        s, c = sin(self.omega * tau), cos(self.omega * tau)
+    def _far(self, tau: Number) -> Point:
+        s, c = np.sin(self.omega * tau), np.cos(self.omega * tau)
         H0 = self.h0 * c + self.h1 / self.omega * s
         H1 = self.h1 * c - self.omega * self.h0 * s
-        decay = exp(-self.alpha * tau)
-        cosine, sine = decay * cos(self.beta * tau), decay * sin(self.beta * tau) / self.beta
+        decay = np.exp(-self.alpha * tau)
+        cosine, sine = decay * np.cos(self.beta * tau), decay * np.sin(self.beta * tau) / self.beta
         Z0 = self.z0 * cosine + (self.z1 + self.alpha * self.z0) * sine
         Z1 = self.z1 * cosine - (self.alpha * self.z1 + self.kappa * self.z0) * sine
         Z2 = -2.0 * self.alpha * Z1 - self.kappa * Z0
@@ -105,7 +105,7 @@ class Oscillation(Generic[Number]):
             way - (self.h1 + self.z1) * tau,
         )  # fmt: skip
 
-    def start(self: Oscillation[float]) -> Point[float]:
+    def start(self) -> Point:
         """The motion at the start."""
         h, z = self.derivatives()
         return Point(0.0, 0.0, h[2] + z[2], h[2], z[2], h[3], z[3], 0.0)
@@ -114,16 +114,16 @@ class Oscillation(Generic[Number]):
         """The way of q2 after a time."""
         return (self.q2_rate + 0.5 * self.q2_pull * tau) * tau
 
-    def fourth(self, at: Point[Number]) -> Number:
+    def fourth(self, at: Point) -> Number:
         """The fourth derivative of q1."""
         return -self.omega * self.omega * at.h2 - 2.0 * self.alpha * at.z3 - self.kappa * at.z2
 
-    def fifth(self, at: Point[Number]) -> Number:
+    def fifth(self, at: Point) -> Number:
         """The fifth derivative of q1."""
         own = 2.0 * self.alpha * (2.0 * self.alpha * at.z3 + self.kappa * at.z2) - self.kappa * at.z3
         return own - self.omega * self.omega * at.h3
 
-    def bound(self: Oscillation[float], at: Point[float], order: int, strength: float, span: float) -> float:
+    def bound(self, at: Point, order: int, strength: float, span: float) -> float:
         """Bound of the derivative of q1 of this order, 3 or 4, in a span of time after a point, where the excitation has this amplitude.
 
         The derivative is an oscillator's response to a force of amplitude Omega^order `strength`, which feeds its energy.
@@ -132,14 +132,14 @@ class Oscillation(Generic[Number]):
         fed = self.omega**order * strength * span / np.sqrt(self.kappa)
         return np.sqrt(one * one + rate * rate / self.kappa) + fed
 
-    def driven(self: Oscillation[float], order: int) -> float:
+    def driven(self, order: int) -> float:
         """Bound of the harmonic's derivative of this order."""
         return self.omega**order * np.hypot(self.h0, self.h1 / self.omega)
 
-    def own(self: Oscillation[float], order: int, start: float) -> float:
+    def own(self, order: int, start: float) -> float:
         """Bound of the free oscillation's derivative of this order from a time on."""
         size = np.hypot(self.z0, (self.z1 + self.alpha * self.z0) / self.beta)
-        return size * exp(-self.alpha * start) * self.kappa ** (0.5 * order)
+        return size * np.exp(-self.alpha * start) * self.kappa ** (0.5 * order)
 
 
 def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
@@ -150,16 +150,16 @@ def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
     return total
 
 
-def chosen(s: float | np.ndarray, left: Number, right: Number, stuck: Number) -> Number:
+def chosen(s: Number, left: Number, right: Number, stuck: Number) -> Number:
     """What belongs to sliding to the left wall (s > 0), to the right one, or to sticking."""
     return where(s > 0, left, where(s < 0, right, stuck))
 
 
-def leg(law: Law[Number], psi: Number, x: State[Number], s: float | np.ndarray) -> Oscillation[Number]:
+def leg(law: Law, psi: Number, x: State, s: Number) -> Oscillation:
     """The closed form of the leg that begins with a state, in mode s."""
     response = Response(*(chosen(s, a, a, b) for a, b in zip(law.slide, law.stuck)))
     X, Y, alpha, beta = response
-    sine, cosine = sin(psi), cos(psi)
+    sine, cosine = np.sin(psi), np.cos(psi)
     h0, h1 = X * sine + Y * cosine, law.omega * (X * cosine - Y * sine)
     pull = chosen(s, law.pull_left, law.pull_right, 0.0 * psi)
     q2_rate = (x.v_rate - x.rate) / law.whole
@@ -171,14 +171,14 @@ def leg(law: Law[Number], psi: Number, x: State[Number], s: float | np.ndarray) 
 
 
 def after(
-    law: Law[Number],
-    q: Oscillation[Number],
-    p: Point[Number],
-    x: State[Number],
-    s: float | np.ndarray,
+    law: Law,
+    q: Oscillation,
+    p: Point,
+    x: State,
+    s: Number,
     t: Number,
-    low: Number | float = 0.0,
-) -> State[Number]:
+    low: Number = 0.0,
+) -> State:
     """Where such a leg is after a time; `low`: digits of w below its roundoff."""
     travel, fallen, sliding = q.travel(t), q.q2_pull * t, s != 0
     w, rate = x.w + (low + (x.rate * t + (p.bend - 0.5 * fallen * t))), x.rate + p.speed - fallen
@@ -191,22 +191,22 @@ def after(
     )
 
 
-def standing(state: np.ndarray, law: Law[float]) -> State[float]:
+def standing(state: np.ndarray, law: Law) -> State:
     """What a stepper's state says of the motion."""
     if law.prescribed:
-        v, v_rate = law.amplitude * sin(state[PSI]), law.amplitude * law.omega * cos(state[PSI])
+        v, v_rate = law.amplitude * np.sin(state[PSI]), law.amplitude * law.omega * np.cos(state[PSI])
     else:
         v, v_rate = state[V], state[V_RATE]
     return State(state[W], state[RATE], v, v_rate)
 
 
-def oscillation(state: np.ndarray, law: Law[float]) -> Oscillation[float]:
+def oscillation(state: np.ndarray, law: Law) -> Oscillation:
     """The closed form of the leg that begins with a stepper's state."""
     x = standing(state, law)
     return leg(law, state[PSI], x if state[MODE] != 0.0 else x._replace(rate=0.0), state[MODE])
 
 
-def push(law: Law[Number], x: State[Number], sine: Number, cosine: Number) -> Number:
+def push(law: Law, x: State, sine: Number, cosine: Number) -> Number:
     """v'', which neither friction nor the slope enters."""
     if law.prescribed:
         return -law.omega * law.omega * (law.slide.X * sine + law.slide.Y * cosine)

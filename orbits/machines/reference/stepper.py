@@ -24,10 +24,18 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import root_scalar
 
-from orbits.machines.digits import shift, wrap
 from orbits.machines.reference.law import Law, Side
-from orbits.machines.reference.oscillation import Oscillation, Point, certain, oscillation, push, standing
+from orbits.machines.reference.oscillation import (
+    Oscillation,
+    Point,
+    certain,
+    first_zero,
+    oscillation,
+    push,
+    standing,
+)
 from orbits.machines.stepping import (
     EVENTS_FULL,
     FAILED,
@@ -39,6 +47,7 @@ from orbits.machines.stepping import (
     REST,
     TIME_REACHED,
     TURNS,
+    TWO_PI,
     V_RATE,
     V,
     W,
@@ -47,12 +56,34 @@ from orbits.numbers import ROUNDOFF, SMALLEST
 from orbits.settings import EVENTS, STEPPING
 
 _L, _R, _T, _S, _U = range(5)
-_TWO_PI = 2.0 * math.pi
+EPSILON = float(np.finfo(float).eps)
 _HORIZON = 2.5  # M is renewed after this time
 _HIT, _HALT, _SLIPS, _TIME_IS_OVER, _NEVER = range(5)  # how a leg ends
 
 
-def launch(law: Law[float], state: np.ndarray) -> None:
+def wrap(angle):
+    """The angle reduced to [0, 2 pi), and the number of turns taken away."""
+    turns = math.floor(angle / TWO_PI)
+    if turns != 0.0:
+        angle -= turns * TWO_PI
+    if angle < 0.0:
+        angle = 0.0
+    elif angle >= TWO_PI:
+        angle = 0.0
+        turns += 1.0
+    return angle, turns
+
+
+def shift(w, low, step):
+    """w + low + step as a sum of two floats (Knuth's two-sum)."""
+    total = w + step
+    virtual = total - w
+    rest = (w - (total - virtual)) + (step - virtual) + low
+    out = total + rest
+    return out, rest - (out - total)
+
+
+def launch(law: Law, state: np.ndarray) -> None:
     """Reduce the phase and set the mode of a start; contract, item 2."""
     state[PSI], more = wrap(state[PSI])
     state[TURNS] += more
@@ -75,28 +106,21 @@ def launch(law: Law[float], state: np.ndarray) -> None:
         state[MODE] = 1.0 if against >= 0.0 else -1.0
 
 
-def advance(
-    law: Law[float], state: np.ndarray, until: float, codes: np.ndarray, modes: np.ndarray, rows: np.ndarray
-) -> tuple[int, int]:
-    """Run from event to event; contract, item 3."""
-    return _Run(state, law).advance(until, codes, modes, rows)
-
-
 class _Sliding(NamedTuple):
     """The end of a leg of sliding: how, after which time, y = s w' and y' there, the way s (w - w_0)."""
 
     outcome: int
     tau: float
-    at: Point[float]
+    at: Point
     y: float
     y_rate: float
     gain: float
 
 
-class _Run:
+class Run:
     """A motion on its way."""
 
-    def __init__(self, state: np.ndarray, law: Law[float]) -> None:
+    def __init__(self, state: np.ndarray, law: Law) -> None:
         self.state, self.law = state, law
         self.sides = {s: law.side(s) for s in (1.0, -1.0)}
         self.b = law.whole * law.lean
@@ -124,7 +148,7 @@ class _Run:
 
         status = EVENTS_FULL
         while count < len(codes):
-            left = ((limit - state[TURNS]) * _TWO_PI - state[PSI]) / law.omega
+            left = ((limit - state[TURNS]) * TWO_PI - state[PSI]) / law.omega
             if not left > 0.0:
                 status = TIME_REACHED
                 break
@@ -185,7 +209,7 @@ class _Run:
             add(_T if turns_back else _S, 0.0, 0.0)
         return count, status if np.isfinite(state).all() else FAILED
 
-    def _piles_up(self, behind: Side, s: float, Y0: float, push: float, begin: Point[float]) -> float:
+    def _piles_up(self, behind: Side, s: float, Y0: float, push: float, begin: Point) -> float:
         """The time that is left of a chatter, of which this leg from a wall that is pushed after the absorber is the tail; infinite if it is none.
 
         `push`: s (v'' - b).
@@ -222,60 +246,49 @@ class _Run:
 
     def _wait(self, left: float) -> tuple[int, float]:
         """Move on, sticking, until friction no longer holds, or for the time `left`; how this ends, and the direction of the slip."""
-        whole = self.law.whole
-        q = oscillation(self.state, self.law)
-        outcome, tau, at, way = self._until_slip(q, left)
-        if outcome == _NEVER:
-            tau, at = left, q.at(left)
+        q, whole = oscillation(self.state, self.law), self.law.whole
+        outcome, tau, way = self._until_slip(q, left)
         if tau > 0.0:
+            at = q.at(tau)
             self._ride(whole * at.way, whole * at.speed)
             self._turn(tau)
         self.state[RATE] = 0.0
         return outcome, way
 
-    def _until_slip(self, q: Oscillation[float], left: float) -> tuple[int, float, Point[float], float]:
-        b, whole, omega = self.b, self.law.whole, q.omega
+    def _until_slip(self, q: Oscillation, left: float) -> tuple[int, float, float]:
+        b, whole = self.b, self.law.whole
         # directions in which there is room, and what holds the absorber there
         free_ways = [
             (way, side.friction) for way, side in self.sides.items() if way * self.state[W] < side.reach
         ]
         hold = min(a + way * b for way, a in free_ways)
-        driven = whole * omega * omega * math.hypot(q.h0, q.h1 / omega)  # bounds of |v''|
-        free = whole * q.kappa * math.hypot(q.z0, (q.z1 + q.alpha * q.z0) / q.beta)
-        tiny = 2.0 * ROUNDOFF * (driven + free + abs(b))
-        at, tau, renew, bound = q.start(), 0.0, -1.0, 0.0
-        first = True  # a zero right at the start is judged by its slope, and left behind
+        tiny, tau = 2.0 * ROUNDOFF * (whole * (q.driven(2) + q.own(2, 0.0)) + abs(b)), 0.0
         while tau < left:
-            if tau >= renew:
-                if (driven + free * math.exp(-q.alpha * tau)) * (1.0 - EVENTS.zero) <= hold:
-                    return _NEVER, tau, at, 0.0
-                bound = whole * q.bound(at, 4, self.law.strength, _HORIZON)
-                renew = tau + _HORIZON
-            value, slope = whole * (at.h2 + at.z2), whole * (at.h3 + at.z3)
-            step = renew - tau
+            if whole * (q.driven(2) + q.own(2, tau)) * (1.0 - EVENTS.zero) <= hold:
+                return _NEVER, left, 0.0
+            end, bound = min(tau + _HORIZON, left), whole * (q.driven(4) + q.own(4, tau))
+            slips = []
             for way, a in free_ways:
-                y, y_rate = a - way * (value - b), -way * slope
-                if y <= tiny:
-                    if not first or y_rate < 0.0 or y < -tiny:
-                        return _SLIPS, tau, at, way
-                    step = min(step, max(y_rate / bound if bound > 0.0 else step, STEPPING.leave))
-                else:
-                    ahead = certain(y, y_rate, bound) if bound > 0.0 or y_rate < 0.0 else step
-                    step = min(step, ahead)
-                    if ahead < ROUNDOFF * (1.0 + tau):
-                        return _SLIPS, tau, at, way
-            first = False
-            tau = min(tau + step if step < renew - tau else renew, left)
-            at = q.at(tau)
-        return _TIME_IS_OVER, tau, at, 0.0
 
-    def _slide(
-        self, q: Oscillation[float], s: float, Y0: float, Y1: float, target: float, left: float
-    ) -> _Sliding:
+                def reserve(time: float, way: float = way, a: float = a) -> tuple[float, float]:
+                    at = q.at(time)
+                    return a - way * (whole * (at.h2 + at.z2) - b), -way * whole * (at.h3 + at.z3)
+
+                value, slope = reserve(tau)
+                # a zero right at the start is judged by its slope, and left behind
+                now = value <= tiny and (tau > 0.0 or slope < 0.0 or value < -tiny)
+                slips.append((tau if now else first_zero(reserve, tau, end, bound, tiny), way))
+            slip, way = min(slips)
+            if slip < end:
+                return _SLIPS, slip, way
+            tau = end
+        return _TIME_IS_OVER, left, 0.0
+
+    def _slide(self, q: Oscillation, s: float, Y0: float, Y1: float, target: float, left: float) -> _Sliding:
         """Slide until the wall ahead is hit or the absorber halts, or for the time `left`."""
         brake, strength = s * q.q2_pull, self.law.strength
 
-        def look(tau: float) -> tuple[Point[float], float, float, float]:
+        def look(tau: float) -> tuple[Point, float, float, float]:
             at = q.at(tau)
             y, y_rate = Y0 + s * at.speed - brake * tau, s * (at.h2 + at.z2) - brake
             return at, y, y_rate, Y0 * tau + (s * at.bend - 0.5 * brake * tau * tau)
@@ -318,28 +331,16 @@ class _Run:
                 break
             if tau >= left:
                 return _Sliding(_TIME_IS_OVER, tau, at, y, y_rate, gain)
-        lo, hi = before, tau
-        for _ in range(60):  # Halley's method for the hit, kept inside the bracket
-            miss = gain - target
-            lo, hi = (lo, tau) if miss >= 0.0 else (tau, hi)
-            bottom = 2.0 * y * y - miss * y_rate
-            step = 2.0 * miss * y / bottom if bottom > 0.0 else math.inf
-            new = tau - step
-            if not lo < new < hi:
-                if abs(step) <= 2.0 * ROUNDOFF * tau:
-                    break
-                new = 0.5 * (lo + hi)
-            change, tau = abs(new - tau), new
-            at, y, y_rate, gain = look(tau)
-            settled = (
-                change <= STEPPING.last_step * tau and change * change * abs(y_rate) <= ROUNDOFF * y * tau
-            )
-            if settled or hi - lo <= ROUNDOFF * hi:
-                step = (gain - target) / y if y > 0.0 else 0.0  # one Newton step more, from values at hand
-                if abs(step) < change:
-                    tau -= step
-                    y -= step * y_rate
-                    way = at.way - step * (at.speed + q.h1 + q.z1)
-                    at = at._replace(way=way, speed=at.speed - step * (at.h2 + at.z2))
-                break
+
+        def miss(time: float) -> float:
+            return look(time)[-1] - target
+
+        tau = root_scalar(miss, bracket=(before, tau), xtol=SMALLEST, rtol=4.0 * EPSILON).root
+        at, y, y_rate, gain = look(tau)
+        step = (gain - target) / y if y > 0.0 else 0.0  # one Newton step more, from values at hand
+        if abs(step) < 8.0 * EPSILON * tau:
+            tau -= step
+            y -= step * y_rate
+            way = at.way - step * (at.speed + q.h1 + q.z1)
+            at = at._replace(way=way, speed=at.speed - step * (at.h2 + at.z2))
         return _Sliding(_HIT, tau, at, y, y_rate, gain)

@@ -116,9 +116,9 @@ def test_values_that_no_machine_has_are_refused_where_they_stand(study, change):
 
 def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
     run("diagram", study, "-q")
-    from orbits.machines.page import stored
+    from orbits.machines.page import loading
 
-    monkeypatch.setattr(stored, "loaded", lambda settings: None)  # as in another process
+    monkeypatch.setattr(loading, "loaded", lambda settings: None)  # as in another process
     assert cv.load("stop.vines")["B1"].problem is None
     assert cv.load("stop.vines", trust=True)["B1"].problem is not None
     (study.parent / "stop.py").write_text(PAGE + "# another\n")
@@ -130,7 +130,7 @@ def test_a_file_runs_no_page_and_says_when_it_has_changed(study, monkeypatch):
 
 def test_a_folder_may_be_moved(study, monkeypatch):
     """The result stays that of its study, and its orbits come from the machine file that was moved with it."""
-    from orbits.machines.page import stored
+    from orbits.machines.page import loading
 
     here, there = study.parent / "here", study.parent / "there"
     (here / "files").mkdir(parents=True)
@@ -141,7 +141,7 @@ def test_a_folder_may_be_moved(study, monkeypatch):
     before = cv.load("stop.vines", trust=True)["EP1"].orbit
     here.rename(there)
     monkeypatch.chdir(there)
-    monkeypatch.setattr(stored, "loaded", lambda settings: None)  # as in another process
+    monkeypatch.setattr(loading, "loaded", lambda settings: None)  # as in another process
     assert "nothing to compute" in run("diagram", "stop.toml", "--no-look").output
     after = cv.load("stop.vines", trust=True)["EP1"].orbit
     assert (after.multipliers == before.multipliers).all() and after.margin == before.margin

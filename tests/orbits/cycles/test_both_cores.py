@@ -10,8 +10,7 @@ from orbits import arguments
 from orbits.flows.native.cycle_equations import Equations
 from orbits.flows.native.kernels import assemble
 from orbits.flows.native.reference_kernels import ReferenceKernels
-from orbits.machines.catalogue import usual
-from orbits.machines.names import NAMES, NATIVE
+from orbits.machines.names import NAMES, NATIVE, usual
 from orbits.machines.reference.machine import reference
 from orbits.words import Word
 

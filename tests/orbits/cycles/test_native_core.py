@@ -5,8 +5,7 @@ import pytest
 
 from contvines.core.library import native
 from orbits import Coupled
-from orbits.machines.catalogue import stepper
-from orbits.machines.native_stepper import stepper_functions
+from orbits.machines.native_stepper import stepper
 from orbits.machines.reference.machine import reference
 from orbits.simulation.runs import simulate
 
@@ -21,7 +20,7 @@ def test_shapes_of_segments():
     run = simulate(machine, {"w_rate": 0.7, "v": 0.4}, events=12)
     states, lengths = run.states[:-1][:12], run.lengths[:12]
     found, wanted = np.empty((2, len(states), 4))
-    stepper_functions("coupled").shapes(states, run.params, lengths, found)
+    stepper("coupled").shapes(states, run.params, lengths, found)
     reference("coupled").shapes(states, run.params, lengths, wanted)
     np.testing.assert_allclose(found, wanted, atol=1e-12)
     for state, length, row in zip(states, lengths, found):

@@ -17,7 +17,7 @@ from contvines.survey.outcomes import Findings
 from orbits import Coupled, Machine, coupled_two
 from orbits.attractors.sweeping import sweep
 from orbits.machines.coupled_two import _motion
-from orbits.machines.page.names import check_response
+from orbits.machines.page.checks import check_response
 from orbits.problem import rebuild
 from orbits.simulation import simulate
 

@@ -13,7 +13,7 @@ from scipy.optimize import root
 
 import contvines as cv
 from orbits import DryFriction, Machine
-from orbits.machines.page.formulas import PageError
+from orbits.machines.page.page import PageError
 from orbits.symbols import cos, exp
 
 

@@ -3,7 +3,7 @@
 import mpmath as mp
 import pytest
 
-from orbits.machines.digits import shift, wrap
+from orbits.machines.reference.stepper import shift, wrap
 
 
 @pytest.mark.parametrize("angle", [0.3, -0.3, 6.0, 7.0, 700.0, -700.0, -1e-18])

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from orbits import Absorber, Coupled, Machine, Wall
-from orbits.machines.building import build
+from orbits.machines.catalogue import build
 from orbits.machines.measures import LOADS
-from orbits.machines.page.formulas import PageError
 from orbits.machines.page.loading import load_page
+from orbits.machines.page.page import PageError
 from tests.machines import STRONG
 
 R, EPS = 0.76, 0.006

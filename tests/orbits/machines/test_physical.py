@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from orbits.machines.base import ParameterError
-from orbits.machines.building import build
+from orbits.machines.catalogue import build
 from orbits.machines.physical import QuantityError, physical
 
 FLAT = {

@@ -8,7 +8,8 @@ import pytest
 
 from orbits import Absorber, Coupled
 from orbits.design import record
-from orbits.machines.catalogue import stepper, usual
+from orbits.machines.names import usual
+from orbits.machines.native_stepper import stepper
 from orbits.simulation import batches
 from orbits.simulation.driver import first_state, skip
 

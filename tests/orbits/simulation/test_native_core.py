@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contvines.core.library import native
-from orbits.machines.catalogue import model_class, reference_stepper, stepper
+from orbits.machines.names import model_class
+from orbits.machines.native_stepper import stepper
+from orbits.machines.reference.machine import reference
 from orbits.machines.stepping import MODE, PSI, RATE, REST, TIME_REACHED, TURNS, V_RATE, V, W
 from orbits.simulation.driver import collect
 
@@ -51,7 +53,7 @@ def motions(draw):
 
 def both(name, params, state, periods, events):
     found = []
-    for engine in (stepper(name), reference_stepper(name)):
+    for engine in (stepper(name), reference(name)):
         now = state.copy()
         engine.launch(now, params)
         launched = now.copy()

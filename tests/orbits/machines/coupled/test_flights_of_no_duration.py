@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orbits import Coupled
-from orbits.machines.catalogue import usual
+from orbits.machines.names import usual
 from orbits.machines.reference.machine import reference
 from orbits.problem import OrbitProblem
 from orbits.words import Word

@@ -139,7 +139,7 @@ def test_margins_are_those_of_the_motion(segment, case):
     data = closed(events, modes, params, single(9, 0))
     linearise(data, u, params[0], work)
     found = np.full(8, np.nan)
-    margins(data, u, params[0], work, found)
+    margins(data, u, work, found)
     duration = (u[4] - u[0]) / params[1]
     w, w_rate = (1.0 - 2.0 * start, u[3] - u[1]) if start < 2 else (u[1], 0.0)
     states, q1_2, q2_2 = path(params, mode, u[0], w, w_rate, u[2], u[3], duration, 20000)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orbits.machines.catalogue import stepper as machine
+from orbits.machines.native_stepper import stepper as machine
 from orbits.machines.physical import physical
 from orbits.machines.reference.machine import reference
 from orbits.simulation.driver import first_state

@@ -21,12 +21,11 @@ from orbits.contacts.switch import Switch
 from orbits.contacts.wall import Wall
 from orbits.machines.page.machine import Machine
 from orbits.machines.parameters import ParameterError
-from orbits.machines.structure.matrices import Given, matrix
-from orbits.machines.structure.reduction import Reduced, reduced
+from orbits.machines.reduction import Given, Reduced, matrix, reduced
 from orbits.symbols import cos, sqrt
 
 if TYPE_CHECKING:
-    from orbits.machines.page.formulas import Named, States
+    from orbits.machines.page.page import Named, States
     from orbits.machines.page.patterns import Contact
     from orbits.symbols import Plain
 
@@ -62,15 +61,9 @@ class Structure(Machine):
 
     def settings(self, params: np.ndarray | None = None) -> dict[str, Any]:
         """All that makes it again, ready for JSON: its reduced matrices, its elements and its parameters."""
-        r = self.reduction
-        made = {
-            **{name: getattr(r, name).tolist() for name in ("mass", "damping", "stiffness")},
-            "kept": list(r.kept),
-            "size": r.size,
-            "error": r.error,
-            "highest": r.highest,
-            "elements": self.elements,
-        }
+        small = self.reduction
+        matrices = {name: getattr(small, name).tolist() for name in MATRICES}
+        made = vars(small) | matrices | {"kept": list(small.kept), "elements": self.elements}
         values = self.parameters if params is None else self.named(params)
         return {"name": self.name, "structure": made, **values}
 
@@ -97,7 +90,7 @@ def structure(
     Parameters
     ----------
     mass, damping, stiffness : nested list, array, or str
-        (n, n); or a file, see `orbits.machines.structure.matrices.matrix`.
+        (n, n); or a file, see `orbits.machines.reduction.matrix`.
     forces, walls, frictions, absorbers : sequences of mapping
         Their fields are in `FIELDS`: ``{"at": 2, "amplitude": 0.1}``, ``{"at": 1, "gap": 1.0, "stiffness": 100.0}`` (with ``loss`` a
         damper beside the spring) or ``{"at": 1, "to": 2, "gap": 1.0, "restitution": 0.8}``, ``{"at": 1, "limit": 0.2}``, ``{"at": 2, "mass": 0.05, "clearance": 0.5,
@@ -194,37 +187,156 @@ def _element(kind: str, place: int, given: object, size: int) -> dict[str, float
     return {name: value for name, value in found.items() if not math.isnan(value)}
 
 
-class _Rows:
-    """Coordinates of a reduced structure by degree of freedom, and its formulas."""
+class _Space:
+    """Coordinates of a reduced structure and of its absorbers, positions before speeds; and what forces along a direction do to them.
+
+    A direction, shape (coordinates,), has 1 where a force pushes and -1 where it pushes back.
+    """
 
     def __init__(self, small: Reduced, elements: Mapping[str, Sequence[Element]]) -> None:
-        self.count, self.elements = len(small.mass), elements
+        self.small, self.elements, self.count = small, elements, len(small.mass)
         self.place = {degree + 1: i for i, degree in enumerate(small.kept)}
         self.inverse = np.linalg.inv(small.mass)
-        self.spring, self.damper = -self.inverse @ small.stiffness, -self.inverse @ small.damping
         modes = range(1, self.count - len(small.kept) + 1)
         names = [(f"x{d + 1}", f"v{d + 1}") for d in small.kept] + [(f"m{i}", f"n{i}") for i in modes]
-        bodies = range(1, len(elements["absorber"]) + 1)
-        self.positions = [x for x, _ in names] + [f"y{i}" for i in bodies]
-        self.speeds = [v for _, v in names] + [f"w{i}" for i in bodies]
-        self.states = (*self.positions, *self.speeds)
+        names += [(f"y{i}", f"w{i}") for i in range(1, len(elements["absorber"]) + 1)]
+        self.speeds = [v for _, v in names]
+        self.states = (*(x for x, _ in names), *self.speeds)
 
     def name(self, kind: str, k: int, field: str) -> str:
         """The parameter that a field of an element is."""
         return f"{kind}{k + 1 if len(self.elements[kind]) > 1 else ''}_{field}"
 
-    def between(self, element: Element) -> np.ndarray:
-        """The direction x_at - x_to, shape (count,)."""
-        found = np.zeros(self.count)
-        found[self.place[int(element["at"])]] = 1.0
+    def direction(self, element: Element, absorber: int | None = None) -> np.ndarray:
+        """x_at - x_to; or x_at - y of an absorber."""
+        found = np.zeros(len(self.speeds))
+        found[self.place[int(element["at"])]] = element.get("side", 1.0)
         if element.get("to"):
-            found[self.place[int(element["to"])]] = -1.0
+            found[self.place[int(element["to"])]] = -element.get("side", 1.0)
+        if absorber is not None:
+            found[self.count + absorber] = -1.0
         return found
 
-    def stretch(self, state: States, direction: np.ndarray, speed: bool = False) -> Plain:
-        """x_at - x_to, or its rate."""
-        first = len(self.positions) if speed else 0
-        return _sum(direction, state[first : first + self.count])
+    def stretch(self, state: States, direction: np.ndarray) -> Plain:
+        """How far the ends of a direction are apart."""
+        return _sum(direction, state[: len(self.speeds)])
+
+    def stretching(self, state: States, direction: np.ndarray) -> Plain:
+        """Its rate."""
+        return _sum(direction, state[len(self.speeds) :])
+
+    def faster(self, i: int, direction: np.ndarray, force: Plain, p: Named) -> Plain:
+        """What a force along a direction adds to the rate of speed i."""
+        if i >= self.count:
+            part, mass = float(direction[i]), getattr(p, self.name("absorber", i - self.count, "mass"))
+            return part * force / mass if part else 0.0
+        part = float(self.inverse[i] @ direction[: self.count])
+        return part * force if part else 0.0
+
+    def wall(self, letter: str, direction: np.ndarray, gap: str, restitution: str) -> Wall:
+        """A rigid wall that is met where the ends of a direction are so far apart; it pushes against the direction."""
+
+        def push(i: int) -> Callable[..., Plain]:
+            return lambda state, phase, p: self.faster(i, -direction, 1.0, p)
+
+        return Wall(
+            letter,
+            lambda state, phase, p: getattr(p, gap) - self.stretch(state, direction),
+            {speed: push(i) for i, speed in enumerate(self.speeds)},
+            restitution,
+        )
+
+    def friction(self, name: str, direction: np.ndarray, limit: str, number: int) -> DryFriction:
+        """Dry friction between the ends of a direction."""
+        letters = tuple(f"{letter}{number}" for letter in "tsu")
+        return DryFriction(
+            name, lambda state, phase, p: self.stretching(state, direction), limit, letters=letters
+        )
+
+    # ------------------------------------------------------------------ elastic walls
+    def beyond(self, k: int, wall: Element, state: States, p: Named) -> Plain:
+        """How far the structure has gone beyond the gap of a wall."""
+        return self.stretch(state, self.direction(wall)) - getattr(p, self.name("wall", k, "gap"))
+
+    def press(self, k: int, wall: Element, state: States, p: Named) -> Plain:
+        """The force with which an elastic wall presses."""
+        force = getattr(p, self.name("wall", k, "stiffness")) * self.beyond(k, wall, state, p)
+        if wall["loss"]:
+            speed = self.stretching(state, self.direction(wall))
+            force = force + getattr(p, self.name("wall", k, "loss")) * speed
+        return force
+
+    # ------------------------------------------------------------------ the machine's formulas
+    def contacts(self) -> list[Contact]:
+        """Walls, frictions, and of each absorber two walls and a floor."""
+        found: list[Contact] = []
+        for k, wall in enumerate(self.elements["wall"]):
+            if "restitution" in wall:
+                gap, restitution = self.name("wall", k, "gap"), self.name("wall", k, "restitution")
+                found.append(self.wall(f"W{k + 1}", self.direction(wall), gap, restitution))
+                continue
+            found.append(
+                Switch(f"stop{k + 1}", lambda s, phase, p, k=k, wall=wall: self.beyond(k, wall, s, p))
+            )
+            if wall["loss"]:
+                found.append(
+                    Switch(f"holds{k + 1}", lambda s, phase, p, k=k, wall=wall: self.press(k, wall, s, p))
+                )
+        for k, friction in enumerate(self.elements["friction"]):
+            limit = self.name("friction", k, "limit")
+            found.append(self.friction(f"rub{k + 1}", self.direction(friction), limit, k + 1))
+        for k, absorber in enumerate(self.elements["absorber"]):
+            clearance, restitution, limit = (
+                self.name("absorber", k, field) for field in ("clearance", "restitution", "friction")
+            )
+            along, number = self.direction(absorber, k), len(self.elements["friction"]) + k + 1
+            found += [
+                self.wall(f"L{k + 1}", along, clearance, restitution),
+                self.wall(f"R{k + 1}", -along, clearance, restitution),
+            ]
+            found.append(self.friction(f"floor{k + 1}", along, limit, number))
+        return found
+
+    def motion(self, state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:
+        """Rates of the states."""
+        speeds = state[len(self.speeds) :]
+        pushes: list[tuple[np.ndarray, Plain]] = []
+        for k, force in enumerate(self.elements["force"]):
+            swing = cos(force["harmonic"] * phase + force["shift"])
+            pushes.append((self.direction(force), getattr(p, self.name("force", k, "amplitude")) * swing))
+        for k, wall in enumerate(self.elements["wall"]):
+            if "stiffness" in wall:
+                pressed = 0.5 * (1 + getattr(contact, f"stop{k + 1}"))  # 1 where it presses, else 0
+                if wall["loss"]:
+                    pressed = pressed * (0.5 * (1 + getattr(contact, f"holds{k + 1}")))
+                pushes.append((-self.direction(wall), self.press(k, wall, state, p) * pressed))
+        for k, friction in enumerate(self.elements["friction"]):
+            pushes.append((self.direction(friction), getattr(contact, f"rub{k + 1}")))
+        for k, absorber in enumerate(self.elements["absorber"]):
+            pushes.append((self.direction(absorber, k), getattr(contact, f"floor{k + 1}")))
+        rates: list[Plain] = [0.0] * len(speeds)
+        for i in range(self.count):
+            spring, damper = -self.inverse[i] @ self.small.stiffness, -self.inverse[i] @ self.small.damping
+            rates[i] = _sum(spring, state[: self.count]) + _sum(damper, speeds[: self.count])
+        for i in range(len(speeds)):
+            for direction, force in pushes:
+                rates[i] = rates[i] + self.faster(i, direction, force, p)
+        return (*speeds, *rates)
+
+    def energy(self, state: States, phase: Plain, p: Named) -> Plain:
+        """Of the structure, its absorbers and its elastic walls: half the stiffness times the square of how deep they are pressed in."""
+        speeds, total = state[len(self.speeds) :], 0.0
+        for part, values in ((self.small.stiffness, state), (self.small.mass, speeds)):
+            for i in range(self.count):
+                total = total + 0.5 * values[i] * _sum(part[i], values[: self.count])
+        for k in range(len(self.elements["absorber"])):
+            total = total + 0.5 * getattr(p, self.name("absorber", k, "mass")) * speeds[self.count + k] ** 2
+        for k, wall in enumerate(self.elements["wall"]):
+            if "stiffness" in wall:
+                beyond = self.beyond(k, wall, state, p)
+                deep = 0.5 * (beyond + sqrt(beyond**2))
+                total = total + 0.5 * getattr(p, self.name("wall", k, "stiffness")) * deep**2
+        return total
 
 
 def _sum(factors: np.ndarray, values: Sequence[Plain]) -> Plain:
@@ -241,158 +353,23 @@ def _made(
     frequency: float,
     values: Mapping[str, float] | None = None,
 ) -> Structure:
-    rows = _Rows(small, elements)
+    space = _Space(small, elements)
     parameters = {"frequency": frequency} if elements["force"] else {}
     for kind, each in elements.items():
         for k, element in enumerate(each):
-            own = {field: value for field, value in element.items() if field not in FIXED}
             parameters |= {
-                rows.name(kind, k, field): value for field, value in own.items() if field != "loss" or value
+                space.name(kind, k, field): value
+                for field, value in element.items()
+                if field not in FIXED and (field != "loss" or value)
             }
-    contacts: list[Contact] = [
-        contact for k, wall in enumerate(elements["wall"]) for contact in _wall(rows, k, wall)
-    ]
-    contacts += [
-        _friction(rows.between(f), rows, f"rub{k + 1}", rows.name("friction", k, "limit"), k + 1)
-        for k, f in enumerate(elements["friction"])
-    ]
-    for k, absorber in enumerate(elements["absorber"]):
-        contacts += _absorber(rows, k, absorber)
     made = Structure(
         name="structure",
-        states=rows.states,
+        states=space.states,
         parameters={**parameters, **(values or {})},
         phase_rate="frequency" if elements["force"] else None,
-        motion=_motion(rows, elements),
-        contacts=contacts,
-        energy=_energy(rows, small, elements),
+        motion=space.motion,
+        contacts=space.contacts(),
+        energy=space.energy,
     )
     made.reduction, made.elements = small, elements
     return made
-
-
-def _motion(rows: _Rows, elements: Mapping[str, Sequence[Element]]) -> Callable[..., tuple[Plain, ...]]:
-    bodies = len(elements["absorber"])
-
-    def motion(state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:
-        x, v = state[: rows.count], state[len(rows.positions) : len(rows.positions) + rows.count]
-        pushes: list[tuple[np.ndarray, Plain]] = []
-        for k, force in enumerate(elements["force"]):
-            swing = cos(force["harmonic"] * phase + force["shift"])
-            pushes.append((rows.between(force), getattr(p, rows.name("force", k, "amplitude")) * swing))
-        for k, wall in enumerate(elements["wall"]):
-            if "stiffness" in wall:
-                direction = wall["side"] * rows.between(wall)
-                pushes.append((-direction, _press(rows, k, wall, state, p) * _pressed(k, wall, contact)))
-        for k, friction in enumerate(elements["friction"]):
-            pushes.append((rows.between(friction), getattr(contact, f"rub{k + 1}")))
-        own = []
-        for k, absorber in enumerate(elements["absorber"]):
-            drag = getattr(contact, f"floor{k + 1}")
-            pushes.append((rows.between(absorber), drag))
-            own.append(-drag / getattr(p, rows.name("absorber", k, "mass")))
-        rates = []
-        for i in range(rows.count):
-            total = _sum(rows.spring[i], x) + _sum(rows.damper[i], v)
-            for direction, force in pushes:
-                factor = float(rows.inverse[i] @ direction)
-                total = total + factor * force if factor else total
-            rates.append(total)
-        first = len(rows.positions)
-        return (*v, *state[first + rows.count : first + rows.count + bodies], *rates, *own)
-
-    return motion
-
-
-def _press(rows: _Rows, k: int, wall: Element, state: States, p: Named) -> Plain:
-    """The force with which an elastic wall presses."""
-    force = getattr(p, rows.name("wall", k, "stiffness")) * _beyond(rows, k, wall, state, p)
-    if wall["loss"]:
-        direction = wall["side"] * rows.between(wall)
-        force = force + getattr(p, rows.name("wall", k, "loss")) * rows.stretch(state, direction, speed=True)
-    return force
-
-
-def _beyond(rows: _Rows, k: int, wall: Element, state: States, p: Named) -> Plain:
-    """How far the structure has gone beyond the gap of a wall."""
-    return rows.stretch(state, wall["side"] * rows.between(wall)) - getattr(p, rows.name("wall", k, "gap"))
-
-
-def _pressed(k: int, wall: Element, contact: Named) -> Plain:
-    """1 where an elastic wall presses, else 0."""
-    deep = 0.5 * (1 + getattr(contact, f"stop{k + 1}"))
-    return deep * (0.5 * (1 + getattr(contact, f"holds{k + 1}"))) if wall["loss"] else deep
-
-
-def _wall(rows: _Rows, k: int, wall: Element) -> list[Wall | Switch]:
-    direction, gap = wall["side"] * rows.between(wall), rows.name("wall", k, "gap")
-
-    def left(state: States, phase: Plain, p: Named) -> Plain:
-        return getattr(p, gap) - rows.stretch(state, direction)
-
-    if "restitution" in wall:
-        push = dict(zip(rows.speeds, (-rows.inverse @ direction).tolist()))
-        return [Wall(f"W{k + 1}", left, push, rows.name("wall", k, "restitution"))]
-    deep = Switch(f"stop{k + 1}", lambda state, phase, p: -left(state, phase, p))
-    if not wall["loss"]:
-        return [deep]
-    return [deep, Switch(f"holds{k + 1}", lambda state, phase, p: _press(rows, k, wall, state, p))]
-
-
-def _friction(direction: np.ndarray, rows: _Rows, name: str, limit: str, number: int) -> DryFriction:
-    letters = tuple(f"{letter}{number}" for letter in "tsu")
-    return DryFriction(
-        name, lambda state, phase, p: rows.stretch(state, direction, speed=True), limit, letters=letters
-    )
-
-
-def _absorber(rows: _Rows, k: int, absorber: Element) -> list[Wall | DryFriction]:
-    """Two walls and a floor of an absorber's cavity."""
-    direction, mass = rows.between(absorber), rows.name("absorber", k, "mass")
-    place, speed = rows.count + k, len(rows.positions) + rows.count + k
-    moved = rows.inverse @ direction
-
-    def wall(letter: str, side: int) -> Wall:
-        push: dict[str, Any] = dict(zip(rows.speeds, (-side * moved).tolist()))
-        push[rows.speeds[place]] = lambda state, phase, p: side / getattr(p, mass)
-        clearance = rows.name("absorber", k, "clearance")
-        return Wall(
-            letter, lambda state, phase, p: getattr(p, clearance) - side * (rows.stretch(state, direction) - state[place]),
-            push, rows.name("absorber", k, "restitution"),
-        )  # fmt: skip
-
-    number = len(rows.elements["friction"]) + k + 1
-    floor = DryFriction(
-        f"floor{k + 1}",
-        lambda state, phase, p: rows.stretch(state, direction, speed=True) - state[speed],
-        rows.name("absorber", k, "friction"),
-        letters=tuple(f"{letter}{number}" for letter in "tsu"),
-    )
-    return [wall(f"L{k + 1}", 1), wall(f"R{k + 1}", -1), floor]
-
-
-def _energy(rows: _Rows, small: Reduced, elements: Mapping[str, Sequence[Element]]) -> Callable[..., Plain]:
-    """Of the structure, its absorbers and its elastic walls: half the stiffness times the square of how deep they are pressed in."""
-
-    def energy(state: States, phase: Plain, p: Named) -> Plain:
-        first = len(rows.positions)
-        total: Plain = 0.0
-        for part, values in (
-            (small.stiffness, state[: rows.count]),
-            (small.mass, state[first : first + rows.count]),
-        ):
-            for i, value in enumerate(values):
-                total = total + 0.5 * value * _sum(part[i], values)
-        for k in range(len(elements["absorber"])):
-            total = (
-                total
-                + 0.5 * getattr(p, rows.name("absorber", k, "mass")) * state[first + rows.count + k] ** 2
-            )
-        for k, wall in enumerate(elements["wall"]):
-            if "stiffness" in wall:
-                beyond = _beyond(rows, k, wall, state, p)
-                deep = 0.5 * (beyond + sqrt(beyond**2))
-                total = total + 0.5 * getattr(p, rows.name("wall", k, "stiffness")) * deep**2
-        return total
-
-    return energy

@@ -1,1 +1,0 @@
-"""Structures: matrices with local contacts, as declared machines."""
