@@ -1,4 +1,8 @@
-"""Progress of long work: a line on a terminal or in a notebook, now and then a line in a log."""
+"""Long work: its progress on a terminal, in a notebook or a log, and nothing lost when it is interrupted.
+
+`diagram`, `atlas`, `chart` and `survey` go through :func:`carried_out`. It shows their progress, remembers in memory what is done
+where no journal is given, and turns Ctrl-C into :class:`Interrupted`, whose ``graph`` holds all that is done; `resume` goes on.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +10,12 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from time import monotonic
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Literal, TypeVar
+
+from .interrupts import Interrupted, Resumable, take, unfinished
+from .journal import Journal, MemoryJournal, checked
 
 Tell = Callable[[Any], None]
 FIRST, AGAIN = 20.0, 60.0  # seconds until a log gets its first line, and between two of them
@@ -37,58 +45,9 @@ def shown(asked: Tell | bool | None = None) -> Iterator[Tell | None]:
         yield _Log() if asked else None
 
 
-class TimeLeft(Protocol):
-    """How much of a piece of work is known to be left."""
-
-    @property
-    def done(self) -> int: ...
-    @property
-    def known(self) -> int: ...
-    @property
-    def seconds(self) -> float: ...
-    @property
-    def budget(self) -> float: ...
-
-
-@runtime_checkable
-class Spoken(Protocol):
-    """A state that says itself where it is."""
-
-    @property
-    def sentence(self) -> str: ...
-
-
-@runtime_checkable
-class Running(Protocol):
-    """The state of a diagram that is being made."""
-
-    @property
-    def message(self) -> str: ...
-    @property
-    def branches(self) -> int: ...
-    @property
-    def special(self) -> int: ...
-    @property
-    def points(self) -> int: ...
-    @property
-    def waiting(self) -> int: ...
-    @property
-    def left(self) -> TimeLeft | None: ...
-
-
 def as_text(state: object) -> str:
-    """Where a run, a chart or a survey is, in one line."""
-    if isinstance(state, Spoken) and state.sentence:
-        return state.sentence
-    if not isinstance(state, Running):
-        return str(state)
-    left = state.left
-    return (
-        f"{state.message}  |  {state.branches} branch{'' if state.branches == 1 else 'es'}, {state.special} special points, "
-        f"{state.points} points, {state.waiting} waiting"
-        + ("" if left is None else f"; {left.done} of {left.known} pieces of work known so far")
-        + ("" if left is None else f"{time_left(left.seconds)}, {left.budget:.0%} of the budget")
-    )
+    """Where a run, a chart or a survey is, in one line: its ``sentence``, where it has one."""
+    return getattr(state, "sentence", "") or str(state)
 
 
 def time_left(seconds: float) -> str:
@@ -173,3 +132,59 @@ def counted(total: int, what: str, asked: Tell | bool | None = None, done: int =
             yield lambda _: progress.update(task, advance=1, refresh=True)
     else:
         yield telling(_Log(count)) if asked else None
+
+
+OnInterrupt = Literal["raise", "return"]
+Asked = Tell | bool | None
+"""``progress`` of the long functions: a callable, False for none, None for a line on a terminal or in a notebook."""
+
+
+Result = TypeVar("Result", bound=Resumable)
+
+
+def carried_out(
+    begin: Callable[[Journal, Tell | None], tuple[Result, Callable[[], None]]],
+    journal: Journal | None,
+    progress: Asked,
+    interrupt: OnInterrupt,
+) -> Result:
+    """The result of long work.
+
+    Parameters
+    ----------
+    begin : callable
+        From a journal and what is told of progress: the result, still empty, and the work that fills it in place.
+    journal : Journal or None
+        None: what is done is remembered in memory until the work is finished.
+    progress : callable, bool or None
+    interrupt : "raise" or "return"
+        What Ctrl-C does: raise `Interrupted`, or end with the unfinished result.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C once the work has begun.
+    ValueError
+        If `interrupt` is neither word, or the journal is none.
+    """
+    check_interrupt(interrupt)
+    kept = MemoryJournal() if journal is None else checked(journal)
+    with shown(progress) as tell:
+        result, work = begin(kept, tell)
+        try:
+            work()
+        except KeyboardInterrupt:
+            take()
+            unfinished(result, partial(carried_out, begin, kept, progress, interrupt))
+            if interrupt == "return":
+                return result
+            raise Interrupted(result) from None
+    return result
+
+
+def check_interrupt(interrupt: str) -> None:
+    """Refuse what Ctrl-C cannot do."""
+    if interrupt not in ("raise", "return"):
+        raise ValueError(
+            f'interrupt = {interrupt!r} must be "raise" (Ctrl-C raises contvines.Interrupted) or "return" (it ends with what is done)'
+        )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.modulation import BAND
+from contvines.shared.motions import BAND
 from orbits.protocol import CycleProblem, Embedding, Symmetry
 from orbits.words import Word
 
@@ -115,7 +115,7 @@ class Motions(CycleProblem):
         -------
         list of dict
             "word" (None where there is none), "periods" and "kind" of each motion and "share" of the starts that lead to it, sorted; of
-            one that does not recur "modulation" and its band, too (see `contvines.shared.modulation`), where it has one.
+            one that does not recur "modulation" and its band, too (see `contvines.shared.motions`), where it has one.
         """
         from orbits.attractors.observation import modulated
         from orbits.attractors.search import met

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from ..continuation.settings import hinted
+from ..shared.figures import PanelOptions
 from ..shared.number_text import figures, figures_in
-from ..shared.plot_options import PanelOptions
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
 

@@ -13,9 +13,9 @@ from ..graph.attractor import Attractor
 from ..graph.graph import Graph
 from ..graph.shortening import short_word
 from ..problems.abilities import Gauged, Sectioned, notation_of
+from ..shared.figures import PlotOptions
 from ..shared.motions import Motion
 from ..shared.number_text import figures
-from ..shared.plot_options import PlotOptions
 from .census import attractors_of
 from .manifolds import Manifold, check_plane, stable_manifolds
 from .population import population_of

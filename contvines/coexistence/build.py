@@ -14,10 +14,9 @@ from ..graph.automatic import new_run
 from ..graph.builder import finish, leave_waiting, limit_reached, tell_waiting
 from ..graph.graph import Graph
 from ..graph.run import Left, Run
-from ..interruptible import Asked, OnInterrupt, carried_out
 from ..interrupts import listening
 from ..journal import Journal
-from ..progress import Tell
+from ..progress import Asked, OnInterrupt, Tell, carried_out
 from .census import Counted, census, locate
 from .effort import BUDGET, Effort
 from .handover import Handover

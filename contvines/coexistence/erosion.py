@@ -13,8 +13,8 @@ from ..continuation.settings import hinted, hinting
 from ..graph.shortening import short_word
 from ..graph.table import with_unit
 from ..problems.abilities import notation_of
+from ..shared.figures import PlotOptions
 from ..shared.number_text import figures, figures_in
-from ..shared.plot_options import PlotOptions
 from ..text_table import Table, titled
 from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
 

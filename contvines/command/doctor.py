@@ -11,7 +11,7 @@ import typer
 from contvines.command.frame import tell
 from contvines.command.options import JsonOption
 from contvines.continuation.settings import Settings
-from contvines.shared.extras import pip_install
+from contvines.shared.on_demand import pip_install
 
 EXTRAS = {
     "machines": ("heyoka",),

@@ -70,7 +70,7 @@ def export(
 
     graph = load(file, problems=measures, trust=trust)
     if isinstance(graph, Chart):
-        from contvines.export.charts import export_chart
+        from contvines.export.files import export_chart
 
         typer.echo(str(export_chart(graph, to.value, target)))
         return

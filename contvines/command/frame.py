@@ -68,9 +68,7 @@ def held(target: Path, quiet: bool, fresh: bool = False, others: tuple[Path, ...
     ValueError
         If a file cannot be set aside.
     """
-    from contvines.store.header import TAILS
-    from contvines.store.publishing import remove_drafts
-    from contvines.store.turns import locked, set_aside
+    from contvines.store.on_disk import TAILS, locked, remove_drafts, set_aside
 
     if not target.parent.is_dir() or (target.exists() and not target.is_file()):  # a pipe, or a terminal
         yield

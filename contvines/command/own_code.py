@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from contvines.command.sentences import refused
-from contvines.shared.python_files import module_of, names_of
+from contvines.shared.files import module_of, names_of
 
 
 def own_code(study: Path, file: str, place: str) -> Path:

@@ -9,7 +9,7 @@ import typer
 from contvines.command.amounts import interval
 from contvines.command.frame import held, interruptible, load_file
 from contvines.command.options import JsonOption, TrustOption, argument, option
-from contvines.shared.extras import needed
+from contvines.shared.on_demand import needed
 from contvines.text_table import fitted
 
 MANY = 2000  # boxes: checking more of them is announced

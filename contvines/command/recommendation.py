@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, TypeAdapter
 
-from contvines.shared.modulation import BAND
+from contvines.shared.motions import BAND
 from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 
@@ -139,7 +139,7 @@ class Recommendation:
     works : float
     met : dict
         Shares of simulated starts (over samples, values, starts) by what they lead to: ``impacts``, ``modulated``, ``calm``, ``stuck``; the
-        largest responses of each, ``calm_peak`` and so on; the band of modulated ones (`contvines.shared.modulation`) and how many are strongly so.
+        largest responses of each, ``calm_peak`` and so on; the band of modulated ones (`contvines.shared.motions`) and how many are strongly so.
     loads : dict
         Largest over the stable motions and samples, by measure.
     checked : (float, float) or None

@@ -16,8 +16,8 @@ import numpy as np
 from contvines.command.recommendation import AGREES, LOADS, MET, Curve, Jump, Place, Recommendation, Start
 from contvines.command.study_data import Sort, Study
 from contvines.command.survey_study import asked_of, options_of
-from contvines.shared.digests import digest_of
-from contvines.shared.modulation import BAND, modulation_of
+from contvines.shared.files import digest_of
+from contvines.shared.motions import BAND, modulation_of
 from contvines.shared.number_text import figures
 from contvines.survey.outcomes import stretches
 from contvines.survey.plan import Plan

@@ -17,7 +17,7 @@ from contvines.command.schema import (
     SurveySection,
     SweepSection,
 )
-from contvines.shared.digests import digest_of
+from contvines.shared.files import digest_of
 
 if TYPE_CHECKING:
     from contvines.flows.problem import FlowProblem

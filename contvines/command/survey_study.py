@@ -13,8 +13,8 @@ from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
 from contvines.flows.family import FlowFamily
 from contvines.flows.problem import FlowProblem
+from contvines.shared.files import module_of
 from contvines.shared.near_names import did_you_mean
-from contvines.shared.python_files import module_of
 from orbits.design import Family
 from orbits.machines.varying import Varying
 from orbits.words import Word

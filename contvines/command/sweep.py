@@ -14,7 +14,7 @@ from contvines.command.options import (
     argument,
     option,
 )
-from contvines.shared.modulation import BAND
+from contvines.shared.motions import BAND
 from contvines.shared.number_text import figures
 from contvines.text_table import Table, fitted, terminal_width
 

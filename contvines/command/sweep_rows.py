@@ -12,8 +12,8 @@ from contvines.command.compose import machine
 from contvines.command.study_data import Study
 from contvines.graph.table import with_unit
 from contvines.shared import row_journal
-from contvines.shared.digests import digest_of
-from contvines.shared.modulation import BAND, SILENT
+from contvines.shared.files import digest_of
+from contvines.shared.motions import BAND, SILENT
 
 if TYPE_CHECKING:
     from orbits.attractors.sweeping import SweepRow
@@ -31,7 +31,7 @@ class Kept:
     cells : text of the CSV's columns.
     attractor : kind of the motion, `sliding` distinguished from `periodic`.
     recurrent : whether the motion recurs.
-    modulation : how it is modulated; see `contvines.shared.modulation`.
+    modulation : how it is modulated; see `contvines.shared.motions`.
     band : lowest, mean and highest of its largest responses in each forcing period; empty where it has none.
     dots : what a picture shows: the largest |q1|, or B at every impact (from the word's first on, where there is one).
     state : state reached, from which the next value goes on.

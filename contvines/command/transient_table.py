@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contvines.command.measured import Rows, Series
-from contvines.shared.csv_files import write_csv
+from contvines.shared.files import write_csv
 from contvines.shared.number_text import figures
 from contvines.text_table import Table, titled
 

@@ -1,6 +1,5 @@
 """Results for other programs: files, columns for tables, standard JSON."""
 
-from .files import ENDINGS, FORMATS, check_target, export
-from .standard_json import json_text
+from .files import ENDINGS, FORMATS, check_target, export, json_text
 
 __all__ = ["ENDINGS", "FORMATS", "check_target", "export", "json_text"]

@@ -1,6 +1,7 @@
-"""A graph as files of AUTO-07p: b.NAME (branches), s.NAME (labelled solutions) and d.NAME (what the labels mean).
+"""A graph as files of AUTO-07p, b.NAME (branches), s.NAME (labelled solutions) and d.NAME (what the labels mean), and as a diagram of XPPAUT.
 
-The formats are those of AUTO-07p's manual (E. J. Doedel and others, section "Output files"): fixed columns of 19 letters.
+The formats are those of AUTO-07p's manual (E. J. Doedel and others, section "Output files"): fixed columns of 19 letters; and of the points that
+XPPAUT's window "AUTO" writes with `Write pts`.
 """
 
 from __future__ import annotations
@@ -14,12 +15,13 @@ import numpy as np
 
 from ..flows.cycle_mesh import CycleMesh
 from ..provenance import comments
-from .columns import measures_of
+from .frames import measures_of
 
 if TYPE_CHECKING:
     from ..branches.branch import Branch
     from ..branches.special_point import SpecialPoint
     from ..graph.graph import Graph
+
 
 TYPES = {"fold": 2, "branch-point": 1, "symmetry-breaking": 1, "hopf": 3}
 """AUTO's number of a kind of special point of an equilibrium, or of a cycle of a map."""
@@ -201,3 +203,32 @@ def _meanings(graph: Graph, labels: dict[str, int]) -> Iterator[str]:
         yield f"{number:6d}  {label:8s} {point.kind:20s} {numbers[point.branch]:6d}  {point.branch:8s} {point.value!r}"
     yield ""
     yield from (f"# {line}" for line in str(graph).splitlines())
+
+
+def write_xpp(graph: Graph, path: Path) -> None:
+    """Write a row per point: parameter, largest and smallest value, type, number of the branch.
+
+    The value is the first state of a flow, the first measure of any other motion. Types are those of XPPAUT: 1 and 2 for stable and
+    unstable equilibria, 3 and 4 for stable and unstable motions in time.
+    """
+    rows = []
+    for number, branch in enumerate(graph.branches.values(), 1):
+        high, low = _ends(branch)
+        cycles = branch.description.get("word", "equilibrium") != "equilibrium"
+        stable = np.zeros(len(branch), dtype=bool) if branch.stable is None else np.asarray(branch.stable)
+        for k, value in enumerate(branch.values):
+            kind = (3 if cycles else 1) + (not stable[k])
+            rows.append(f"{value:.15g} {high[k]:.15g} {low[k]:.15g} {kind} {number}")
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+
+
+def _ends(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
+    """Largest and smallest value of what is shown, each of shape (n,)."""
+    measures = measures_of(branch)
+    names = [name.removeprefix("max ") for name in measures if name.startswith("max ")]
+    state = next((name for name in names if f"min {name}" in measures), None)
+    if state is not None:
+        return measures[f"max {state}"], measures[f"min {state}"]
+    shown = next((name for name in measures if name not in ("norm", "period")), None)
+    values = measures[shown] if shown else np.linalg.norm(branch.points, axis=1)
+    return values, values

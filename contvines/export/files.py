@@ -1,5 +1,8 @@
-"""A graph as files that other programs read: csv, json, graphml, mat."""
+"""A graph, or a chart, as files that other programs read: csv, json, graphml, mat."""
 
+from __future__ import annotations
+
+import json
 import math
 import re
 from collections.abc import Mapping
@@ -10,24 +13,25 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..file_names import is_database, refuse_ending, refuse_place
+from ..graph.table import with_unit
 from ..provenance import carried
-from ..shared.csv_files import write_csv
-from ..shared.extras import needed
-from .auto import places, write_auto
-from .columns import graph_columns, measures_of
+from ..shared.files import write_csv
+from ..shared.on_demand import needed
+from .auto import places, write_auto, write_xpp
+from .frames import chart_rows, graph_columns, measures_of
 from .latex import write_latex
-from .standard_json import json_text
-from .xpp import write_xpp
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
+    from ..loci.chart import Chart
+
 
 FORMATS = ("csv", "json", "graphml", "mat", "latex", "auto", "xpp")
 ENDINGS = {"latex": "tex", "xpp": "dat"}
 """Of files, where they are not called like their format."""
 
 
-def export(graph: "Graph", to: str | None, path: str | Path) -> Path:
+def export(graph: Graph, to: str | None, path: str | Path) -> Path:
     """Write a graph in one of `FORMATS`; None: the one that the name ends in.
 
     csv: one row per point of every branch (branch, index, parameter, stable, real, margin, special point,
@@ -95,7 +99,7 @@ def check_target(path: Path, ending: str) -> None:
         needed("xarray", "tables")
 
 
-def _csv(graph: "Graph", path: Path) -> None:
+def _csv(graph: Graph, path: Path) -> None:
     columns = graph_columns(graph)
     rows = zip(*columns.values(), strict=True)
     write_csv(path, columns, (map(_written, row) for row in rows))
@@ -110,11 +114,11 @@ def _written(value: object) -> object:
     return repr(float(value)) if isinstance(value, float) else value
 
 
-def _json(graph: "Graph", path: Path) -> None:
+def _json(graph: Graph, path: Path) -> None:
     path.write_text(json_text({**graph.to_dict(), **carried(graph)}) + "\n", encoding="utf-8")
 
 
-def _graphml(graph: "Graph", path: Path) -> None:
+def _graphml(graph: Graph, path: Path) -> None:
     """GraphML (graphml.graphdrawing.org): a `key` for each attribute of nodes or edges, then the graph with its data."""
     keys: dict[tuple[str, str, str], ElementTree.Element] = {}
 
@@ -152,7 +156,7 @@ def _flat(data: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _mat(graph: "Graph", path: Path) -> None:
+def _mat(graph: Graph, path: Path) -> None:
     """Structs of arrays; what JSON holds of a branch, a point or the graph are fields, too."""
     from scipy.io import savemat
 
@@ -216,3 +220,55 @@ def _mat_value(value: object) -> object:
             else np.array([*map(_mat_value, value), None], dtype=object)[:-1]
         )
     return np.nan if value is None else value
+
+
+CHART_FORMATS = ("csv", "json")
+
+
+def export_chart(chart: Chart, form: str, path: Path) -> Path:
+    """Write a chart.
+
+    Parameters
+    ----------
+    chart : Chart
+    form : {"csv", "json"}
+        csv has a row per point of every locus: its label, kind and word, both parameters, and whether the motion is real.
+    path : Path
+
+    Raises
+    ------
+    ValueError
+        If there is no such format for charts, or the place will not do.
+    """
+    if form not in CHART_FORMATS:
+        raise ValueError(f"--to {form}: a chart is written as {' or '.join(CHART_FORMATS)}.")
+    check_target(path, form)
+    if form == "json":
+        path.write_text(json_text({**chart.to_dict(), **carried(chart)}) + "\n", encoding="utf-8")
+        return path
+    names = [with_unit(name, chart.units.get(name)) for name in chart.parameters]
+    rows = (
+        (label, kind, word, repr(p), repr(q), int(real))
+        for label, _, kind, word, p, q, real in chart_rows(chart)
+    )
+    write_csv(path, ["locus", "kind", "word", *names, "real"], rows)
+    return path
+
+
+def json_text(data: object, *, indent: int | None = 2) -> str:
+    """Standard JSON at full precision; numbers that JSON lacks (nan, infinities) become null."""
+    return json.dumps(_finite(data), indent=indent, allow_nan=False, ensure_ascii=False)
+
+
+def _finite(data: object) -> object:
+    if isinstance(data, dict):
+        return {str(k): _finite(v) for k, v in data.items()}
+    if isinstance(data, np.ndarray):
+        return _finite(data.tolist())
+    if isinstance(data, list | tuple):
+        return [_finite(v) for v in data]
+    if isinstance(data, complex | np.complexfloating):
+        return _finite([data.real, data.imag])
+    if isinstance(data, np.generic):
+        data = data.item()
+    return None if isinstance(data, float) and not math.isfinite(data) else data

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 
 from ..problems.registry import find_callables
-from ..shared.python_files import module_of, names_of
+from ..shared.files import module_of, names_of
 from .expressions import read_text
 from .problem import FlowProblem, NamedOptions
 

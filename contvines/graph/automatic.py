@@ -12,10 +12,9 @@ from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import checked
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval, problem_and_start
-from ..interruptible import Asked, OnInterrupt, carried_out
 from ..journal import Journal, NullJournal
 from ..problems.registry import without_problem
-from ..progress import Tell
+from ..progress import Asked, OnInterrupt, Tell, carried_out
 from .builder import adopt, begin, finish, work
 from .graph import Graph
 from .limits import NO_LIMITS, Limits

@@ -13,7 +13,7 @@ from ..bifurcation.kinds import LABELS, RENAMED, kind_named
 from ..continuation.settings import hinted
 from ..interrupts import Resumable
 from ..problems.abilities import Several, notation_of
-from ..shared.plot_options import PlotOptions
+from ..shared.figures import PlotOptions
 from .attractor import Attractor
 from .unresolved import Unresolved
 
@@ -299,7 +299,7 @@ class Graph(Resumable):
         ValueError
             If networkx is not installed.
         """
-        from ..shared.extras import needed
+        from ..shared.on_demand import needed
 
         networkx = needed("networkx", "tables")
         network = networkx.MultiDiGraph(parameter=self.parameter, finished=self.finished)

@@ -20,6 +20,7 @@ from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
 from ..interrupts import OPEN
 from ..problems.protocol import Problem
+from ..progress import time_left
 from .graph import Graph, Switch
 from .identity import Register
 from .limits import NO_LIMITS, Limits
@@ -112,6 +113,17 @@ class Progress(NamedTuple):
     waiting: int
     left: Left | None = None
     """Of an atlas."""
+
+    @property
+    def sentence(self) -> str:
+        """All of it in one line."""
+        said = (
+            f"{self.message}  |  {self.branches} branch{'' if self.branches == 1 else 'es'}, {self.special} special points, "
+            f"{self.points} points, {self.waiting} waiting"
+        )
+        if (left := self.left) is not None:
+            said += f"; {left.done} of {left.known} pieces of work known so far{time_left(left.seconds)}, {left.budget:.0%} of the budget"
+        return said
 
 
 class Run:

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ..shared.modulation import MODULATIONS
+from ..shared.motions import MODULATIONS
 
 
 def short_word(word: str, limit: int = 24) -> str:

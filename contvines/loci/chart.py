@@ -16,7 +16,7 @@ from ..graph.well_formed import check_branch, check_fields, fits
 from ..interrupts import Resumable
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
-from ..shared.plot_options import PlotOptions
+from ..shared.figures import PlotOptions
 from .locus import Locus, PlanePoint, Turn
 from .regions import Region
 
@@ -166,7 +166,7 @@ class Chart(Resumable):
             If there is no such format, or the place cannot be written.
         """
         place = Path(path)
-        from ..export.charts import export_chart
+        from ..export.files import export_chart
 
         return export_chart(self, to or place.suffix.lstrip(".").lower(), place)
 

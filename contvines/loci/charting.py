@@ -10,10 +10,9 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
-from ..interruptible import Asked, OnInterrupt, carried_out
 from ..interrupts import listening
 from ..journal import Journal, NullJournal
-from ..progress import Tell
+from ..progress import Asked, OnInterrupt, Tell, carried_out
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
 from .starts import of_own_kind

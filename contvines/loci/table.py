@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contvines.shared.modulation import BAND
+from contvines.shared.motions import BAND
 
 from ..graph.shortening import motion_name, short_word
 from ..graph.table import with_unit

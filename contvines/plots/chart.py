@@ -9,7 +9,7 @@ import numpy as np
 
 from ..continuation.settings import hinting
 from ..graph.shortening import short_word
-from ..shared.modulation import MODULATIONS
+from ..shared.motions import MODULATIONS
 from .figures import Size, Style, freeze, is_low, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, dense, grouped, place_labels, touching
 from .legends import hold_legend, place_legend

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from contvines.file_names import refuse_place
 
 from ..export import json_text
-from ..shared.extras import needed
+from ..shared.on_demand import needed
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph

@@ -1,18 +1,23 @@
-"""Figures in the package's style that pyplot does not keep; the user's own settings come before the package's."""
+"""Figures in the package's style that pyplot does not keep; the user's own settings come before the package's.
+
+The options that every picture takes are those of :func:`contvines.plots.diagram.plot_diagram`; methods hand them on to it.
+"""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from .near_names import did_you_mean
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
 
 HOUSE = Path(__file__).with_name("house.mplstyle")
 STYLES = {path.stem: path for path in Path(__file__).with_name("styles").glob("*.mplstyle")}
@@ -114,3 +119,23 @@ def _picture_class() -> type[Figure]:
             return buffer.getvalue()
 
     return Picture
+
+
+class FigureOptions(TypedDict, total=False):
+    """Of any picture."""
+
+    legend: bool | str
+    figsize: tuple[float, float] | None
+    style: str | Mapping[str, Any] | None
+
+
+class PlotOptions(FigureOptions, total=False):
+    """Of a picture on one pair of axes."""
+
+    axes: Axes | None
+
+
+class PanelOptions(FigureOptions, total=False):
+    """Of a picture on one or several pairs of axes."""
+
+    axes: Axes | Sequence[Axes] | None

@@ -1,10 +1,11 @@
-"""Names of a package that are imported when they are first asked for."""
+"""What is imported when it is first asked for: names of a package, and packages of an extra, with how one is installed."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from types import ModuleType
 
 
 def on_demand(package: str, homes: Mapping[str, str]) -> Callable[[str], object]:
@@ -28,3 +29,36 @@ def on_demand(package: str, homes: Mapping[str, str]) -> Callable[[str], object]
         return found
 
     return find
+
+
+def pip_install(extra: str) -> str:
+    """The command that adds an extra to the package as it is installed: from PyPI, or from the copy that `pip install .` was given."""
+    import json
+    from importlib.metadata import PackageNotFoundError, distribution
+    from pathlib import Path
+    from urllib.parse import urlparse
+    from urllib.request import url2pathname
+
+    source = "contvines"
+    try:
+        origin = json.loads(distribution("contvines").read_text("direct_url.json") or "{}").get("url", "")
+    except PackageNotFoundError:  # used from a copy that is not installed
+        origin = ""
+    if origin.startswith("file:"):
+        path = Path(url2pathname(urlparse(origin).path))
+        source = "." if path == Path.cwd() else str(path) if path.exists() else source
+    return f'pip install "{source}[{extra}]"'
+
+
+def needed(name: str, extra: str) -> ModuleType:
+    """A package of an extra.
+
+    Raises
+    ------
+    ValueError
+        If it is not installed.
+    """
+    try:
+        return import_module(name)
+    except ImportError:
+        raise ValueError(f"this needs {name}, which is not installed: {pip_install(extra)}") from None

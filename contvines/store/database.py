@@ -15,10 +15,19 @@ import numpy as np
 
 from ..interrupts import HELD
 from ..provenance import provenance
-from .header import APPLICATION_ID, TAILS, VERSION, StoreError, check_header, cut_short, damaged, pending
-from .moved_files import found_again
-from .packing import digest_of, packed, printable, printable_text, split, unpacked
-from .publishing import draft_of, publish
+from .on_disk import (
+    APPLICATION_ID,
+    TAILS,
+    VERSION,
+    StoreError,
+    check_header,
+    cut_short,
+    damaged,
+    draft_of,
+    pending,
+    publish,
+)
+from .packing import digest_of, found_again, packed, printable, printable_text, split, unpacked
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph

@@ -7,12 +7,12 @@ nearer than 1e-8 to each other.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS, RENAMED
-from .settings import AGREEMENT
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -224,3 +224,26 @@ def of_chart(chart: Chart) -> dict[str, Any]:
 
 def _moduli(pairs: list[list[float]]) -> list[float]:
     return sorted(float(np.hypot(real, imag)) for real, imag in pairs)
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Differences up to which two results agree, relative to 1 + their size.
+
+    Attributes
+    ----------
+    value : float
+        Of values of special points, if no larger error is stated.
+    end : float
+        Of the ends of branches, loci and stable stretches, as borders are located from either side; and distance of points of one kind whose
+        labels may change.
+    multiplier : float
+        Of multipliers, which move with the square root of the location error at a fold.
+    """
+
+    value: float = 1e-10
+    end: float = 1e-8
+    multiplier: float = 1e-5
+
+
+AGREEMENT = Agreement()

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, TypeVar, overload
 from ..continuation.settings import hinting
 from ..interrupts import Resumable
 from .database import Store
-from .header import TAILS, check_header
-from .publishing import draft_of
+from .on_disk import TAILS, check_header, draft_of
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph

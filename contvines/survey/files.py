@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..shared.extras import needed
+from ..shared.on_demand import needed
 from .plan import PlanError
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, is_strong
+from contvines.shared.motions import BAND, is_strong
 
 from ..coexistence.places import UNBRANCHED
 from ..graph.measures import default_measure

@@ -14,10 +14,10 @@ import numpy as np
 from ..continuation.settings import hinted
 from ..graph.table import with_unit
 from ..interrupts import Resumable
-from ..shared.csv_files import write_csv
-from ..shared.extras import needed
+from ..shared.figures import PanelOptions
+from ..shared.files import write_csv
 from ..shared.number_text import figures
-from ..shared.plot_options import PanelOptions
+from ..shared.on_demand import needed
 from ..text_table import Table, titled
 from .files import read, write
 from .outcomes import KNOWN, OF_ALL

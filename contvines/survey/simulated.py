@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, modulation_of
+from contvines.shared.motions import BAND, modulation_of
 
 from ..coexistence.population import Population
 from ..graph.graph import Graph

@@ -13,12 +13,11 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
-from ..interruptible import OnInterrupt, check_interrupt
 from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of
-from ..progress import counted
-from ..shared import digests
-from ..shared.extras import needed
+from ..progress import OnInterrupt, check_interrupt, counted
+from ..shared.files import digest_of
+from ..shared.on_demand import needed
 from ..shared.row_journal import Rows
 from . import pools
 from .family import Carrying, Family
@@ -181,7 +180,7 @@ def survey(
 
 def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, object] | None) -> str:
     """What decides a survey's rows: surveys that must give the same share it."""
-    return digests.digest_of({"rows": MEANING, **_description(plan, over, within, about)})
+    return digest_of({"rows": MEANING, **_description(plan, over, within, about)})
 
 
 def _description(

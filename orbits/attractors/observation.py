@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, SILENT, modulation_of
-from contvines.shared.motions import wandering
+from contvines.shared.motions import BAND, SILENT, modulation_of, wandering
 from orbits.attractors.attractor import Attractor, Observation
 from orbits.flows.catalogue import flow_of
 from orbits.flows.protocol import Simulator
@@ -159,7 +158,7 @@ class Modulation(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """See `contvines.shared.modulation.modulation_of`."""
+        """See `contvines.shared.motions.modulation_of`."""
         return modulation_of(self.measures)
 
 

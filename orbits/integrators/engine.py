@@ -9,7 +9,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
 
-from contvines.shared.extras import pip_install
+from contvines.shared.on_demand import pip_install
 
 HOW = "{0} (Linux), or conda install heyoka.py -c conda-forge (macOS, Windows)"
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contvines.shared.modulation import BAND
+from contvines.shared.motions import BAND
 
 
 class Measure(NamedTuple):

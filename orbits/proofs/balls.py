@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from decimal import Decimal, InvalidOperation
 from typing import TYPE_CHECKING
 
-from contvines.shared.extras import pip_install
+from contvines.shared.on_demand import pip_install
 from orbits.proofs.obstacles import ProofError
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, SILENT
+from contvines.shared.motions import BAND, SILENT
 from orbits.flows.native import cycle_equations, measures, sampling, vanishing
 from orbits.flows.protocol import Census, Motion
 from orbits.machines.base import Model

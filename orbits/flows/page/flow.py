@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines.shared.modulation import BAND, SILENT
+from contvines.shared.motions import BAND, SILENT
 from orbits.contacts.wall import Wall
 from orbits.flows.page import measures, sampling, vanishing
 from orbits.flows.page.cycle_equations import PageEquations

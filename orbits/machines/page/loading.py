@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from contvines.shared.python_files import module_of, names_of
+from contvines.shared.files import module_of, names_of
 from orbits.machines.names import PAGES, page_machine
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.page import digest_of

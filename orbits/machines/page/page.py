@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, overload
 
-from contvines.shared.python_files import module_of
+from contvines.shared.files import module_of
 
 if TYPE_CHECKING:
     from typing import NoReturn

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from contvines.shared.modulation import BAND
+from contvines.shared.motions import BAND
 from contvines.shared.near_names import did_you_mean
 from orbits.machines.page.page import PageError
 from orbits.machines.physical.quantities import QuantityError

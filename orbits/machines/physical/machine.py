@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from contvines.shared.modulation import BAND
+from contvines.shared.motions import BAND
 from orbits.machines.base import Model
 from orbits.machines.measures import KINDS
 from orbits.machines.names import model_class

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from contvines.shared.extras import pip_install
+from contvines.shared.on_demand import pip_install
 from orbits.machines.parameters import Limits
 from orbits.machines.physical.quantities import Quantity, QuantityError
 

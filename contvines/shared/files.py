@@ -1,12 +1,28 @@
-"""Python files that a user names, and what is in them."""
+"""Tables as CSV files, Python files that a user names, and digests that tell runs apart."""
 
 from __future__ import annotations
 
+import csv
 import hashlib
+import json
 import sys
+from collections.abc import Iterable
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
+
+
+def write_csv(path: str | Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
+    """A line of heads, then one for each row; an OSError where the file cannot be written."""
+    with Path(path).open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows(rows)
+
+
+def digest_of(data: object) -> str:
+    """The same for equal data, ready for JSON; in files since version 0.1, so that it stays what it is."""
+    return hashlib.sha256(json.dumps(data, sort_keys=True, default=str).encode()).hexdigest()
 
 
 def module_of(path: str | Path) -> ModuleType:
