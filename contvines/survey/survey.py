@@ -16,7 +16,7 @@ from ..continuation.settings import hinting
 from ..interrupts import Interrupted, unfinished
 from ..problems.abilities import notation_of
 from ..progress import OnInterrupt, check_interrupt, counted
-from ..shared.files import digest_of
+from ..shared import files
 from ..shared.on_demand import needed
 from ..shared.row_journal import Rows
 from . import pools
@@ -180,7 +180,7 @@ def survey(
 
 def digest_of(plan: Plan, over: str, within: tuple[float, float], about: Mapping[str, object] | None) -> str:
     """What decides a survey's rows: surveys that must give the same share it."""
-    return digest_of({"rows": MEANING, **_description(plan, over, within, about)})
+    return files.digest_of({"rows": MEANING, **_description(plan, over, within, about)})
 
 
 def _description(
