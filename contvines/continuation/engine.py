@@ -242,7 +242,13 @@ class Engine:
 
     # ------------------------------------------------------------------ single points
     def solve(
-        self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
+        self,
+        u: np.ndarray,
+        p: float,
+        border: np.ndarray,
+        target: float,
+        along: np.ndarray | None = None,
+        sweeps: int = 40,
     ) -> Solved | None:
         """The solution with border.(u, p) = target near a guess, to roundoff; None if Newton does not converge.
 
@@ -255,26 +261,17 @@ class Engine:
         target : float
         along : ndarray, optional
             The tangent is returned with <along, tangent> > 0; else with <border, tangent> > 0.
+        sweeps : int
+            Corrections at most.
         """
-        return self._solved(u, float(p), border, float(target), 40, along)
+        self.guess[0, : self.n], self.guess[0, self.n] = u, p
+        return solved_point(self._run(self.guess, float(target), 0.0, ONE, border, along, sweeps)[0], 0)
 
     def polish(
         self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
     ) -> Solved | None:
         """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
-        return self._solved(u, float(p), border, float(target), 0, along)
-
-    def _solved(
-        self,
-        u: np.ndarray,
-        p: float,
-        border: np.ndarray,
-        target: float,
-        sweeps: int,
-        along: np.ndarray | None,
-    ) -> Solved | None:
-        self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return solved_point(self._run(self.guess, target, 0.0, ONE, border, along, sweeps)[0], 0)
+        return self.solve(u, p, border, target, along, 0)
 
     def on_chord(
         self,

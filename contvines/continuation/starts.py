@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol, TypeGuard, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 import numpy as np
 
@@ -112,17 +112,13 @@ def complete(problem: object) -> Problem:
     TypeError
         If it does not.
     """
-    if not _is_complete(problem):
-        missing = [name for name in MEMBERS if not hasattr(problem, name)]
+    missing = [name for name in MEMBERS if not hasattr(problem, name)]
+    if missing:
         raise TypeError(
             f"{type(problem).__name__} does not say its {', '.join(missing)}; derive it from contvines.ProblemDefaults, which "
             "answers what a problem has nothing to say on"
         )
-    return problem
-
-
-def _is_complete(problem: object) -> TypeGuard[Problem]:
-    return all(hasattr(problem, name) for name in MEMBERS)
+    return cast(Problem, problem)
 
 
 def solve_start(engine: Engine, u: ArrayLike, p: float) -> Solved:

@@ -75,7 +75,7 @@ def _wrong_derivative(
             f"; the Jacobian by the unknowns is given as jacobian=, the derivative by {name} as derivative="
         )
         return f"derivative returns shape {shape}; ({n},) is needed{hint if prod(shape) == n * n else ''}"
-    line = functions.quietly(lambda t: functions.value(u, p + t), n)
+    line = functions.quietly(lambda t: functions.value(u, p + t))
     near = along(line, functions.parameter_length(u, p), functions.noise)
     gap = (
         np.abs(given - near.value)
@@ -103,7 +103,7 @@ def _wrong_jacobian(functions: Differentiated, u: np.ndarray, p: float, scales: 
     else:
         return None
     direction = functions.lengths * np.random.default_rng(4).uniform(0.5, 1.0, n) * (-1.0) ** np.arange(n)
-    near = along(functions.quietly(lambda t: functions.value(u + t * direction, p), n), 0.3, functions.noise)
+    near = along(functions.quietly(lambda t: functions.value(u + t * direction, p)), 0.3, functions.noise)
     if not np.isfinite(near.value).all():
         return None
     product = matrix @ direction

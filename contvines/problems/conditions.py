@@ -44,7 +44,7 @@ class Conditions:
         def together(u: np.ndarray, p: float) -> np.ndarray:
             return np.array([np.asarray(g(u, p)).reshape(-1)[0] for g in given])
 
-        self.functions = functions.of(together, None, None, "conditions", len(given))
+        self.functions = functions.of(together, name="conditions", rows=len(given))
         gradient = self.functions.dense_jacobian(u, functions.parameters.start)
         sizes = np.linalg.norm(gradient, axis=1)
         if not (np.isfinite(sizes).all() and (sizes > 0.0).all()):

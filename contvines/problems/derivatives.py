@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from copy import copy
 from time import thread_time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
@@ -103,7 +103,7 @@ class Differentiated:
         self._measure_noise(u, p, value)
         if self.noise.any():  # which may have been taken for bends
             self._measure_lengths(u, p, cost, self.grain)
-        if (jacobian is None or not self._gives_derivative) and not self.noise.any():
+        if (jacobian is None or self.given_slope is None) and not self.noise.any():
             self.complex_step = self._complex_step_works(u, p)
         self.complex_parameters = {parameters.varying: self.complex_step}
 
@@ -112,15 +112,10 @@ class Differentiated:
         if isinstance(given, Mapping):
             given = given.get(self.parameters.varying)
         self._value = UserFunction(self.f, self.name, self.parameters, self.called)
-        self.given_matrix = (
-            None
-            if self.given_jacobian is None
-            else UserFunction(self.given_jacobian, "jacobian", self.parameters, self.called)
+        self.given_matrix, self.given_slope = (
+            None if f is None else UserFunction(f, name, self.parameters, self.called)
+            for f, name in ((self.given_jacobian, "jacobian"), (given, "derivative"))
         )
-        self.given_slope = (
-            None if given is None else UserFunction(given, "derivative", self.parameters, self.called)
-        )
-        self._gives_derivative = given is not None
 
     def against(self, parameters: ParameterSet) -> Differentiated:
         """The same callable with other parameters."""
@@ -132,8 +127,8 @@ class Differentiated:
     def of(
         self,
         f: Callable,
-        jacobian: Callable | None,
-        derivative: Callable | Mapping[str, Callable] | None,
+        jacobian: Callable | None = None,
+        derivative: Callable | Mapping[str, Callable] | None = None,
         name: str | None = None,
         rows: int = 0,
     ) -> Differentiated:
@@ -242,7 +237,7 @@ class Differentiated:
             if self.complex_step:
                 return np.imag(self._value(u + 1j * COMPLEX_STEP * mask, p)) / COMPLEX_STEP
             direction = np.where(mask, self.lengths, 0.0)
-            line = self.quietly(lambda t: self._value(u + t * direction, p), n)
+            line = self.quietly(lambda t: self._value(u + t * direction, p))
             found = self._evaluable(along(line, 1.0, self.noise))
             worst[mask] = found.error.max()
             return found.value
@@ -262,9 +257,7 @@ class Differentiated:
             moved[j] += t
             return self._value(moved, p)
 
-        return self._evaluable(
-            along(self.quietly(shifted, len(self.noise)), float(self.lengths[j]), self.noise)
-        )
+        return self._evaluable(along(self.quietly(shifted), float(self.lengths[j]), self.noise))
 
     def _evaluable(self, found: Difference) -> Difference:
         if not np.isfinite(found.value).all():
@@ -277,7 +270,7 @@ class Differentiated:
             return self.given_slope(u, p)
         if self.complex_in_parameter(u, p):
             return np.imag(self._value(u.astype(complex), complex(p, COMPLEX_STEP))) / COMPLEX_STEP
-        line = self.quietly(lambda t: self._value(u, p + t), len(self.noise))
+        line = self.quietly(lambda t: self._value(u, p + t))
         found = self._evaluable(along(line, self.parameter_length(u, p), self.noise))
         return found.value
 
@@ -293,24 +286,15 @@ class Differentiated:
         """Length over which f bends in the parameter that varies; measured once for each parameter."""
         name = self.parameters.varying
         if name not in self.parameter_lengths:
-            found = bend(
-                self.quietly(lambda t: self._value(u, p + t), len(u)), abs(p) or 1.0, noise=self.grain
-            )
+            found = bend(self.quietly(lambda t: self._value(u, p + t)), abs(p) or 1.0, noise=self.grain)
             self.parameter_lengths[name] = found or abs(p) or 1.0
         return self.parameter_lengths[name]
 
-    def _quietly_at(self, p: float, n: int) -> Callable[[np.ndarray], np.ndarray]:
-        """u -> f(u, p), NaN where it cannot be evaluated."""
-
-        def value(u: np.ndarray) -> np.ndarray:
-            return self.quietly(lambda _: self._value(u, p), n)(0.0)
-
-        return value
-
-    def quietly(self, line: Callable[[float], np.ndarray], n: int) -> Callable[[float], np.ndarray]:
+    def quietly(self, line: Callable[[Any], np.ndarray]) -> Callable[[Any], np.ndarray]:
         """The function with NaN where it cannot be evaluated."""
+        n = len(self.noise)
 
-        def value(t: float) -> np.ndarray:
+        def value(t: float | np.ndarray) -> np.ndarray:
             try:
                 found = line(t)
             except NotEvaluable as error:
@@ -324,13 +308,13 @@ class Differentiated:
         return value
 
     def _measure_lengths(self, u: np.ndarray, p: float, cost: float, grain: float | np.ndarray) -> None:
-        values = self._quietly_at(p, len(u))
-        terms = of_parameter(self.quietly(lambda q: self._value(u, q), len(u)), p)
+        values = self.quietly(lambda v: self._value(v, p))
+        terms = of_parameter(self.quietly(lambda q: self._value(u, q)), p)
         self.lengths, self.bends, self.known = measured(values, u, grain, cost, terms)
 
     def _measure_noise(self, u: np.ndarray, p: float, value: np.ndarray) -> None:
         direction = self.lengths * np.random.default_rng(1).uniform(0.5, 1.0, len(u))
-        line = self.quietly(lambda t: self._value(u + t * direction, p), len(u))
+        line = self.quietly(lambda t: self._value(u + t * direction, p))
         with np.errstate(all="ignore"):
             noise = noise_of(line, DERIVATIVES.spacing)
             change = np.max([np.abs(value), *(np.abs(line(t) - value) for t in (-0.7, 0.3, 1.0))], axis=0)
