@@ -21,6 +21,7 @@ OFTEN = 32
 PIECE = 256  # periods simulated at a time: bounds the memory
 MOST_EVENTS = 400  # per period
 PER_PERIOD = 200  # instants of a cycle
+SAMPLES = 48  # instants; events come on top
 
 
 def observe(found: Attractor, least: float = 0.0) -> Observation:
@@ -130,9 +131,6 @@ class _Tally:
         rate = impacts / periods if periods > 0.0 else 0.0
         self.seen = Observation(periods, extremes, speed, rate, seen.contacts + run.chatters)
         return self.seen
-
-
-SAMPLES = 48  # instants; events come on top
 
 
 class Modulation(NamedTuple):

@@ -25,6 +25,11 @@ if TYPE_CHECKING:
 
 
 DRAWS = 200  # starts drawn at most to find one that can be simulated
+SHORT = 4  # forcing periods of the cycles that are looked for first
+FAR = 0.1  # of a cycle from the simulated motion, relative to 1 + states
+DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed longer; t^(-1/2) gives 8
+MOVES = 8  # times that a creeping motion is moved on
+PLAIN = 40  # events up to which the plainest reading is looked for
 
 
 def find_attractor(
@@ -105,13 +110,6 @@ def different_attractors(
         if not any(one.distance(known) < SIMULATING.same for known in found):
             found.append(one)
     return found
-
-
-SHORT = 4  # forcing periods of the cycles that are looked for first
-FAR = 0.1  # of a cycle from the simulated motion, relative to 1 + states
-DRIFTS = 2.0  # times: so much the difference of two returns changes while the motion is followed longer; t^(-1/2) gives 8
-MOVES = 8  # times that a creeping motion is moved on
-PLAIN = 40  # events up to which the plainest reading is looked for
 
 
 def attracted(

@@ -41,6 +41,7 @@ ENDS = {
     "aperiodic": "goes to a motion without a period",
 }
 """What simulation does where it finds no orbit."""
+TRANSIENT = 60  # forcing periods, or events of a self-excited motion
 
 
 def dead_end(problem: CycleProblem, point: BorderPoint) -> str:
@@ -124,9 +125,6 @@ def _gives_way_one_way(orbit: Orbit) -> bool:
         return False
     left, right = model.rest.reserves(orbit.params)
     return bool(abs(left - right) > EVENTS.zero * model.friction_acceleration(orbit.params))
-
-
-TRANSIENT = 60  # forcing periods, or events of a self-excited motion
 
 
 def settled(orbit: Orbit, params: np.ndarray) -> tuple[Orbit | None, str]:

@@ -31,6 +31,8 @@ TRIED = 6  # values of the parameters with which they are tried
 ASTRAY = 0.1  # of the mean time between impacts: data that scatter more are not described by the model
 HALVINGS = 40  # of a default interval, towards what a parameter can be
 SETTLED = 400  # forcing periods before a steady response is read
+WIDEST = 0.1  # step of differences, of the limits' span
+AGREEING = 0.3  # relative difference of slopes from one step and from four times that, where data are smooth
 
 
 def from_impacts(
@@ -276,10 +278,6 @@ def _possible(model: Varying, name: str, value: float, end: float) -> float:
         middle = 0.5 * (inside + outside)
         inside, outside = (middle, outside) if can_be(middle) else (inside, middle)
     return inside
-
-
-WIDEST = 0.1  # step of differences, of the limits' span
-AGREEING = 0.3  # relative difference of slopes from one step and from four times that, where data are smooth
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,6 +31,13 @@ if TYPE_CHECKING:
 
 PLACES = 5  # where an orbit is looked for in the interval
 NARROW = 1.0 / 64.0  # the least part of the way that is tried
+DRAWN = 3  # starts at the first, the middle and the last value
+USUAL, LONG = (
+    200,
+    800,
+)  # forcing periods that are left out, and of a motion without a period that may be a transient
+ENDS = 0.01  # relative fall of the response by which a transient is known
+CLIMBED = 24  # values to either side of the largest response
 
 Near = tuple[np.ndarray, np.ndarray, tuple[str, ...], tuple[Mode, ...], int]
 """What a neighbour's orbit may begin with: nodes, parameter vector, events, modes, periods."""
@@ -232,15 +239,6 @@ class Family:
             if goal == 1.0:
                 return orbit
             nodes, reached = orbit.nodes, goal
-
-
-DRAWN = 3  # starts at the first, the middle and the last value
-USUAL, LONG = (
-    200,
-    800,
-)  # forcing periods that are left out, and of a motion without a period that may be a transient
-ENDS = 0.01  # relative fall of the response by which a transient is known
-CLIMBED = 24  # values to either side of the largest response
 
 
 def swept_responses(

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 MOST_EVENTS = 20_000  # in a hundredth of the natural period
 SLICE = 20_000  # rows of one call of the native core
+BAND = 0.05  # share of its last size within which a response has settled
 
 
 class Dissipation:
@@ -312,9 +313,6 @@ def _march_plainly(
             out[row, 3] = bare
             row += 1
     return count
-
-
-BAND = 0.05  # share of its last size within which a response has settled
 
 
 def settled(times: np.ndarray, motion: np.ndarray, periods: int) -> float:

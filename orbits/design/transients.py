@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 NINE_TENTHS = 0.9
 LONGEST = 4000.0  # forcing periods of a free decay
+FEWEST, MOST = 60, 2000  # forcing periods
+CONSTANTS = 6.0  # time constants of the bare oscillator that are followed
+PER_PERIOD = 80  # samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,11 +144,6 @@ def _when(times: np.ndarray, energy: np.ndarray, level: float) -> float:
         return float(times[0])
     share = math.log(energy[i - 1] / level) / math.log(energy[i - 1] / max(energy[i], SMALLEST))
     return float(times[i - 1] + share * (times[i] - times[i - 1]))
-
-
-FEWEST, MOST = 60, 2000  # forcing periods
-CONSTANTS = 6.0  # time constants of the bare oscillator that are followed
-PER_PERIOD = 80  # samples
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 PANELS = ("both", "phase", "history")
 NARROW, LOW = 6.0, 3.4  # inches: below, panels stand under one another, or the phase portrait stands alone
+WALL = "#d9d9d9"
+MARKER = {"color": "white", "mec": "black", "mew": 1.0, "ms": 6, "ls": "none", "zorder": 4}
 
 
 @hinting
@@ -157,10 +159,6 @@ def key(figure: Figure, panels: Sequence[Axes], own: bool, legend: bool | str) -
     gap = (low - axes.bbox.y0 - 4.0 * figure.dpi / 72.0) / axes.bbox.height
     look = {"ncols": 2, "frameon": False, "fontsize": "small", "borderaxespad": 0.0}
     axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, gap), **look)
-
-
-WALL = "#d9d9d9"
-MARKER = {"color": "white", "mec": "black", "mew": 1.0, "ms": 6, "ls": "none", "zorder": 4}
 
 
 def phase(axes: Axes, seen: Shown, real: bool) -> None:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 LINE, CAVITY, ABSORBER = "#0b3c6f", "#6d6d6d", "#b5531c"
 COLOURS = (LINE, ABSORBER, "#3f7f4c", "#7a4b8f", "#8a6d1f", "#4a4a4a")
 MARKS = "os^Dv<>Ph*Xd"
+ALIKE = 0.02  # a state is the rate of another one if it is within this share of it
 
 
 class Curve(NamedTuple):
@@ -168,9 +169,6 @@ def quantities(orbit: Orbit) -> dict[str, str]:
     return {
         name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in about["parameters"].items()
     }
-
-
-ALIKE = 0.02  # a state is the rate of another one if it is within this share of it
 
 
 def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:

@@ -21,6 +21,14 @@ LONGEST_WORD = 400
 PER_PERIOD = (
     4  # events of the longest cycle that are looked for per period asked for, of a self-excited machine
 )
+ITERATIONS = 12
+LONGEST = 0.2  # of the box: longer steps are shortened
+SHORTER = 3  # times a step is halved where the motion does not come back
+BEYOND = 0.5  # of the box: so far outside nothing is looked for
+WARM = (
+    3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
+)
+EVENTS = 400  # in a forcing period at most
 
 
 def embedded_cycles(simulator: Simulator, longest: int) -> Iterator[Orbit]:
@@ -91,12 +99,6 @@ def _returns(
     return [(int(i), int(j)) for i, j, size in rows if size < NEAR and j - i <= LONGEST_WORD]
 
 
-ITERATIONS = 12
-LONGEST = 0.2  # of the box: longer steps are shortened
-SHORTER = 3  # times a step is halved where the motion does not come back
-BEYOND = 0.5  # of the box: so far outside nothing is looked for
-
-
 def fixed_point(
     step: Callable[[np.ndarray], np.ndarray], x: np.ndarray, box: np.ndarray, hard: np.ndarray
 ) -> np.ndarray | None:
@@ -153,12 +155,6 @@ def fixed_point(
         if (np.abs(x - middle) > outside).any():
             return None
     return None
-
-
-WARM = (
-    3.0  # forcing periods of each start, after which the search begins: what is never reached again is left
-)
-EVENTS = 400  # in a forcing period at most
 
 
 def returning_cycles(
