@@ -10,6 +10,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 from contvines.shared.near_names import hinted
 from orbits.contacts.letters import (
@@ -28,15 +29,26 @@ from orbits.contacts.letters import (
 from orbits.settings import GROWING
 
 
-class SwitchLaw:
-    """What a switch means for words: a letter for each crossing, its sign as mode, and how crossings come and go."""
+@hinted
+@dataclass(frozen=True, eq=False)
+class Switch:
+    """A surface at which the equations of motion change: stops with springs, backlash, clutches.
+
+    `motion` finds the sign of the surface, +1 or -1, in ``contact.<name>``.
+
+    Parameters
+    ----------
+    name : str
+        Its letters in words are ``name+`` and ``name-``: the sign after the event.
+    surface : callable
+        ``(state, phase, p)`` -> a number that is zero on the surface.
+    """
 
     name: str
-    reversal = SWITCH
-    """The event at which its sign changes by itself."""
+    surface: Callable
 
-    def __init__(self, name: str) -> None:
-        self.name = name
+    reversal: ClassVar[int] = SWITCH
+    """The event at which its sign changes by itself."""
 
     @property
     def letters(self) -> tuple[str, str]:
@@ -164,25 +176,6 @@ class SwitchLaw:
                 events, modes, spots = (word.events[hit],), (word.mode(place + 1),), (Spot(hit),)
                 return [Change(place, place + 2, events, modes, spots, Grows.MARGIN, What.CROSSING_VANISHES)]
         return self.weakened(site, j)
-
-
-@hinted
-@dataclass(frozen=True, eq=False)
-class Switch(SwitchLaw):
-    """A surface at which the equations of motion change: stops with springs, backlash, clutches.
-
-    `motion` finds the sign of the surface, +1 or -1, in ``contact.<name>``.
-
-    Parameters
-    ----------
-    name : str
-        Its letters in words are ``name+`` and ``name-``: the sign after the event.
-    surface : callable
-        ``(state, phase, p)`` -> a number that is zero on the surface.
-    """
-
-    name: str
-    surface: Callable
 
 
 def touched(site: Site, j: int, k: int) -> list[Change]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -195,18 +194,25 @@ def track(orbit: Orbit, motion: dict[str, np.ndarray]) -> dict[str, Any] | None:
     if not rates:
         return None
     bodies = {velocity: place for place, velocity in rates.items()}
-    walls = []
-    machine = orbit.model
+    walls, machine = [], orbit.model
+    names, p = machine.node_names[1:], Named("p", orbit.parameters)
+    rows = np.column_stack([motion[name] for name in names])
+    phases = motion["phase"] if machine.forced else [NoPhase()] * len(rows)
+    path = [(States(names, row), phase) for row, phase in zip(rows, phases, strict=True)]
     for contact in machine.contacts if isinstance(machine, Machine) else ():
         if not isinstance(contact, Wall):
             continue
         pushed = [name for name in contact.push if name in bodies]
-        if len(pushed) == 1:
-            gaps = _gaps(orbit, contact, motion)
-            side = -1.0 if _number(contact.push[pushed[0]], orbit, motion) > 0.0 else 1.0
-            walls.append(
-                {"name": contact.letter, "at": motion[bodies[pushed[0]]] + side * gaps, "side": int(side)}
-            )
+        if len(pushed) != 1:
+            continue
+        push = contact.push[pushed[0]]  # what a unit impulse does to the velocity
+        if callable(push):
+            push = push(*path[0], p)
+        elif isinstance(push, str):
+            push = orbit.parameters[push]
+        side = -1 if push > 0.0 else 1
+        gaps = np.array([float(contact.gap(*at, p)) for at in path])
+        walls.append({"name": contact.letter, "at": motion[bodies[pushed[0]]] + side * gaps, "side": side})
     return {
         "bodies": {place: motion[place] for place in rates},
         "walls": walls,
@@ -233,26 +239,6 @@ def _rates(states: tuple[str, ...], motion: dict[str, np.ndarray]) -> dict[str, 
                 found[place] = rate
                 break
     return found
-
-
-def _states(orbit: Orbit, motion: dict[str, np.ndarray]) -> list[tuple[States, Any]]:
-    names = orbit.model.node_names[1:]
-    rows = np.column_stack([motion[name] for name in names])
-    phases = motion["phase"] if orbit.model.forced else [NoPhase()] * len(rows)
-    return [(States(names, row), phase) for row, phase in zip(rows, phases, strict=True)]
-
-
-def _gaps(orbit: Orbit, contact: Wall, motion: dict[str, np.ndarray]) -> np.ndarray:
-    p = Named("p", orbit.parameters)
-    return np.array([float(contact.gap(state, phase, p)) for state, phase in _states(orbit, motion)])
-
-
-def _number(push: float | str | Callable, orbit: Orbit, motion: dict[str, np.ndarray]) -> float:
-    """What a unit impulse does to a velocity, at the start of the period."""
-    if callable(push):
-        state, phase = _states(orbit, motion)[0]
-        return float(push(state, phase, Named("p", orbit.parameters)))
-    return float(orbit.parameters[push] if isinstance(push, str) else push)
 
 
 def scene(orbit: Orbit, points: int = 120) -> dict[str, Any]:
