@@ -99,11 +99,6 @@ class OrbitProblem(Motions):
         return self.equations.workspace()
 
     @property
-    def scratch(self) -> tuple[np.ndarray, ...]:
-        """A workspace for single calls, whose contents nobody relies on."""
-        return self.equations.scratch
-
-    @property
     def parameters(self) -> dict[str, float]:
         """All parameters that may vary, by name; of the one that does the starting value."""
         return {
@@ -361,18 +356,13 @@ class OrbitProblem(Motions):
             "word": self.spelling,
             **self.word.describe(),
             "periods": self.periods,
-            "impacts": self.impacts if self.word.alphabet.walled else None,
+            "impacts": self.word.impacts if self.word.alphabet.walled else None,
             "parameter": self.parameter,
             "params": [float(value) for value in self.params],
             **({"units": self.model.units} if self.model.units else {}),
             "symmetric": self.symmetric,
             **({"counted_in": list(self.units)} if self.units != PLAIN else {}),
         }
-
-    @property
-    def impacts(self) -> int:
-        """Impacts per period of the cycle."""
-        return self.word.impacts
 
 
 def rebuild(description: Mapping[str, Any], trust: bool = False) -> OrbitProblem | None:

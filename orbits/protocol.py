@@ -45,14 +45,10 @@ class CycleProblem(Protocol):
     shift: float
     n_multipliers: int
     n_margins: int
-    data: object
     equations: Equations
 
     @property
     def spelling(self) -> str: ...
-
-    @property
-    def scratch(self) -> object: ...
 
     @property
     def image_offset(self) -> Callable[[float], np.ndarray] | None: ...

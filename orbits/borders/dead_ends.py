@@ -22,18 +22,9 @@ if TYPE_CHECKING:
     from orbits.protocol import BorderPoint
 
 
-CREEPS = (
-    "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
-)
-FALLING = "impacts on {contact} fall together: beyond the border infinitely many pile up, which simulation follows to their end and no finite word describes"
-PILING = "impacts pile up at a wall: of those before it the slowest has {speed:.1e} of the machine's own speed, and a further one cannot be distinguished from rest"
-TOUCHING = "turns pile up at a wall: of those before it the nearest keeps {gap:.1e} of the machine's own length, and a further one cannot be distinguished from contact"
-FADING = "a stick that lasts {length:.1e} of the machine's own time, with {reserve:.1e} of its friction in reserve, is about to vanish as well: motions between the two borders cannot be resolved"
 UNKNOWN = (
     "no motion that goes on from this one was found, neither by the rules of {contact} nor by simulation"
 )
-AT_REST = UNKNOWN.format(contact="the contacts")
-
 ENDS = {
     "chatter": "goes to a motion on which impacts pile up",
     "rest": "comes to rest",
@@ -49,11 +40,16 @@ def dead_end(problem: CycleProblem, point: BorderPoint) -> str:
     u, p = np.asarray(point.u, dtype=float), float(point.value)
     orbit = problem.orbit(u, p)
     if not orbit.word.modes:
-        return CREEPS if _gives_way_one_way(orbit) else AT_REST
-    index = getattr(point, "margin_index", None)
+        if _gives_way_one_way(orbit):
+            return "friction gives way in one direction only: the absorber creeps along the cavity until a wall stops it"
+        return UNKNOWN.format(contact="the contacts")
+    index = point.margin_index
     contact = "the contacts" if index is None else _contact(orbit, int(index))
     if index is not None and border_kind(orbit.word, int(index)) == "vanishing-event":
-        return FALLING.format(contact=contact)
+        return (
+            f"impacts on {contact} fall together: beyond the border infinitely many pile up, which simulation follows to their end "
+            "and no finite word describes"
+        )
     near = _nearly_vanishing(orbit)
     return near or "; ".join([UNKNOWN.format(contact=contact), *_goes_to(problem, orbit, p)])
 
@@ -78,14 +74,23 @@ def _nearly_vanishing(orbit: Orbit) -> str:
         if m.kind == "wall" and m.segment in turns and BORDERING.shown < m.value < BORDERING.slow
     ]
     if speeds:
-        return PILING.format(speed=min(speeds))
+        return (
+            f"impacts pile up at a wall: of those before it the slowest has {min(speeds):.1e} of the machine's own speed, and a further "
+            "one cannot be distinguished from rest"
+        )
     if gaps:
-        return TOUCHING.format(gap=min(gaps))
+        return (
+            f"turns pile up at a wall: of those before it the nearest keeps {min(gaps):.1e} of the machine's own length, and a further "
+            "one cannot be distinguished from contact"
+        )
     seen = {(m.kind, m.segment): m.value for m in margins}
     for place in range(len(word)):
         pair = seen.get(("duration", place), np.inf), seen.get(("stick", place), np.inf)
         if word.letter(place).kind == STICK and min(pair) > BORDERING.shown and max(pair) < BORDERING.slow:
-            return FADING.format(length=pair[0], reserve=pair[1])
+            return (
+                f"a stick that lasts {pair[0]:.1e} of the machine's own time, with {pair[1]:.1e} of its friction in reserve, is about to "
+                "vanish as well: motions between the two borders cannot be resolved"
+            )
     return ""
 
 
