@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from orbits.borders.neighbours import Border, Grown, Held, begun, followed, grown, parameter_unit
+from orbits.borders.neighbours import Border, begun, followed, grown, parameter_unit
 from orbits.borders.rewriting import Edit, edits_at
 from orbits.cycles.rounds import MOST, Rounds, choices, derived, escape, judged
 from orbits.orbit import Orbit
@@ -31,29 +31,28 @@ def escapes(border: Border, beside: list[Border]) -> Iterator[Seed]:
     hopeless = [set() if rounds is None else rounds.hopeless(MOST) for rounds in known]
     if hopeless and all(len(no) == len(choices(MOST)) for no in hopeless):
         return
-    wider, whole = _repeated(problem, orbit, 2)
-    first = edits_at(whole, border.margin, problem.length)
+    first = edits_at(_repeated(problem, orbit, 2)[1], border.margin, problem.length)
     if [edit.change for edit in first] != [edit.change for edit in edits]:
         hopeless = [set() for _ in first]
-    for rounds in range(2, MOST + 1):
-        for changed in (1, rounds - 1) if rounds > 2 else (1,):
-            wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
-            if not wanted or (changed > 1 and not problem.forced):
-                continue
-            if rounds > 2:
-                wider, whole = _repeated(problem, orbit, rounds)
-            found = _grown_in(problem, wider, whole, p, wanted, rounds, changed)
-            if found is None:
-                continue
-            other, there = found[0].problem, found[0].orbit()
-            root = there.root()
-            if (len(root.word), root.periods) != (len(other.word), other.periods) or (
-                there.symmetric and not other.symmetric
-            ):
-                continue
-            if followed(there):
-                note = f"{found[1]}: {escape(problem.symmetric, rounds)}"
-                yield Seed(*found[0], "border", note, False)
+    for rounds, changed in choices(MOST):  # the first rounds, as many as `changed`, go through the change
+        wanted = [edit for edit, no in zip(first, hopeless) if (rounds, changed) not in no]
+        if not wanted or (changed > 1 and not problem.forced):
+            continue
+        wider, whole = _repeated(problem, orbit, rounds)
+        ways = BORDERING.sizes if rounds == 2 else BORDERING.sizes[:2]
+        for edit in wanted:
+            changes = [edit.later(k, problem, p) for k in range(changed)]
+            found = grown(begun(wider, whole, p, changes), ways, steady=rounds > 2)
+            if found is not None:
+                break
+        else:
+            continue
+        other, there = found.problem, found.orbit()
+        root = there.root()
+        shorter = (len(root.word), root.periods) != (len(other.word), other.periods)
+        if not shorter and (other.symmetric or not there.symmetric) and followed(there):
+            note = f"{edit.change.what.value}: {escape(problem.symmetric, rounds)}"
+            yield Seed(*found, "border", note, False)
 
 
 def _repeated(problem: CycleProblem, orbit: Orbit, rounds: int) -> tuple[CycleProblem, Orbit]:
@@ -65,31 +64,25 @@ def _repeated(problem: CycleProblem, orbit: Orbit, rounds: int) -> tuple[CyclePr
     return problem.sibling(whole.word, whole.periods, False), whole
 
 
-def _grown_in(
-    problem: CycleProblem,
-    wider: CycleProblem,
-    whole: Orbit,
-    p: float,
-    choices: list[Edit],
-    rounds: int,
-    changed: int,
-) -> tuple[Grown, str] | None:
-    """The orbit in which the first rounds of the problem, as many as `changed`, go through one of the changes."""
-    for edit in choices:
-        ways = BORDERING.sizes if rounds == 2 else BORDERING.sizes[:2]
-        edits = [edit.later(k, problem, p) for k in range(changed)]
-        found = grown(begun(wider, whole, p, edits), ways, steady=rounds > 2)
-        if found is not None:
-            return found, edit.change.what.value
-    return None
-
-
 def _rounds_at(border: Border, edit: Edit, unchanged: list[tuple[np.ndarray, float] | None]) -> Rounds | None:
-    """Unchanged and changed rounds of a border cycle; None where they cannot be determined."""
-    other, solutions = _near_border(border, edit)
-    if not solutions:
+    """Unchanged and changed rounds of a border cycle; None where they cannot be determined.
+
+    Solutions with the new word at or next to the border count, real or not. Where those do not tend to the border they say nothing about what is next to it.
+    """
+    new = border.begun(edit)
+    if new is None:
         return None
-    kinds = [unchanged, [_derivative(other, held.u, held.p) for held in solutions[-2:]]]
+    other, solutions = new.stated.problem, [(new.guess, border.p)]
+    if new.growing is not None:
+        climbed = new.climbed(BORDERING.sizes[0])[-2:]
+        if len(climbed) < 2:
+            return None
+        far, near = (abs(held.p - border.p) for held in climbed)
+        # of the distances at which something has a tenth of its size none is more than a tenth, but for higher orders
+        if not near <= max(0.5 * far, BORDERING.placed * parameter_unit(border.problem, border.p)):
+            return None
+        solutions = [(held.u, held.p) for held in climbed]
+    kinds = [unchanged, [_derivative(other, u, p) for u, p in solutions]]
     flow, model = border.orbit.flow, border.orbit.model
     loose = {*flow.loose(model, border.problem.word)} & {*flow.loose(model, other.word)}
     if loose:  # nothing depends on where such a motion is
@@ -100,26 +93,6 @@ def _rounds_at(border: Border, edit: Edit, unchanged: list[tuple[np.ndarray, flo
 
 def _elsewhere(derivative: np.ndarray, entries: list[int]) -> np.ndarray:
     return np.delete(np.delete(derivative, entries, axis=0), entries, axis=1)
-
-
-def _near_border(border: Border, edit: Edit) -> tuple[CycleProblem, list[Held]]:
-    """The new word's solutions at or next to the border, real or not, with what grows at sizes that become smaller.
-
-    None where these do not tend to the border: they say nothing about what is next to it.
-    """
-    new = border.begun(edit)
-    if new is None:
-        return border.problem, []
-    other = new.stated.problem
-    if new.growing is None:
-        return other, [Held(new.guess, border.p, new.guess, 0.0)]
-    climbed = new.climbed(BORDERING.sizes[0])
-    if len(climbed) < 2:
-        return other, []
-    far, near = (abs(held.p - border.p) for held in climbed[-2:])
-    # of the distances at which something has a tenth of its size none is more than a tenth, but for higher orders
-    nearer = near <= max(0.5 * far, BORDERING.placed * parameter_unit(border.problem, border.p))
-    return other, climbed if nearer else []
 
 
 def _derivative(problem: CycleProblem, u: np.ndarray, p: float) -> tuple[np.ndarray, float] | None:
