@@ -15,7 +15,7 @@ from ..problems.registry import without_problem
 from .ending import Ending
 
 if TYPE_CHECKING:
-    from ..flows.without_rates import MeasuresWithoutRates
+    from ..flows.measures import MeasuresWithoutRates
     from ..problems.protocol import BorderPoint, Problem
 
 
@@ -177,7 +177,7 @@ class Branch:
         """What is measured of a flow that was loaded without its problem."""
         if self.problem is not None or "flow" not in self.description:
             return None
-        from ..flows.without_rates import measures_without_rates  # which diagrams of machines do without
+        from ..flows.measures import measures_without_rates  # which diagrams of machines do without
 
         return measures_without_rates(self.description, self.points.shape[1])
 

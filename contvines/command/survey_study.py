@@ -11,7 +11,7 @@ from contvines.command.conditions import check_range
 from contvines.command.own_code import own_code
 from contvines.command.sentences import refused
 from contvines.command.study_data import Sort, Study
-from contvines.flows.family import FlowFamily
+from contvines.flows.files import FlowFamily
 from contvines.flows.problem import FlowProblem
 from contvines.shared.files import module_of
 from contvines.shared.near_names import did_you_mean

@@ -6,6 +6,7 @@ The `data` and the workspaces of such a problem have an attribute ``memory``: th
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
@@ -188,3 +189,26 @@ def _newton() -> Callable[..., float]:
 def native_table(name: str, *number: int) -> int:
     """Address of a table of the native core, from the function of native/core.cpp that returns it."""
     return int(function(name, POINTER, *[WHOLE] * len(number))(*number))
+
+
+class KernelFunctions(Protocol):
+    """The functions of a problem (see the contract in `contvines.problems.protocol`): `contvines.problems.protocol.Kernels`, or a compiled problem's `contvines.core.table.TableKernels`."""
+
+    @property
+    def linearise(self) -> Callable[..., float]: ...
+    @property
+    def bordered(self) -> Callable[..., float]: ...
+    @property
+    def inspect(self) -> Callable[..., None]: ...
+    @property
+    def compiled(self) -> bool: ...
+    @property
+    def assign(self) -> Callable[..., None] | None: ...
+    @property
+    def flip(self) -> Callable[..., None] | None: ...
+    @property
+    def transpose(self) -> Callable[..., None] | None: ...
+    @property
+    def column(self) -> int: ...
+    @property
+    def matrix(self) -> Callable[..., np.ndarray] | None: ...

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from .auto_files import AutoSolution, read_auto
-from .compiled import CompiledRates
-from .files import read_ode
+from .at_points import CompiledRates
+from .files import AutoSolution, read_auto, read_ode
 from .problem import FlowProblem
 from .settings import FlowSettings
 

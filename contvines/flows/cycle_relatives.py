@@ -1,40 +1,49 @@
-"""CycleRelatives: mirror images, doubled and halved cycles, and what tells that two cycles are one."""
+"""CycleRelatives: mirror images, doubled and halved cycles, what tells that two cycles are one, and where branches of cycles end."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from ..problems.protocol import Embedding, Symmetry
+from contvines.shared.floating_point import TINY
+
+from ..problems.functions import NotEvaluable
+from ..problems.protocol import Embedding, Symmetry, margin_of
 from ..problems.symmetries import in_order
 from . import mesh
-from .cycle_borders import CycleBorders
+from .cycle_mesh import CycleMesh
+from .field import FINER
+from .infinite_period import nearby_equilibrium
+from .work import CycleWork, distance_to_rest, workspace
 
 if TYPE_CHECKING:
     from ..problems.algebraic import AlgebraicProblem
+    from ..problems.protocol import BorderPoint
 
 MEANS = 20  # per state, at most: ten intervals of degree two have as many values
+NEARLY = 10.0  # times the distance at which a cycle is homoclinic: so near it must be in each coordinate
 
 
-class CycleRelatives(CycleBorders):
-    """Symmetries of cycles, those of half and of twice the period, and their identity."""
+class CycleRelatives(CycleMesh):
+    """Symmetries of cycles, those of half and of twice the period, their identity; how far they are from being homoclinic, and from events that stop them."""
 
     def _symmetries(self) -> list[Symmetry]:
-        found = []
-        even = self.intervals % 2 == 0
-        if even and self.copies % 2 == 0 and (self.free_period or self.rounds % 2 == 0):
-            at = self._kind_at if self.free_period else None
-            found.append(Symmetry("period-doubling", self._half_later, self._root, at))
-        elif even and self.free_period:
+        found, mirror = [], self.flow.mirror
+        even, free = self.intervals % 2 == 0, bool(self.free_period)
+        if even and self.copies % 2 == 0 and (free or self.rounds % 2 == 0):
+            found.append(
+                Symmetry("period-doubling", self._half_later, self._root, self._kind_at if free else None)
+            )
+        elif even and free:
             found.append(Symmetry("hopf", self._half_later, self._root))
-        mirror = self.flow.mirror
-        if mirror is not None:
-            if even and (self.free_period or self.flow.mirror_shifted != (self.rounds % 2 == 0)):
-                found.append(Symmetry("symmetry-breaking", lambda u: self._mirrored(self._half_later(u))))
-            if self.free_period or not self.flow.mirror_shifted:
-                found.append(Symmetry("symmetry-breaking", self._mirrored))
+        shifted = self.flow.mirror_shifted
+        if mirror is not None and even and (free or shifted != (self.rounds % 2 == 0)):
+            found.append(Symmetry("symmetry-breaking", lambda u: self._mirrored(self._half_later(u))))
+        if mirror is not None and (free or not shifted):
+            found.append(Symmetry("symmetry-breaking", self._mirrored))
         return found
 
     def _kind_at(self, u: np.ndarray) -> str:
@@ -43,18 +52,11 @@ class CycleRelatives(CycleBorders):
         return "hopf" if np.ptp(y, axis=0).max() < self.flow.settings.at_rest else "period-doubling"
 
     def _half_later(self, u: np.ndarray) -> np.ndarray:
-        v = np.array(u, dtype=float)
-        x = v[: self.states].reshape(self.intervals, -1)
-        v[: self.states] = np.roll(x, self.intervals // 2, axis=0).reshape(-1)
-        return v
+        x = u[: self.states].reshape(self.intervals, -1)
+        return np.append(np.roll(x, self.intervals // 2, axis=0), u[self.states :])
 
     def _mirrored(self, u: np.ndarray) -> np.ndarray:
-        v = np.array(u, dtype=float)
-        x = v[: self.states].reshape(-1, self.node)
-        mirror = self.flow.mirror
-        assert mirror is not None
-        v[: self.states] = np.array([mirror(y) for y in x]).reshape(-1)
-        return v
+        return np.append(self.flow.mirrored(u[: self.states].reshape(-1, self.node)), u[self.states :])
 
     def _root(self, u: np.ndarray) -> tuple[AlgebraicProblem | Self, np.ndarray]:
         return self.root(u, self.p0, self.flow.settings.at_rest) or (self, u)
@@ -63,27 +65,19 @@ class CycleRelatives(CycleBorders):
         self, u: np.ndarray, p: float, loose: float | None = None
     ) -> tuple[AlgebraicProblem | Self, np.ndarray] | None:
         """The equilibrium, or the cycle of half the period, that a solution only repeats; else None."""
-        x, widths = self._curve(u)
+        x, widths = self.curve(u)
         y = x.reshape(-1, self.node)
         near = self.flow.settings.same if loose is None else loose
         if (np.ptp(y, axis=0) <= near * self.node_scale).all() and self.free_period:
-            return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p}), y.mean(
-                axis=0
-            )
+            values = {**self.values.values, self.parameter: p}
+            return self.flow.equilibria(self.parameter, values), y.mean(axis=0)
         half = self.intervals // 2
-        if self.copies % 2 or (self.free_period == 0 and self.rounds % 2):
+        if self.copies % 2 or not (self.free_period or self.rounds % 2 == 0):
             return None
         apart = np.abs(x[:half] - x[half:]).max(axis=(0, 1)) / self.node_scale
         if not (apart <= near * (1.0 + np.abs(y).max(axis=0) / self.node_scale)).all():
             return None
-        period = u[self.states] / 2.0 if self.free_period else 0.0
-        shorter = np.concatenate(
-            [
-                0.5 * (x[:half] + x[half:]).reshape(-1),
-                [period] if self.free_period else [],
-                2.0 * widths[:half],
-            ]
-        )
+        shorter = self.joined(0.5 * (x[:half] + x[half:]), 0.5 * u[self.states], 2.0 * widths[:half])
         rounds = self.rounds if self.free_period else self.rounds // 2
         return self.with_unknowns(shorter, p, half, self.copies // 2, rounds), shorter
 
@@ -103,19 +97,12 @@ class CycleRelatives(CycleBorders):
         """At a period doubling: the cycle of twice the period."""
         if kind != "period-doubling":
             return []
-        x, widths = self._curve(u)
-        y = tangent[: self.states].reshape(x.shape)
-        both = np.concatenate([x, x]).reshape(-1)
-        own = [2.0 * u[self.states]] if self.free_period else []
-        doubled = np.concatenate([both, own, np.tile(0.5 * widths, 2)])
-        direction = np.concatenate(
-            [
-                np.concatenate([y, y]).reshape(-1),
-                [2.0 * tangent[self.states]] if self.free_period else [],
-                np.zeros(2 * self.intervals),
-                [tangent[-1]],
-            ]
-        )
+
+        def twice(v: np.ndarray, widths: np.ndarray) -> np.ndarray:
+            return self.joined(np.tile(v[: self.states], 2), 2.0 * v[self.states], np.tile(widths, 2))
+
+        doubled = twice(u, 0.5 * u[self.held])
+        direction = np.append(twice(tangent, np.zeros(self.intervals)), tangent[-1])
         rounds = self.rounds if self.free_period else 2 * self.rounds
         problem = self.with_unknowns(doubled, p, 2 * self.intervals, 2 * self.copies, rounds)
         return [Embedding(problem, doubled, direction, kind)]
@@ -131,7 +118,7 @@ class CycleRelatives(CycleBorders):
         x, period, widths = self.parts(u, p)
         forms = [x]
         if self.flow.mirror is not None:
-            forms.append(self._mirrored(u)[: self.states].reshape(x.shape))
+            forms.append(self.curve(self._mirrored(u))[0])
         found = [self._means(form, widths, period)[: MEANS * self.node] for form in forms]
         best = min(found, key=in_order(np.full(len(found[0]), self.flow.settings.same)))
         kind = ("cycle", self.rounds if not self.free_period else 0, self.node)
@@ -139,19 +126,123 @@ class CycleRelatives(CycleBorders):
 
     def _means(self, x: np.ndarray, widths: np.ndarray, period: float) -> np.ndarray:
         r, d = self.rule, self.node
-        ends = mesh.closed(x / self.node_scale)
-        points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
-        slopes = np.einsum("cj,ijk->ick", r.slopes, ends).reshape(-1, d)
-        share = (widths[:, None] * r.weights).reshape(-1)
-        turns = np.repeat(r.weights[None, :], len(widths), axis=0).reshape(-1)
+        points, slopes = (mesh.at_gauss_points(part, x / self.node_scale) for part in (r.values, r.slopes))
+        share, turns = (widths[:, None] * r.weights).reshape(-1), np.tile(r.weights, len(widths))
         mean = share @ points
         rest = points - mean
         size = np.sqrt(share @ rest**2)
         moves = size > self.flow.settings.same * size.max()  # what stands still has no shape
         unit = np.where(moves, rest / np.where(moves, size, 1.0), 0.0)
-        second = np.einsum("i,ia,ib->ab", share, rest, unit)
-        area = np.einsum("i,ia,ib->ab", turns, unit, slopes)
+        second, area, third = (
+            np.einsum("i,ia,ib->ab", weights, one, other)
+            for weights, one, other in ((share, rest, unit), (turns, unit, slopes), (share, unit**2, rest))
+        )
         upper = np.triu_indices(d)
-        third = np.einsum("i,ia,ib->ab", share, unit**2, rest)
         clock = period / self.clock if self.free_period else 1.0
         return np.concatenate([[clock], mean, second[upper], area[np.triu_indices(d, 1)], third.reshape(-1)])
+
+    # ------------------------------------------------------------------ homoclinic orbits
+    def margins(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
+        """How far the cycle stays away from equilibria, relative to its size, and its period from infinity: log10 of the part that is left; then the events."""
+        own = self._from_homoclinic(u, work) if self.free_period else np.zeros(0)
+        return np.append(own, self._closest(u, work.along[1])[0]) if len(self.flow.events) else own
+
+    def margin_kind(self, j: int) -> str:
+        """A cycle that comes near to an equilibrium ends as a homoclinic orbit; else it touches an event."""
+        own = 2 * self.free_period
+        return "homoclinic" if j < own else self.flow.border_kind(j - own)
+
+    def event_at(self, point: BorderPoint) -> int:
+        """The number of the event that is touched at a border; negative where the period grows without bound."""
+        return margin_of(point) - 2 * self.free_period
+
+    def _from_homoclinic(self, u: np.ndarray, work: CycleWork) -> np.ndarray:
+        x, s = u[: self.states].reshape(-1, self.node), self.flow.settings
+        each = np.ascontiguousarray(x.T)  # sums over rows are ten times as fast
+        size = float(((each.max(axis=1) - each.min(axis=1)) / self.node_scale).max())
+        short = math.log10(s.longest * self.clock / max(float(u[self.states]), TINY))
+        closeness = work.distance_to_rest()
+        if self.sparse is None and closeness < NEARLY * s.homoclinic * size:
+            closeness = max(closeness, size * self._from_equilibrium(x, work) / NEARLY)
+        if not size > 0.0 or not closeness < math.inf:
+            return np.array([math.inf, short])
+        return np.array([math.log10(max(closeness / size, TINY) / s.homoclinic), short])
+
+    def _from_equilibrium(self, x: np.ndarray, work: CycleWork) -> float:
+        """The distance from the equilibrium to which the shortest Newton step leads, relative to the size of the cycle in each coordinate; infinite where it leads to none.
+
+        Coordinates of fast and slow motions differ in size, and where a slow manifold folds, a step of Newton's method is short and no equilibrium near.
+        """
+        _, p, jacobian, f = work.along
+        try:
+            steps = np.linalg.solve(jacobian, f[..., None])[..., 0] / self.node_scale
+            points = mesh.at_gauss_points(self.rule.values, x.reshape(self.intervals, -1, self.node))
+            start, sizes = points[int(np.nanargmin((steps**2).sum(axis=1)))], self.sizes(x)
+            place = nearby_equilibrium(self, start, p, sizes)
+        except (np.linalg.LinAlgError, NotEvaluable, ValueError):
+            return math.inf
+        return math.inf if place is None else float(np.linalg.norm((place - start) / sizes))
+
+    def from_rest(self, u: np.ndarray, p: float) -> float:
+        """How near the cycle comes to an equilibrium, relative to its size in each direction: the same in all coordinates of the states, as beside Bogdanov-Takens
+        points, where cycles are flat."""
+        s, work = self.flow.settings, workspace(self)
+        self.evaluate(u, p, work)
+        if self.sparse is not None:
+            return s.homoclinic * 10.0 ** float(self._from_homoclinic(u, work)[0])
+        x = u[: self.states].reshape(-1, self.node) / self.node_scale
+        axes = np.linalg.svd(x - x.mean(axis=0), full_matrices=False)[2]
+        sizes = np.ptp(x @ axes.T, axis=0)
+        back = self.node_scale[:, None] * axes.T * np.maximum(sizes, s.smallest * sizes.max())
+        return max(distance_to_rest(work.along[2] @ back, work.along[3]), TINY)
+
+    def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float:
+        """How far the parameter may be from that of an infinite period: of a saddle-node p - p* is as 1 / T^2 to first order, taken twice; of a saddle less is left."""
+        change = abs(float(tangent[self.states]))
+        return float(u[self.states]) * abs(float(tangent[-1])) / change if change > 0.0 else 0.0
+
+    # ------------------------------------------------------------------ events
+    def _closest(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
+        """The smallest value of each event along the cycle, and where."""
+        x, period, widths = self.parts(u, p)
+        count = FINER * self.rule.degree
+        edges = mesh.places(widths, np.arange(count) / count)
+        try:
+            return self.flow.events.closest(
+                lambda places: mesh.evaluate(self.rule, widths, x, places), edges, period, self.values.at(p)
+            )
+        except NotEvaluable:
+            nothing = np.full(len(self.flow.events), np.nan)
+            return nothing, nothing
+
+    def crossed(self, u: np.ndarray, p: float) -> str | None:
+        """The name of an event that the cycle crosses, by more than the curve may be off; None if there is none."""
+        for k, name in enumerate(self.flow.events.names):
+            if self._closest(u, p)[0][k] < -self._missed(u, p, k):
+                return name
+        return None
+
+    def _missed(self, u: np.ndarray, p: float, k: int) -> float:
+        """By how much the smallest value of an event may be off: the curve is known less well between the mesh points than there."""
+        (x, when), sizes = self.touching(u, p, k), self.sizes(self.curve(u)[0])
+        touch = self.flow.settings.touch
+        moved = x + touch * np.concatenate([np.diag(sizes), -np.diag(sizes)])
+        values = self.flow.events(moved, self.values.at(p), np.full(len(moved), when))[:, k].reshape(2, -1)
+        return float(self.estimated_error(u) * np.abs(values[0] - values[1]).sum() / (2.0 * touch))
+
+    def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, float]:
+        """The state in which the cycle comes closest to event k, and when."""
+        x, period, widths = self.parts(u, p)
+        place = self._closest(u, p)[1][k : k + 1]
+        return mesh.evaluate(self.rule, widths, x, place)[0], float(place[0] * period)
+
+    def touch_error(self, point: BorderPoint) -> float:
+        """By how much the parameter at which a cycle touches an event may be off."""
+        k, along = self.event_at(point), point.tangent
+        missed = self._missed(point.u, float(point.value), k)
+        step = self.flow.settings.touch / max(float(np.abs(along[:-1] / self.column_scale).max()), TINY)
+        one, other = (
+            self._closest(point.u + s * along[:-1], point.value + s * along[-1])[0][k] for s in (step, -step)
+        )
+        slope = abs(one - other) / (2.0 * step)
+        return float(missed * abs(along[-1]) / slope) if slope > 0.0 else float("inf")

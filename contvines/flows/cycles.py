@@ -11,17 +11,17 @@ import numpy as np
 from contvines.shared.floating_point import ROUNDED
 
 from ..problems.functions import NotEvaluable
-from ..problems.protocol import margin_of
+from ..problems.protocol import Kernels
 from . import mesh
+from .cycle_mesh import ENOUGH, MOST
 from .cycle_relatives import CycleRelatives
 from .forms import LARGEST, cubic, neimark_sacker, quadratic
 from .infinite_period import infinite_period
-from .kernels import CycleWork, linearise, spectrum
+from .kernels import KERNELS, SPARSE, linearise, solved
 from .measures import measured
-from .newton import solved
 from .orbit import CycleOrbit
-from .returns import ReturnMap
-from .section import FlowSection
+from .returns import FlowSection, ReturnMap
+from .work import CoreWork, CycleWork, workspace
 
 if TYPE_CHECKING:
     from ..problems.populations import Population
@@ -33,7 +33,7 @@ CAUTION = 10.0  # times the estimated error of values on the mesh
 class CycleProblem(CycleRelatives):
     """Cycles of x' = f(x, p), or of x' = f(x, p, t) with a given period in t.
 
-    Unknowns are those of :class:`CycleUnknowns`; widths of intervals stay as they are while equations are solved. Equations are those at the Gauss
+    Unknowns are those of :class:`contvines.flows.cycle_mesh.CycleMesh`; widths of intervals stay as they are while equations are solved. Equations are those at the Gauss
     points, the phase condition (corrections are orthogonal to the direction of motion, in the mean over the cycle), and one for each width.
     """
 
@@ -41,11 +41,20 @@ class CycleProblem(CycleRelatives):
         """The direction in which the branch of a cycle leads, the parameter growing or, where `side` is negative, falling."""
         border, step, tangent = np.zeros((3, self.dimension + 1))
         border[-1], work = 1.0, self.workspace()
-        self.kernels.linearise(self, u, p, work)
-        self.kernels.bordered(self, work, border, 0.0, step, tangent)
+        linearise(self, u, p, work)
+        work.bordered(border, 0.0, step, tangent)
         return math.copysign(1.0, side) * tangent
 
     # ------------------------------------------------------------------ equations
+    @property
+    def kernels(self) -> Kernels:
+        """Those of loci, too, unless derivatives are sparse."""
+        return KERNELS if self.sparse is None else SPARSE
+
+    def workspace(self) -> CycleWork:
+        """Arrays for the kernels."""
+        return workspace(self)
+
     def evaluate(self, u: np.ndarray, p: float, work: CycleWork) -> None:
         """Residual and derivatives into a workspace.
 
@@ -59,9 +68,10 @@ class CycleProblem(CycleRelatives):
             raise NotEvaluable(f"the period would be {period:.3g}")
         if not widths.min() > 0.0:
             raise NotEvaluable("mesh points would overtake one another")
-        if work.core is not None and work.rates is not None:
-            f, jacobian = work.rates.f, work.rates.jacobian
-            size = work.core.evaluate(work.rates, self.field.values, x, widths, period, p)
+        compiled = work.rates
+        if compiled is not None and isinstance(work, CoreWork):
+            compiled.assign(self.field.values, p)
+            size, f, jacobian = work.evaluate(x, widths, period, compiled), compiled.f, compiled.jacobian
         else:
             size, f, jacobian = self._evaluated(x, widths, period, p, work)
         if math.isnan(size):
@@ -73,73 +83,36 @@ class CycleProblem(CycleRelatives):
             work.phase[0, 0] = 1.0
         if self.reference is not None:
             work.phase[:], origin = self.reference
-            work.residual[self.states] = (
-                work.phase * (x / self.node_scale - origin).reshape(work.phase.shape)
-            ).sum()
+            off = (x / self.node_scale - origin).reshape(work.phase.shape)
+            work.residual[self.states] = (work.phase * off).sum()
 
     def _evaluated(
         self, x: np.ndarray, widths: np.ndarray, period: float, p: float, work: CycleWork
     ) -> tuple[float, np.ndarray, np.ndarray]:
         """Residual and derivatives by functions in Python: the length of the row of the phase condition, f and df/dx at the Gauss points."""
-        r, core, field = self.rule, work.core, self.field
-        points = self._at_gauss_points(r.values, x) if core is None else core.at_gauss_points(x)
-        places = mesh.phases(widths, r.points, self.copies, self.rounds) if field.forced else None
-        times = None if places is None else period / self.rounds * places
-        f, slope = field.with_slope(points, p) if times is None else (field(points, p, times), None)
+        r, field, slope, times, along = self.rule, self.field, None, None, None
+        points = work.at_gauss_points(x)
+        if field.forced:
+            places = mesh.phases(widths, r.points, self.copies, self.rounds)
+            times = period / self.rounds * places
+            f = field(points, p, times)
+
+            def moved(q: complex) -> np.ndarray:
+                """Period times width times f as a function of the parameter alone."""
+                forcing = field.length_of_period(q)
+                rates = field(points, q, forcing * places).reshape(self.intervals, r.degree, self.node)
+                return self.rounds * forcing * widths[:, None, None] * rates
+
+            along = moved
+        else:
+            f, slope = field.with_slope(points, p)
         f = np.ascontiguousarray(f, dtype=float)
-        derivative = field.jacobian if work.sparse is None else field.jacobian_entries
+        derivative = field.jacobian if self.sparse is None else field.jacobian_entries
         jacobian = np.ascontiguousarray(derivative(points, p, times), dtype=float)
-        if core is not None:
-            size = core.assemble(widths, period, f, jacobian, slope)
-        else:
-            size = self._assemble(work, x, widths, period, f, jacobian, slope)
-        if places is not None:
-            by = field.along(lambda q: self._moved(points, q, places, widths), p)
-            work.derivative[: self.states] = -by.reshape(-1)
+        size = work.assemble(x, widths, period, f, jacobian, slope)
+        if along is not None:
+            work.derivative[: self.states] = -field.along(along, p).reshape(-1)
         return size, f, jacobian
-
-    def _assemble(
-        self,
-        work: CycleWork,
-        x: np.ndarray,
-        widths: np.ndarray,
-        period: float,
-        f: np.ndarray,
-        jacobian: np.ndarray,
-        slope: np.ndarray | None,
-    ) -> float:
-        """Residual, derivatives and phase condition, in numpy; see :meth:`contvines.flows.core.CoreCycle.assemble`."""
-        r, count, d, m = self.rule, self.intervals, self.node, self.rule.degree
-        if not math.isfinite(f.sum() + jacobian.sum() + (0.0 if slope is None else slope.sum())):
-            return math.nan
-        steps = np.repeat(period * widths, m)[:, None]
-        if work.sparse is not None:
-            work.entries = work.sparse.entries(period * widths, jacobian, self.node_scale)
-        else:
-            scaled = steps[:, :, None] * jacobian * (self.node_scale / self.node_scale[:, None])
-            blocks = -np.einsum("cj,icab->icajb", r.values, scaled.reshape(count, m, d, d))
-            diagonal = np.arange(d)
-            blocks[:, :, diagonal, :, diagonal] += r.slopes
-            work.blocks[:] = blocks.reshape(count, m * d, (m + 1) * d)
-        work.residual[:], work.derivative[:] = 0.0, 0.0
-        work.residual[: self.states] = (self._at_gauss_points(r.slopes, x) - steps * f).reshape(-1)
-        if slope is None:
-            return 0.0
-        work.derivative[: self.states] = -(steps * slope).reshape(-1)
-        direction = (f / self.node_scale).reshape(count, m, d)
-        work.by_period[:] = -(widths[:, None, None] * direction * self.clock).reshape(count, m * d)
-        work.phase[:], size = self._phase(widths, direction)
-        return size
-
-    def _phase(self, widths: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, float]:
-        """Row of the phase condition, shape (N, m d), from rates at the Gauss points in units of the scale, and the length that it had."""
-        r = self.rule
-        row = np.matmul(r.values.T, (widths[:, None] * r.weights)[:, :, None] * direction)
-        row[1:, 0] += row[:-1, -1]
-        row[0, 0] += row[-1, -1]
-        phase = row[:, :-1].reshape(self.intervals, -1)
-        size = math.sqrt(np.vdot(phase, phase))
-        return phase / (size or 1.0), size
 
     def anchor(self, u: np.ndarray | None, p: float = 0.0) -> None:
         """Keep the phase of a cycle for those that follow; None: corrections alone are orthogonal to the motion.
@@ -150,24 +123,58 @@ class CycleProblem(CycleRelatives):
         if u is None or not self.free_period:
             return
         x, _, widths = self.parts(u, p)
-        rates = self.field(self._at_gauss_points(self.rule.values, x), p) / self.node_scale
-        self.reference = self._phase(widths, rates.reshape(x.shape))[0], x / self.node_scale
+        rates = self.field(mesh.at_gauss_points(self.rule.values, x), p) / self.node_scale
+        self.reference = mesh.phase_row(self.rule, widths, rates.reshape(x.shape))[0], x / self.node_scale
 
     def in_phase(self, u: np.ndarray) -> bool:
         """Whether a cycle is enough like the one whose phase is kept."""
         if self.reference is None:
             return not self.free_period
-        x, widths = self._curve(u)
-        return (
-            mesh.alike(self.rule, widths, x / self.node_scale, self.reference[1])
-            > self.flow.settings.in_phase
-        )
+        x, widths = self.curve(u)
+        alike = mesh.alike(self.rule, widths, x / self.node_scale, self.reference[1])
+        return alike > self.flow.settings.in_phase
 
-    def _moved(self, points: np.ndarray, p: complex, places: np.ndarray, widths: np.ndarray) -> np.ndarray:
-        """Period times width times f, of forced flows, as a function of the parameter alone."""
-        forcing = self.field.length_of_period(p)
-        f = self.field(points, p, forcing * places).reshape(self.intervals, self.rule.degree, self.node)
-        return self.rounds * forcing * widths[:, None, None] * f
+    # ------------------------------------------------------------------ when there are too few intervals
+    def too_coarse(self, u: np.ndarray, p: float, stuck: bool = False) -> bool:
+        """Whether a cycle asks for more intervals: its error is too large on a mesh that suits it, too, Newton's method fails beside it, as at canards on a
+        coarse mesh, it becomes one of half the period, or its own mirror image, which takes a mesh with equal halves to tell, or a decay gets lost."""
+        if stuck:
+            return self.intervals < ENOUGH * self.copies
+        if self.free_period and self.copies % 2 and self.asymmetry(u) < self.flow.settings.halving:
+            self.parts_of_refined = 2
+            return True
+        return self.intervals < MOST and (self._in_error(u) or self._lost_decay(u, p))
+
+    def _in_error(self, u: np.ndarray) -> bool:
+        image = self.adapted(u) if self.lags(u) else None
+        return self.lags(u) and (image is None or self.lags(image(u)))
+
+    def _lost_decay(self, u: np.ndarray, p: float) -> bool:
+        """Whether motions beside the cycle that decay (or grow) by more than a factor e in a period do so by less as collocation has it.
+
+        Along an eigenvector with h lambda = z collocation takes R(z) for exp(z), which tends to 1 in size as z grows: see :meth:`Rule.stability`.
+        That is harmless as long as an interval resolves the decay. Where none does, as on cycles that go round slower and slower, a multiplier
+        that is nearly zero seems to come near to 1, and the equations are singular where nothing bifurcates.
+        """
+        if self.sparse is not None:
+            return False
+        x, period, widths = self.parts(u, p)
+        most, shortest = self.rule.resolved, int(np.argmin(widths))
+        unit = self.node_scale / self.node_scale[:, None]
+        when = None if self.free_period else np.array([period * widths[:shortest].sum()])
+        first = self.field.jacobian(x[shortest, :1], p, when)[0] * unit
+        if not period * widths[shortest] * np.linalg.norm(first) > most:
+            return False
+        work = self.workspace()
+        self.evaluate(u, p, work)
+        jacobian = work.along[2].reshape(self.intervals, self.rule.degree, self.node, self.node)
+        z = np.linalg.eigvals(
+            work.steps[:, None, None] * np.einsum("c,icab->iab", self.rule.weights, jacobian)
+        )
+        own = np.where(np.abs(z) > most, np.abs(np.log(np.abs(self.rule.stability(z)))), np.inf)
+        least = own.argmin(axis=1)[:, None]
+        found, true = (np.take_along_axis(a, least, axis=1).sum() for a in (own, np.abs(z.real)))
+        return bool(found < 1.0 < true)
 
     # ------------------------------------------------------------------ what is known of a cycle
     def accuracy(self, u: np.ndarray, p: float) -> float:
@@ -176,7 +183,7 @@ class CycleProblem(CycleRelatives):
         error, missed = min(self.estimated_error(u), 1.0), 0.0
         if linearise(self, u, p, work) < np.inf:
             try:
-                missed = spectrum(self, work)[1]
+                missed = work.spectrum()[1]
             except np.linalg.LinAlgError:
                 missed = 0.0
         own = max(CAUTION * error ** (2.0 * m / (m + 1.0)), self.uncertainty())
@@ -226,15 +233,15 @@ class CycleProblem(CycleRelatives):
     # ------------------------------------------------------------------ borders
     def beyond(self, point: BorderPoint) -> list[Seed]:
         """Nothing goes on from a homoclinic orbit; at an event the flow says what does."""
-        k = margin_of(point) - 2 * self.free_period
+        k = self.event_at(point)
         return [] if k < 0 else self.flow.beyond(self, point, k)
 
     def dead_end(self, point: BorderPoint) -> str:
         """What the cycle becomes as its period grows without bound, such as a homoclinic orbit; or the event that stops the motion."""
-        k = margin_of(point) - 2 * self.free_period
-        if k >= 0:
-            return self.flow.dead_end(self, point, k)
-        return str(infinite_period(self, point))
+        k = self.event_at(point)
+        if k < 0:
+            return str(infinite_period(self, point))
+        return self.flow.dead_end(k, *self.touching(point.u, point.value, k))
 
     # ------------------------------------------------------------------ what people see of a cycle, and what attracts
     @property

@@ -2,55 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contvines.shared.number_text import complex_figures, figures, pairs
+
 from ..problems.algebraic import AlgebraicProblem
 from ..problems.functions import NotEvaluable, Operator
-from ..problems.protocol import Embedding, Seed, margin_of
+from ..problems.protocol import Embedding, Seed, Solution, margin_of
+from ..shared.stability import attracts, marginal_text, onto_axis
 from . import mesh
-from .equilibrium import Equilibrium
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-    from scipy.sparse import csc_array
-
     from ..problems.populations import Population
     from ..problems.protocol import BorderPoint
     from .flow import Flow
+
 
 FIRST = 20  # intervals of a cycle that has just been born
 
 
 class Equilibria(AlgebraicProblem):
-    """Equilibria of x' = f(x, p).
-
-    Parameters
-    ----------
-    flow : FlowProblem
-    f, x0, params, parameter, jacobian, derivative, mirror, name, scale
-        As :class:`contvines.AlgebraicProblem` has them.
-    """
+    """Equilibria of the autonomous flow x' = f(x, p)."""
 
     mixed_rows = False  # f(R x) = R f(x), as cycles have it
 
-    def __init__(
-        self,
-        flow: Flow,
-        f: Callable,
-        x0: np.ndarray,
-        params: float | Mapping[str, float],
-        parameter: str,
-        jacobian: Callable | None,
-        derivative: Callable | Mapping[str, Callable] | None,
-        mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None,
-        name: str,
-        scale: ArrayLike | None,
-    ) -> None:
-        self.flow = flow
-        super().__init__(f, x0, params, parameter, jacobian, derivative, "flow", mirror, name, scale)
+    def __init__(self, flow: Flow, params: float | Mapping[str, float], parameter: str) -> None:
+        self.flow, given = flow, flow.given
+        super().__init__(
+            given["F"],
+            flow.x0,
+            params,
+            parameter,
+            given["jacobian"],
+            given["derivative"],
+            "flow",
+            given["mirror"],
+            flow.name,
+            flow.given_scale,
+        )
         self.n_margins = len(flow.events)
 
     @property
@@ -61,13 +54,8 @@ class Equilibria(AlgebraicProblem):
     @property
     def measure_names(self) -> tuple[str, ...]:
         """Norm and coordinates; what is measured on cycles has the values of a cycle that stands still."""
-        return (
-            *super().measure_names,
-            *self.flow.states,
-            *self.flow.of_states,
-            "period",
-            *self.flow.own_measures,
-        )
+        flow = self.flow
+        return (*super().measure_names, *flow.states, *flow.of_states, "period", *flow.own_measures)
 
     def unknown_name(self, i: int) -> str:
         """The state."""
@@ -75,23 +63,23 @@ class Equilibria(AlgebraicProblem):
 
     def measures(self, names: Sequence[str], u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
         """Measures for an array of solutions."""
-        own = [name for name in names if name in super(Equilibria, self).measure_names]
-        found = super().measures(own, u, p)
-        states = np.atleast_2d(u)
+        flow, states = self.flow, np.atleast_2d(u)
+        places = {name: j for j, name in enumerate(flow.states)} | {
+            name: j for name, (_, j) in flow.of_states.items()
+        }
+        found = {}
         for name in names:
-            if name in found:
-                continue
-            if name not in self.measure_names:
-                raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
-            if name in self.flow.own_measures:
+            if name in super().measure_names:
+                found |= super().measures([name], u, p)
+            elif name in flow.own_measures:
                 pairs = zip(states, np.broadcast_to(p, len(states)).tolist(), strict=True)
-                found[name] = np.array([self.flow.measure_own(name, self, *pair) for pair in pairs])
+                found[name] = np.array([flow.measure_own(name, self, *pair) for pair in pairs])
             elif name == "period":
                 found[name] = np.full(len(states), np.nan)
+            elif name in places:
+                found[name] = states[:, places[name]].copy()
             else:
-                own = name in self.flow.states
-                place = self.flow.states.index(name) if own else self.flow.of_states[name][1]
-                found[name] = states[:, place].copy()
+                raise KeyError(f"there is no measure {name!r}; choose from {', '.join(self.measure_names)}")
         return found
 
     # ------------------------------------------------------------------ events that stop
@@ -106,41 +94,36 @@ class Equilibria(AlgebraicProblem):
         """See :meth:`FlowProblem.border_kind`."""
         return self.flow.border_kind(j)
 
-    def touching(self, u: np.ndarray, p: float, k: int) -> tuple[np.ndarray, None]:
-        """The equilibrium itself."""
-        return u[: self.node], None
-
     def beyond(self, point: BorderPoint) -> list[Seed]:
         """See :meth:`FlowProblem.beyond`."""
         return self.flow.beyond(self, point, margin_of(point))
 
     def dead_end(self, point: BorderPoint) -> str:
         """See :meth:`FlowProblem.dead_end`."""
-        return self.flow.dead_end(self, point, margin_of(point))
+        return self.flow.dead_end(margin_of(point), point.u[: self.node])
 
-    def _matrix(self, u: np.ndarray, p: float) -> np.ndarray | csc_array | Operator:
-        return self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
+    def _matrix(self, u: np.ndarray, p: float) -> np.ndarray | None:
+        """df/dx written out; None where it is an operator."""
+        matrix = self.functions.jacobian(np.asarray(u, dtype=float)[: self.node], p)
+        if isinstance(matrix, np.ndarray | Operator):
+            return matrix if isinstance(matrix, np.ndarray) else None
+        return np.asarray(matrix.toarray())
 
     def orbit(self, u: np.ndarray, p: float) -> Equilibrium:
         """The equilibrium, with its eigenvalues."""
         x, matrix = np.array(u, dtype=float)[: self.node], self._matrix(u, p)
-        values = np.zeros(0, dtype=complex)
-        if not isinstance(matrix, Operator):
-            full = matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray())
-            values = np.sort_complex(np.linalg.eigvals(full))[::-1]
+        values = np.zeros(0) if matrix is None else np.linalg.eigvals(matrix)
         states = dict(zip(self.flow.states, x.tolist(), strict=True))
-        return Equilibrium(
-            self.parameter, float(p), x, states, {**self.parameters, self.parameter: float(p)}, values
-        )
+        parameters = {**self.parameters, self.parameter: float(p)}
+        return Equilibrium(self.parameter, float(p), x, states, parameters, np.sort_complex(values)[::-1])
 
     def offspring(
         self, kind: str, u: np.ndarray, p: float, tangent: np.ndarray, multiplier: complex
     ) -> list[Embedding]:
         """At a Hopf point: the cycles that are born there, with the direction in which their amplitude grows; of each pair where two are critical."""
-        if kind != "hopf" or isinstance(matrix := self._matrix(u, p), Operator):
+        if kind != "hopf" or (matrix := self._matrix(u, p)) is None:
             return []
-        found, own = np.linalg.eig(matrix if isinstance(matrix, np.ndarray) else np.asarray(matrix.toarray()))
-        values, vectors = np.asarray(found, dtype=np.complex128), own.astype(complex)
+        values, vectors = (np.asarray(part, dtype=np.complex128) for part in np.linalg.eig(matrix))
         upper = np.flatnonzero(values.imag > 0.0)
         if not len(upper):
             return []
@@ -174,20 +157,76 @@ class Equilibria(AlgebraicProblem):
 
 def cycles_at(problem: Equilibria, u: np.ndarray, p: float, omega: float, q: np.ndarray) -> Embedding:
     """The problem of the cycles that are born at a Hopf point, the equilibrium as a cycle, and the direction of the cycles."""
-    flow, d = problem.flow, problem.node
-    scales = problem.scales
-    scale = np.ones(d) if scales is None else scales.unknowns[:d]
-    unit = 1.0 if scales is None else scales.parameter
-    values = problem.values.against(problem.parameter, {problem.parameter: p})
-    widths = np.full(FIRST, 1.0 / FIRST)
-    period = 2.0 * np.pi / omega
-    field = flow.field.against(values)
-    m = flow.degree
-    still = np.concatenate([np.tile(u[:d], FIRST * m), [period], widths])
+    flow, d, scales = problem.flow, problem.node, problem.scales
+    scale, unit = (np.ones(d), 1.0) if scales is None else (scales.unknowns[:d], scales.parameter)
+    field = flow.field.against(problem.values.against(problem.parameter, {problem.parameter: p}))
+    widths, period = np.full(FIRST, 1.0 / FIRST), 2.0 * np.pi / omega
+    still = np.concatenate([np.tile(u[:d], FIRST * flow.degree), [period], widths])
     cycles = flow.cycles(field, still, (FIRST, 1, 1), (scale, period, unit))
-    scale = cycles.node_scale
-    angles = 2.0 * np.pi * mesh.node_places(cycles.rule, widths)
-    q = q / np.linalg.norm(q / scale)
+    assert flow.sizes is not None  # those of the first cycles of all
+    q = q / np.linalg.norm(q / flow.sizes[0])
+    angles = 2.0 * np.pi * mesh.node_places(mesh.rule(flow.degree), widths)
     wave = np.real(np.exp(1j * angles)[:, None] * q)
     direction = np.concatenate([wave.reshape(-1), np.zeros(1 + FIRST + 1)])
     return Embedding(cycles, still, direction, "hopf")
+
+
+@dataclass(frozen=True)
+class Equilibrium(Solution):
+    """An equilibrium of a flow.
+
+    Attributes
+    ----------
+    parameter : str
+    value : float
+        Of the parameter.
+    u : ndarray, shape (d,)
+    states : dict of float
+        The same by name.
+    parameters : dict of float
+    eigenvalues : ndarray of complex
+        Of the Jacobian; none where it is not at hand as a matrix.
+    marginal : bool
+        Whether it is that of a special point, at which an eigenvalue is on the imaginary axis by definition.
+    """
+
+    states: dict[str, float] = field(default_factory=dict)
+    parameters: dict[str, float] = field(default_factory=dict)
+    eigenvalues: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=complex))
+    marginal: bool = False
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether all eigenvalues have negative real parts; None where they are not known, and at special points, unless one is positive."""
+        if not self.eigenvalues.size:
+            return None
+        rates = np.real(self.eigenvalues)
+        return attracts(rates, 0.0) if self.marginal else bool((rates < 0.0).all())
+
+    def critical(self, near: float = 0.0) -> Equilibrium:
+        """The same equilibrium as that of a special point, where an eigenvalue is on the imaginary axis by definition: the nearest."""
+        return replace(self, eigenvalues=onto_axis(self.eigenvalues), marginal=True)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The equilibrium as JSON-able dict."""
+        return {
+            "parameter": self.parameter,
+            "value": self.value,
+            "u": self.u.tolist(),
+            "equilibrium": dict(self.states),
+            "stable": self.stable,
+            "parameters": dict(self.parameters),
+            "eigenvalues": pairs(self.eigenvalues),
+        }
+
+    def __str__(self) -> str:
+        marginal = f"  ({marginal_text(self.eigenvalues, flow=True)})" if self.eigenvalues.size else ""
+        nature = {True: "  (stable)", False: "  (unstable)", None: marginal}[self.stable]
+        lines = [
+            f"equilibrium{nature}",
+            "  " + "  ".join(f"{name} = {figures(x)}" for name, x in self.states.items()),
+            "  " + "  ".join(f"{name} = {value:.7g}" for name, value in self.parameters.items()),
+        ]
+        if self.eigenvalues.size:
+            lines.append(f"  eigenvalues: {complex_figures(self.eigenvalues)}")
+        return "\n".join(lines)

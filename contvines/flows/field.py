@@ -1,23 +1,22 @@
-"""Field: a user's right-hand side and its derivatives at many points at once."""
+"""A user's right-hand side and its derivatives at many points at once, and the events that stop motions."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from typing import TYPE_CHECKING, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from scipy.sparse import issparse
 
-from contvines.shared.floating_point import COMPLEX_STEP
+from contvines.shared.floating_point import COMPLEX_STEP, ROUNDED
 
 from ..problems.derivatives import Differentiated, agreeing
 from ..problems.differences import along
 from ..problems.functions import NotEvaluable, ParameterSet
 from ..problems.large.jacobians import Colouring
-from .compiled import CompiledRates
-from .events import Events
+from .at_points import TRIED, AtPoints, CompiledRates
 from .settings import FlowSettings
 from .sparse import LARGE, found_sparsity
 
@@ -26,14 +25,11 @@ if TYPE_CHECKING:
 
 STEP = 0.01  # of differences, in lengths over which the right-hand side bends: sixth order, so a hundredfold rounding of it
 SIXTH = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
-
-
-class At(NamedTuple):
-    """States (n, d), parameters and times (n,) at which a function is asked."""
-
-    x: np.ndarray
-    parameters: Parameters | complex
-    t: np.ndarray | None
+SWEEPS = 30  # of Newton's method to an equilibrium
+RANK = 8.0 * ROUNDED  # singular values below this part of the largest one are zero
+FINER = 4  # places between two nodes at which the smallest value of an event is looked for first
+ROUNDS = 3  # each of which looks ...
+CLOSER = 16  # ... so many times as closely
 
 
 class Field:
@@ -47,16 +43,17 @@ class Field:
         df/dx, shape (d, d), of the same arguments.
     derivative : callable, or mapping of str to callable, optional
         df/dp, shape (d,); of several parameters by name.
+    events : mapping of str to callable, optional
     start : ndarray, shape (d,)
     values : ParameterSet
     period : callable, optional
         p -> period of f in t; None for autonomous flows.
-    settings : FlowSettings, optional
+    settings : FlowSettings
 
     Raises
     ------
     ValueError
-        If f, or a derivative that is given, is wrong at the start.
+        If f, an event, or a derivative that is given, is wrong at the start.
     """
 
     def __init__(
@@ -64,52 +61,59 @@ class Field:
         f: Callable,
         jacobian: Callable | None,
         derivative: Callable | Mapping[str, Callable] | None,
+        events: Mapping[str, Callable] | None,
         start: np.ndarray,
         values: ParameterSet,
-        period: Callable | None = None,
-        settings: FlowSettings | None = None,
+        period: Callable | None,
+        settings: FlowSettings,
     ) -> None:
-        self.settings = settings or FlowSettings()
-        self.f, self.given_jacobian, self.given_derivative = f, jacobian, derivative
-        self.events = Events(None, period is not None, start, values)
-        self.values, self.period, self.node = values, period, len(start)
-        slope: Callable | Mapping[str, Callable] | None = None
+        self.f, self.given_derivative = f, derivative
+        self.values, self.period, self.node, self.settings = values, period, len(start), settings
+        self.forced = period is not None
+        slopes = derivative
         if isinstance(derivative, Mapping):
-            slope = {name: _at_zero(g, period) for name, g in derivative.items()}
+            slopes = {name: self._at_zero(g) for name, g in derivative.items()}
         elif derivative is not None:
-            slope = _at_zero(derivative, period)
-        self.functions = Differentiated(
-            _at_zero(f, period),
-            None if jacobian is None else _at_zero(jacobian, period),
-            slope,
+            slopes = self._at_zero(derivative)
+        measured = Differentiated(
+            self._at_zero(f),
+            None if jacobian is None else self._at_zero(jacobian),
+            slopes,
             start,
             values,
             "the right-hand side",
             start_name="x0",
-            called="(x, p), or with period= as (x, p, t)"
-            if period is None
-            else "(x, p, t), as there is period=",
+            called="(x, p, t), as there is period="
+            if self.forced
+            else "(x, p), or with period= as (x, p, t)",
         )
-        self.lengths, self.complex_step = self.functions.lengths, self.functions.complex_step
-        if not self.complex_step and not self.functions.noise.any():
-            self.complex_step = self.functions._complex_step_works(start, values.start)
+        self.lengths, self.complex_step = measured.lengths, measured.complex_step
+        if not self.complex_step and not measured.noise.any():
+            self.complex_step = measured._complex_step_works(start, values.start)
         self.compiled = f if isinstance(f, CompiledRates) else None
-        self.many = self.many_jacobian = False
-        self.many_slope: dict[str, bool] = {}  # by the name of the parameter
+        d = self.node
+        self._rates = AtPoints(f, self.forced, (d,))
+        self._matrices = None if jacobian is None else AtPoints(jacobian, self.forced, (d, d))
+        self._slopes: dict[str, AtPoints] = {}  # by the name of the parameter
         self.complex_slopes: dict[str, bool] = {}  # likewise
-        self._find_vectorised(start)
-        self.sparsity = self._find_sparsity(start) if self.node >= LARGE else None
+        x = start + np.random.default_rng(5).uniform(-0.1, 0.1, (TRIED, d)) * self.lengths
+        t = np.linspace(0.05, 0.95, TRIED) * self.length_of_period(values.start) if self.forced else None
+        with np.errstate(all="ignore"):
+            for function in (self._rates, self._matrices):
+                if function is not None:
+                    function.find(settings.agree, x, values.at(values.start), t)
+        self.sparsity = self._find_sparsity(start) if d >= LARGE else None
+        self.events = Events(events, self.forced, start, values, settings.agree)
+
+    def _at_zero(self, f: Callable) -> Callable:
+        """A function of (x, p, t) at t = 0."""
+        return (lambda x, p: f(x, p, 0.0)) if self.forced and callable(f) else f
 
     def against(self, values: ParameterSet) -> Field:
         """The same field with other values of the parameters."""
         other = copy(self)
-        other.values, other.functions = values, self.functions.against(values)
+        other.values = values
         return other
-
-    @property
-    def forced(self) -> bool:
-        """Whether f depends on time."""
-        return self.period is not None
 
     @overload
     def length_of_period(self, p: float) -> float: ...
@@ -141,71 +145,47 @@ class Field:
         NotEvaluable
             If f fails or does not return d numbers, real ones of real states.
         """
-        at = At(x, self.values.at(p), t)
-        if self.compiled is not None:
-            return self.compiled.at_points(self.compiled.f, *at, (self.node,))
-        found = (self._stacked if self.many else self._each)(self.f, at, (self.node,))
+        found = self._asked(self._rates, x, p, t)
         if found.dtype.kind == "c" and x.dtype.kind != "c" and not isinstance(p, complex):
             if np.imag(found).any():
                 raise NotEvaluable("the right-hand side returns complex numbers")
             return np.real(found)
         return found
 
-    def _asked(
-        self, f: Callable, x: np.ndarray, at: At, t: object, read: Callable[..., np.ndarray]
-    ) -> np.ndarray:
-        """What a function returns for a state, or for many as columns, as an array."""
+    def _asked(self, function: AtPoints, x: np.ndarray, p: complex, t: np.ndarray | None) -> np.ndarray:
         try:
-            return read(f(x, at.parameters) if self.period is None else f(x, at.parameters, t))
+            return function(x, self.values.at(p), t)
+        except NotEvaluable:
+            raise
         except Exception as error:  # a user's function may fail in any way
             raise NotEvaluable(f"the right-hand side raises {type(error).__name__}: {error}") from error
 
-    def _each(self, f: Callable, at: At, shape: tuple[int, ...]) -> np.ndarray:
-        """Point by point."""
-        times = [None] * len(at.x) if at.t is None else at.t
-        found = [self._asked(f, x.copy(), at, t, _full) for x, t in zip(at.x, times, strict=True)]
-        for value in found:
-            if value.shape != shape:
-                raise NotEvaluable(f"the right-hand side has shape {value.shape}; {shape} is needed")
-        return np.array(found)
+    def rate_at(self, p: float) -> Callable[[float, np.ndarray], np.ndarray]:
+        """(t, x) -> x' as scipy's integrators want it, NaN where f fails."""
+        f, parameters, forced = self.f, self.values.at(p), self.forced
 
-    def _stacked(self, f: Callable, at: At, shape: tuple[int, ...]) -> np.ndarray:
-        """All points at once."""
-        return self._asked(f, at.x.T.copy(), at, at.t, lambda given: _broadcast(given, len(at.x), shape))
+        def rate(t: float, x: np.ndarray) -> np.ndarray:
+            try:
+                value = np.asarray(f(x, parameters, t) if forced else f(x, parameters)).reshape(len(x))
+                if value.dtype.kind == "c":
+                    value = np.where(np.imag(value) == 0.0, np.real(value), np.nan)
+                return value.astype(float)
+            except Exception:  # a user's function may fail in any way
+                return np.full(len(x), np.nan)
 
-    def _find_vectorised(self, start: np.ndarray) -> None:
-        """Whether many points can be handed over at once, tried at points beside the start."""
-        noise = np.random.default_rng(5).uniform(-0.1, 0.1, (7, self.node))
-        x, p = start + noise * self.lengths, self.values.start
-        t = np.linspace(0.05, 0.95, 7) * self.length_of_period(p) if self.forced else None
-        at = At(x, self.values.at(p), t)
-        with np.errstate(all="ignore"):
-            self.many = self._agrees(self.f, at, (self.node,))
-            if self.given_jacobian is not None:
-                self.many_jacobian = self._agrees(self.given_jacobian, at, (self.node, self.node))
+        return rate
 
-    def _agrees(self, f: Callable, at: At, shape: tuple[int, ...]) -> bool:
-        try:
-            single = self._each(f, at, shape)
-        except NotEvaluable:
-            return False  # points beside the start may be outside of where f is defined
-        try:
-            together = self._stacked(f, at, shape)
-        except Exception:  # a function of one point may fail in any way when it is called with many
-            return False
-        agree = self.settings.agree
-        return bool(np.allclose(single, together, rtol=agree, atol=agree * np.abs(single).max(initial=0.0)))
-
+    # ------------------------------------------------------------------ derivatives
     def _find_sparsity(self, start: np.ndarray) -> Colouring | None:
         """Where df/dx has entries, at places beside the start."""
         noise, p = np.random.default_rng(9).uniform(-0.3, 0.3, (3, self.node)), self.values.start
         t = np.array([0.3 * self.length_of_period(p)]) if self.forced else None
-        given, parameters = self.given_jacobian, self.values.at(p)
+        given, parameters = self._matrices, self.values.at(p)
 
-        def jacobian(x: np.ndarray):
+        def jacobian(x: np.ndarray) -> Any:
             if given is None:
                 return self.jacobian(x[None, :], p, t)[0]
-            return given(x, parameters) if t is None else given(x, parameters, t[0])
+            return given._asked(x, parameters, None if t is None else t[0])
 
         try:
             with np.errstate(all="ignore"):
@@ -213,59 +193,74 @@ class Field:
         except NotEvaluable:
             return None
 
-    # ------------------------------------------------------------------ derivatives
+    def _along(self, masks: np.ndarray, x: np.ndarray, p: float, t: np.ndarray | None) -> np.ndarray:
+        """Sums of columns of df/dx at the points, shape (k, n, d), for k masks of columns; by the complex step in one call, else in units of the lengths."""
+        if self.complex_step:
+            moved = (x + 1j * COMPLEX_STEP * masks[:, None]).reshape(-1, self.node)
+            times = None if t is None else np.tile(t, len(masks))
+            return np.imag(self(moved, p, times)).reshape(len(masks), *x.shape) / COMPLEX_STEP
+        steps = STEP * self.lengths * masks
+        return np.array([_difference(lambda s, h=h: self(x + s * h, p, t)) / STEP for h in steps])
+
     def jacobian_entries(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """The entries of a sparse df/dx at the points, shape (n, entries): in the order of the sparsity pattern."""
-        pattern = self.sparsity
+        pattern, given = self.sparsity, self._matrices
         assert pattern is not None
-        if self.given_jacobian is not None:
-            parameters, found = self.values.at(p), np.empty((len(x), len(pattern.indices)))
+        found = np.empty((len(x), len(pattern.indices)))
+        if given is not None:
+            parameters = self.values.at(p)
             for i, y in enumerate(x):
-                value = self.given_jacobian(y, parameters, *([] if t is None else [t[i]]))
-                value = value.tocsr() if issparse(value) else np.asarray(value)
+                value = given._asked(y, parameters, None if t is None else t[i])
+                value = value.tocsr() if issparse(value) else np.asarray(value)  # type: ignore[attr-defined]
                 found[i] = np.asarray(value[pattern.indices, pattern.columns]).reshape(-1)
             return found
-        found = np.empty((len(x), len(pattern.indices)))
         for group in range(pattern.count):
             mask = pattern.groups == group
-            if self.complex_step:
-                total = np.imag(self(x + 1j * COMPLEX_STEP * mask, p, t)) / COMPLEX_STEP
-            else:
-                along = STEP * self.lengths * mask
-                total = _difference(lambda s, along=along: self(x + s * along, p, t)) / STEP
             own = mask[pattern.columns]
-            found[:, own] = total[:, pattern.indices[own]]
-        if not self.complex_step:
-            found /= self.lengths[pattern.columns]
-        return found
+            found[:, own] = self._along(mask[None], x, p, t)[0][:, pattern.indices[own]]
+        return found if self.complex_step else found / self.lengths[pattern.columns]
 
     def jacobian(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """df/dx at the points, shape (n, d, d)."""
-        shape, d = (self.node, self.node), self.node
-        if self.compiled is not None and self.compiled.dfdx is not None:
-            return self.compiled.at_points(self.compiled.dfdx, x, self.values.at(p), t, shape)
-        if self.given_jacobian is not None:
-            together = self._stacked if self.many_jacobian else self._each
-            return together(self.given_jacobian, At(x, self.values.at(p), t), shape)
-        if self.complex_step:  # all directions in one call
-            moved = x + 1j * COMPLEX_STEP * np.eye(d)[:, None]
-            found = (
-                np.imag(self(moved.reshape(-1, d), p, None if t is None else np.tile(t, d))) / COMPLEX_STEP
-            )
-            return np.ascontiguousarray(found.reshape(d, len(x), d).transpose(1, 2, 0))
-        result = np.empty((len(x), *shape))
-        for j in range(d):
-            step = STEP * self.lengths[j]
-            unit = np.zeros(d)
-            unit[j] = step
-            result[:, :, j] = _difference(lambda s, unit=unit: self(x + s * unit, p, t)) / step
-        return result
+        if self._matrices is not None:
+            return self._asked(self._matrices, x, p, t)
+        found = np.ascontiguousarray(self._along(np.eye(self.node), x, p, t).transpose(1, 2, 0))
+        return found if self.complex_step else found / self.lengths
+
+    def rest(
+        self, x: np.ndarray, p: float, sizes: np.ndarray, tolerance: float, far: float = np.inf
+    ) -> np.ndarray | None:
+        """The equilibrium to which Newton's method leads from a state; None where it is more than `far` sizes away, or none.
+
+        Parameters
+        ----------
+        x, sizes : ndarray, shape (d,)
+        p : float
+        tolerance : float
+            Of the last correction, in sizes.
+        """
+        start = x
+        for _ in range(SWEEPS):
+            with np.errstate(all="ignore"):
+                try:
+                    rate, matrix = self(x[None], p)[0], self.jacobian(x[None], p)[0]
+                except (ValueError, NotEvaluable):
+                    return None
+            if not (np.isfinite(rate).all() and np.isfinite(matrix).all()):
+                return None
+            step = np.linalg.lstsq(matrix * sizes, -rate, rcond=RANK)[0] * sizes
+            x = x + step
+            if not (np.abs(x - start) <= far * sizes).all():
+                return None
+            if (np.abs(step) <= tolerance * sizes).all():
+                return x
+        return None
 
     def carried(
         self, x: np.ndarray, vectors: np.ndarray, p: float, t: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """f at the points, and df/dx times a vector at each, shape (n, d) both: of one call where complex numbers may be asked."""
-        if self.complex_step and self.compiled is None and self.given_jacobian is None:
+        if self.complex_step and self._matrices is None:
             found = self(x + 1j * COMPLEX_STEP * vectors, p, t)
             return np.real(found), np.imag(found) / COMPLEX_STEP
         return self(x, p, t), np.einsum("nab,nb->na", self.jacobian(x, p, t), vectors)
@@ -287,34 +282,26 @@ class Field:
         step = STEP * (abs(p) or 1.0)
         return _difference(lambda s: line(p + s * step)) / step
 
+    def _given_slope(self) -> Callable | None:
+        given = self.given_derivative
+        return given.get(self.values.varying) if isinstance(given, Mapping) else given
+
     def with_slope(self, x: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
         """f and df/dp at the points of an autonomous flow, shape (n, d) each."""
-        given = self.given_derivative
-        if isinstance(given, Mapping):
-            given = given.get(self.values.varying)
-        tried = self.complex_slopes.get(self.values.varying, False)
-        if given is not None or not tried:
+        if self._given_slope() is not None or not self.complex_slopes.get(self.values.varying, False):
             return self(x, p), self.slope(x, p)
         value = self(x, complex(p, COMPLEX_STEP))
         return np.real(value), np.imag(value) / COMPLEX_STEP
 
     def slope(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
         """df/dp at fixed points and times, shape (n, d)."""
-        given = self.given_derivative
-        if self.compiled is not None and self.compiled.dfdp is not None:
-            names = list(self.values.values)
-            shape, parameters = (self.node, len(names)), self.values.at(p)
-            found = self.compiled.at_points(self.compiled.dfdp, x, parameters, t, shape)
-            return found[:, :, names.index(self.values.varying)]
-        if isinstance(given, Mapping):
-            given = given.get(self.values.varying)
+        given, name = self._given_slope(), self.values.varying
         if given is None:
             return self.along(lambda q: self(x, q, t), p)
-        at, shape = At(x, self.values.at(p), t), (self.node,)
-        if self.values.varying not in self.many_slope:
-            first = At(x[:7], at.parameters, None if t is None else t[:7])
-            self.many_slope[self.values.varying] = self._agrees(given, first, shape)
-        return (self._stacked if self.many_slope[self.values.varying] else self._each)(given, at, shape)
+        if name not in self._slopes:
+            self._slopes[name] = AtPoints(given, self.forced, (self.node,))
+        self._slopes[name].find(self.settings.agree, x, self.values.at(p), t)
+        return self._asked(self._slopes[name], x, p, t)
 
 
 def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:
@@ -322,31 +309,125 @@ def _difference(line: Callable[[float], np.ndarray]) -> np.ndarray:
     return sum(weight * (line(float(k)) - line(float(-k))) for k, weight in SIXTH)  # type: ignore[return-value]
 
 
-def _at_zero(f: Callable, period: Callable | None) -> Callable:
-    """A function of (x, p, t) at t = 0."""
-    if period is None or not callable(f):
-        return f
-    return lambda x, p: f(x, p, 0.0)
+class Events:
+    """Functions (x, p), of forced flows (x, p, t), of which none changes its sign along a motion; the sign is that at the flow's start.
 
+    Parameters
+    ----------
+    given : mapping of str to callable, or None
+    forced : bool
+    start : ndarray, shape (d,)
+    values : ParameterSet
+    agree : float
+        Relative difference of values that must be equal.
 
-def _full(given: object) -> np.ndarray:
-    return np.asarray(given.toarray()) if issparse(given) else np.array(given)  # type: ignore[union-attr]
+    Raises
+    ------
+    ValueError
+        If a name or a function cannot be used, or one is zero or no finite number at the start.
+    """
 
+    def __init__(
+        self,
+        given: Mapping[str, Callable] | None,
+        forced: bool,
+        start: np.ndarray,
+        values: ParameterSet,
+        agree: float,
+    ) -> None:
+        if given is not None and not isinstance(given, Mapping):
+            raise ValueError(
+                f"events = {given!r} must be functions by name, for example events={{'wall': lambda x, p: 1 - x[0]}}"
+            )
+        self.given: dict[str, Callable] = dict(given or {})
+        self.forced, self.agree, self.names = forced, agree, tuple(self.given)
+        arguments = "(x, p, t)" if forced else "(x, p)"
+        for name, function in self.given.items():
+            if not (isinstance(name, str) and callable(function)):
+                raise ValueError(f"events: {name!r} must be a name with a function {arguments} -> number")
+        self.functions = [AtPoints(function, forced, ()) for function in self.given.values()]
+        self.signs = np.ones(len(self.given))
+        try:
+            first = self(start[None], values.at(values.start), np.zeros(1))[0]
+        except NotEvaluable as error:
+            raise ValueError(f"events: {error}") from error
+        for name, value in zip(self.names, first, strict=True):
+            if not np.isfinite(value) or value == 0.0:
+                raise ValueError(
+                    f"events: {name} is {value:g} at x0; its sign there says on which side motions are: move x0 off it"
+                )
+        self.signs = np.sign(first)
 
-def _broadcast(given: Iterable, n: int, shape: tuple[int, ...]) -> np.ndarray:
-    """What a function of arrays of n numbers returned, nested as `shape` has it, as array (n, *shape)."""
-    if isinstance(given, np.ndarray) and given.dtype != object:
-        if given.shape != (*shape, n):
-            raise ValueError(f"shape {given.shape}")
-        return np.moveaxis(given, -1, 0)
-    flat = list(given)
-    if len(flat) != shape[0]:
-        raise ValueError(f"{len(flat)} entries")
-    if len(shape) == 2:
-        rows = [_broadcast(row, n, shape[1:]) for row in flat]
-        return np.stack(rows, axis=1)
-    values = [np.asarray(value) for value in flat]
-    result = np.empty((n, len(values)), dtype=np.result_type(*values))
-    for j, value in enumerate(values):
-        result[:, j] = value
-    return result
+    def __len__(self) -> int:
+        return len(self.given)
+
+    def __call__(
+        self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Values at points (n, d), positive where motions are, shape (n, events).
+
+        Raises
+        ------
+        NotEvaluable
+            If a function fails or returns no number.
+        """
+        found = np.empty((len(x), len(self.given)))
+        for k, function in enumerate(self.functions):
+            function.find(self.agree, x, parameters, t)
+            try:
+                found[:, k] = function(x, parameters, t)
+            except Exception as error:  # a user's function may fail in any way
+                raise NotEvaluable(f"the event {self.names[k]} fails: {error}") from error
+        return found * self.signs
+
+    def closest(
+        self,
+        motion: Callable[[np.ndarray], np.ndarray],
+        edges: np.ndarray,
+        period: float,
+        parameters: Parameters | complex,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The smallest value of each along a periodic motion, and the place where it has it, in units of the period.
+
+        Parameters
+        ----------
+        motion : callable
+            Places in units of the period -> states (n, d).
+        edges : ndarray
+            Places, in order, between which a function has one smallest value at most.
+        """
+
+        def values(places: np.ndarray) -> np.ndarray:
+            return self(motion(places), parameters, places * period if self.forced else None)
+
+        count, smallest, where = len(edges), np.empty(len(self)), np.empty(len(self))
+        rough = values(edges)
+        for k in range(len(self)):
+            j = int(np.argmin(rough[:, k]))
+            low, high = edges[j - 1] - (j == 0), edges[(j + 1) % count] + (j == count - 1)
+            places, here, i = np.empty(0), np.empty(0), 1
+            for _ in range(ROUNDS):
+                places = np.linspace(low, high, CLOSER + 1)
+                here = values(places)[:, k]
+                i = min(max(int(np.argmin(here)), 1), CLOSER - 1)
+                low, high = places[i - 1], places[i + 1]
+            left, middle, right = here[i - 1 : i + 2]
+            bend = left - 2.0 * middle + right
+            step = min(max(0.5 * (left - right) / bend, -1.0), 1.0) if bend > 0.0 else 0.0
+            inside = bend > 0.0 and abs(step) < 1.0
+            smallest[k] = middle - 0.125 * (right - left) ** 2 / bend if inside else here.min()
+            where[k] = places[i] + step * (places[1] - places[0])
+        return smallest, where % 1.0
+
+    def crossings(self, values: ParameterSet, p: float) -> Sequence[Callable]:
+        """The functions as scipy's integrators want them, each of which ends the integration."""
+        parameters = values.at(p)
+
+        def stopping(sign: float, function: AtPoints) -> Callable:
+            def value(t: float, x: np.ndarray) -> float:
+                return sign * float(function._asked(x, parameters, t))  # type: ignore[arg-type]
+
+            value.terminal, value.direction = True, -1.0  # pyright: ignore[reportFunctionMemberAccess]
+            return value
+
+        return [stopping(*each) for each in zip(self.signs, self.functions, strict=True)]

@@ -1,79 +1,262 @@
-"""What equilibria, cycles and many starts ask of their flow (`contvines.flows.problem.FlowProblem`)."""
+"""Flow: a user's differential equations, as their equilibria, cycles and many starts know them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..problems.protocol import Problem
+from contvines.shared.floating_point import TINY
+
+from ..problems.functions import NotEvaluable, difference_text
+from ..problems.registry import addresses
+from ..problems.scales import given_scale
 
 if TYPE_CHECKING:
-    from ..problems.algebraic import AlgebraicProblem
-    from ..problems.populations import Population
-    from ..problems.protocol import BorderPoint, Seed
-    from ..problems.symmetries import Image
-    from .collocation import Rule
-    from .events import Events
-    from .field import Field
-    from .settings import FlowSettings
+    from numpy.typing import ArrayLike
 
+    from ..problems.algebraic import AlgebraicProblem
+    from ..problems.functions import ParameterSet
+    from ..problems.populations import Population
+    from ..problems.protocol import BorderPoint, Problem, Seed
+    from ..problems.symmetries import Image
+    from .field import Events, Field
+    from .settings import FlowSettings
 
 Sizes = tuple[np.ndarray, float, float]  #: of states, period and parameter
 
 
-class Born(Problem, Protocol):
-    """Cycles that are born at a Hopf point."""
+class Flow(ABC):
+    """What is read of :class:`contvines.FlowProblem`, and what flows of another origin, as those of machines, have otherwise.
 
-    @property
-    def rule(self) -> Rule: ...
-    @property
-    def node_scale(self) -> np.ndarray: ...
+    Attributes
+    ----------
+    x0 : ndarray, shape (d,)
+        A start.
+    given : dict
+        Functions as the user gave them: "F", "jacobian", "derivative", "mirror", "events".
+    of_states : dict
+        Names of measures of states -> ("max", "min" or "mean", number of the state).
+    mirror_shifted : bool
+        Whether the mirror image of a forced motion is one half a period later.
+    box : sequence of (low, high), optional
+        In which motions begin, of a study that has one.
+    """
 
+    name: str
+    degree: int
+    error: float
+    settings: FlowSettings
+    x0: np.ndarray
+    values: ParameterSet
+    given: dict[str, Any]
+    given_period: Callable | float | None
+    given_scale: ArrayLike | None
+    given_states: Sequence[str] | None
+    states: tuple[str, ...]
+    of_states: Mapping[str, tuple[str, int]]
+    field: Field
+    events: Events
+    mirror: Image | None
+    mirror_shifted = False
+    sizes: tuple[np.ndarray, float] | None = None  # of states and periods of cycles
+    box: Sequence[tuple[float, float]] | None = None
+    origin: tuple[str, str, str] | None = None  # file, name and digest, of a flow that a study names
 
-class Flow(Protocol):
-    """A flow, as its solutions know it."""
+    def mirrored(self, x: np.ndarray) -> np.ndarray:
+        """Mirror images of states, shape (n, d)."""
+        assert self.mirror is not None
+        return np.array([self.mirror(y) for y in x])
 
-    @property
-    def degree(self) -> int: ...
-    @property
-    def error(self) -> float: ...
-    @property
-    def settings(self) -> FlowSettings: ...
-    @property
-    def field(self) -> Field: ...
-    @property
-    def events(self) -> Events: ...
-    @property
-    def mirror(self) -> Image | None: ...
-    @property
-    def mirror_shifted(self) -> bool: ...
-    @property
-    def states(self) -> tuple[str, ...]: ...
-    @property
-    def of_states(self) -> Mapping[str, tuple[str, int]]: ...
-    @property
-    def of_cycles(self) -> Mapping[str, str]: ...
-    @property
-    def own_measures(self) -> tuple[str, ...]: ...
-    def measure_own(self, name: str, problem: Problem, u: np.ndarray, p: float) -> float: ...
+    # ------------------------------------------------------------------ what is refused
+    def _check_rates(self) -> None:
+        """Refuse a right-hand side that differs when it is asked twice, as a simulation of it may take ever smaller steps, without end; a wrong period; a wrong mirror."""
+        rate = self.field.rate_at(self.values.start)
+        with np.errstate(all="ignore"):
+            different = difference_text(rate(0.0, self.x0), rate(0.0, self.x0))
+        if different:
+            raise ValueError(different)
+        if self.field.forced:
+            self._check_period()
+            self._find_mirror()
+
+    def _beside(self, seed: int, width: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """States and times drawn beside the start, and the period there."""
+        rng, period = np.random.default_rng(seed), self.field.length_of_period(self.values.start)
+        x = self.x0 + self.field.lengths * rng.uniform(-width, width, (6, len(self.x0)))
+        return x, rng.uniform(0.0, period, 6), period
+
+    def _check_period(self) -> None:
+        """Refuse a right-hand side that does not repeat after its period, tried at states beside the start."""
+        p, (x, t, period) = self.values.start, self._beside(6, 0.1)
+        try:
+            with np.errstate(all="ignore"):
+                one, later = self.field(x, p, t), self.field(x, p, t + period)
+        except NotEvaluable:
+            return  # states beside the start may be outside of where f is defined
+        size = TINY + np.nanmax(np.abs(one), initial=0.0)
+        if np.nanmax(np.abs(one - later), initial=0.0) > self.settings.recurs * size:
+            raise ValueError(
+                f"period = {period:.10g} at the start is no period of f(x, p, t) in t: f differs there after that time; mend period= or f"
+            )
+
+    def _find_mirror(self) -> None:
+        """Whether the mirror image of a forced motion is one at the same time, or half a period later; one that is neither is refused."""
+        if self.mirror is None:
+            return
+        p, (x, t, period) = self.values.start, self._beside(4, 1.0)
+        wanted = self.mirrored(self.field(x, p, t)) - self.mirror(np.zeros(len(self.x0)))
+        size = TINY + np.abs(wanted).max()
+        for self.mirror_shifted in (True, False):
+            found = self.field(self.mirrored(x), p, t + (0.5 * period if self.mirror_shifted else 0.0))
+            if np.abs(found - wanted).max() <= self.settings.agree * size:
+                return
+        raise ValueError(
+            "mirror: f(R x, p, t) is neither R f(x, p, t) nor R f(x, p, t + period/2); leave mirror= out, or mend it"
+        )
+
+    # ------------------------------------------------------------------ solutions
+    @abstractmethod
     def equilibria(
         self, parameter: str | None = None, values: Mapping[str, float] | None = None
-    ) -> AlgebraicProblem: ...
-    def cycles(self, field: Field, u: np.ndarray, counts: tuple[int, int, int], sizes: Sizes) -> Born: ...
+    ) -> AlgebraicProblem:
+        """The equilibria as a continuation problem."""
+
+    @abstractmethod
+    def cycles(self, field: Field, u: np.ndarray, counts: tuple[int, int, int], sizes: Sizes) -> Problem:
+        """The problem of cycles; `counts` and `sizes` as :class:`contvines.flows.cycle_mesh.CycleMesh` has them."""
+
+    @abstractmethod
+    def attractor_at(
+        self,
+        values: Mapping[str, float],
+        x0: ArrayLike | None = None,
+        *,
+        longest: int = 64,
+        doublings: int = 12,
+    ) -> Any:
+        """The cycle on which a motion settles, a :class:`contvines.flows.orbit.CycleOrbit`."""
+
+    @abstractmethod
+    def cycle_at(self, values: Mapping[str, float], times: ArrayLike, states: ArrayLike) -> Any:
+        """The cycle near given states."""
+
+    @abstractmethod
     def population_at(
         self,
         values: Mapping[str, float],
         over: str | None = None,
         box: Sequence[tuple[float, float]] | None = None,
         around: np.ndarray | None = None,
-    ) -> Population: ...
-    def simulated_attractors(self, problem: Problem, p: float, starts: int) -> list[dict[str, Any]]: ...
-    def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]: ...
-    def border_kind(self, k: int) -> str: ...
-    def beyond(self, problem: Problem, point: BorderPoint, k: int) -> list[Seed]: ...
-    def dead_end(self, problem: Problem, point: BorderPoint, k: int) -> str: ...
-    def rebuilt_by(self, importable: bool) -> str | None: ...
-    def described(self) -> dict[str, Any]: ...
-    def describe(self) -> dict[str, Any]: ...
+    ) -> Population:
+        """Many starts."""
+
+    @abstractmethod
+    def simulated_attractors(self, problem: Problem, p: float, starts: int) -> list[dict[str, Any]]:
+        """What starts settle on."""
+
+    @abstractmethod
+    def known(self, problem: Problem, u: np.ndarray, p: float) -> dict[str, Any]:
+        """A stable solution as `simulated_attractors` lists it."""
+
+    # ------------------------------------------------------------------ measures
+    @property
+    def of_cycles(self) -> dict[str, str]:
+        """What tables call a cycle."""
+        return {"word": "cycle"}
+
+    @property
+    def own_measures(self) -> tuple[str, ...]:
+        """Measures beside those of any flow."""
+        return ()
+
+    def measure_of(self, what: str, state: str) -> str:
+        """What the largest, smallest or mean value of a state is called."""
+        return f"{what} {state}"
+
+    def measure_own(self, name: str, problem: Problem, u: np.ndarray, p: float) -> float:
+        """One of ``own_measures``."""
+        raise KeyError(name)
+
+    # ------------------------------------------------------------------ events that stop
+    def border_kind(self, k: int) -> str:
+        """The kind of border at which a motion touches event k."""
+        return "event"
+
+    def beyond(self, problem: Problem, point: BorderPoint, k: int) -> list[Seed]:
+        """The motions that go on where one touches event k: none."""
+        return []
+
+    def dead_end(self, k: int, x: np.ndarray, when: float | None = None) -> str:
+        """What stops motions at event k, in words: the state there, and of a cycle the time."""
+        place = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.states, x, strict=True))
+        ahead = "" if when is None else f" at t = {when:.6g} of its period"
+        return f"the event {self.events.names[k]} stops the motion: it is zero{ahead}, where {place}"
+
+    # ------------------------------------------------------------------ files
+    def rebuilt_by(self, importable: bool) -> str | None:
+        """The factory that builds the flow's problems again; None where its functions cannot be found again."""
+        return "contvines.flows.files:from_description" if importable or self.origin else None
+
+    def described(self) -> dict[str, Any]:
+        """What distinguishes the flow from its equations."""
+        period, changed = self.given_period, self.settings.changed()
+        where, _ = addresses({"period": period if callable(period) else None})
+        return {
+            "degree": self.degree,
+            "error": self.error,
+            **({"settings": changed} if changed else {}),
+            "period": where["period"] if callable(period) else period,
+            "x0": self.x0.tolist(),
+            "scale": self._scale(),
+            "states": None if self.given_states is None else list(self.states),
+            "file": None if self.origin is None else list(self.origin),
+        }
+
+    def describe(self) -> dict[str, Any]:
+        """Name, start, and how to build the flow again if its functions can be imported."""
+        where, importable = addresses(
+            {**self.given, "period": self.given_period if callable(self.given_period) else None}
+        )
+        return {
+            "name": self.name,
+            "parameter": self.values.varying,
+            "u0": self.x0.tolist(),
+            "p0": self.values.given(),
+            "scale": self._scale(),
+            "callables": where,
+            "flow": self.described(),
+            "factory": self.rebuilt_by(importable),
+        }
+
+    def _scale(self) -> list[float] | None:
+        scale = given_scale(self.given_scale, len(self.x0))
+        return None if scale is None else scale.tolist()
+
+
+def is_number(given: object) -> bool:
+    return isinstance(given, (int, float, np.integer, np.floating)) and not isinstance(given, bool)
+
+
+def period_of(given: Callable | float | None, values: ParameterSet) -> Callable | None:
+    """The period of f in time as a function of the parameters.
+
+    Raises
+    ------
+    ValueError
+        If it is none at the start.
+    """
+    if given is None:
+        return None
+    if not (callable(given) or is_number(given)):
+        raise ValueError(f"period = {given!r} must be a positive number or a function of p")
+    period = given if callable(given) else lambda p: float(given)
+    try:
+        length = period(values.at(values.start))
+    except Exception as error:  # a user's function may fail in any way
+        raise ValueError(f"period raises {type(error).__name__}: {error}, at the start") from error
+    if not (is_number(length) and 0.0 < length < np.inf):
+        raise ValueError(f"period is {length!r} at the start; it must be a positive number there")
+    return period

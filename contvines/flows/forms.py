@@ -58,8 +58,7 @@ class Return:
         r, d, m, count = problem.rule, problem.node, problem.rule.degree, problem.intervals
         self.free, self.states = problem.free_period, problem.states
         x, period, widths = problem.parts(u, p)
-        ends = mesh.closed(x)
-        self.points = np.einsum("cj,ijk->ick", r.values, ends).reshape(-1, d)
+        self.points = mesh.at_gauss_points(r.values, x)
         self.steps = np.repeat(period * widths, m)
         self.widths = np.repeat(widths, m)
         forced, around = problem.field.forced, (problem.copies, problem.rounds)
@@ -67,11 +66,7 @@ class Return:
         self.jacobian = problem.field.jacobian(self.points, p, self.times)
         f = problem.field(self.points, p, self.times)
         self.size = self.states + self.free
-        own = -self.steps[:, None, None] * self.jacobian
-        blocks = np.einsum("cj,icab->icajb", r.values, own.reshape(count, m, d, d))
-        diagonal = np.arange(d)
-        blocks[:, :, diagonal, :, diagonal] += r.slopes
-        blocks = blocks.reshape(count, m * d, (m + 1) * d)
+        blocks = r.blocks(self.steps[:, None, None] * self.jacobian)
         # triples of rows, columns and values; what belongs to x_N stands in the columns of x_0, in a matrix of its own
         rows = np.repeat(np.arange(self.states), (m + 1) * d).reshape(blocks.shape)
         columns = (

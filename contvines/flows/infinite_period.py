@@ -22,11 +22,12 @@ import numpy as np
 
 from contvines.shared.floating_point import TINY
 
-from .nearby_equilibrium import FAR, nearby_equilibrium
+from . import mesh
 
 if TYPE_CHECKING:
     from ..problems.protocol import BorderPoint
     from .cycle_mesh import CycleMesh
+
 
 SHARE = 0.01  # of the growth of the period: less of it is none
 HALF = (
@@ -178,15 +179,11 @@ def _delays(
 ) -> np.ndarray:
     """How the times change along the branch at which the cycle passes the planes across its motion at the nodes, that of one round last."""
     period, growth = float(point.u[problem.states]), float(point.tangent[problem.states])
-    inside = problem.rule.nodes[:-1]
-
-    def at_nodes(lengths: np.ndarray) -> np.ndarray:
-        begins = np.append(0.0, np.cumsum(lengths)[:-1])
-        return (begins[:, None] + lengths[:, None] * inside).reshape(-1)
-
     moved = point.tangent[: problem.states].reshape(x.shape) / problem.node_scale
     f = rates / problem.node_scale
-    changed = at_nodes(growth * widths + period * point.tangent[problem.states + 1 : -1])
+    changed = mesh.node_places(
+        problem.rule, growth * widths + period * point.tangent[problem.states + 1 : -1]
+    )
     delays = changed - np.einsum("ij,ij->i", f, moved) / np.maximum(np.einsum("ij,ij->i", f, f), TINY)
     return np.append(delays, growth)
 
@@ -206,3 +203,15 @@ def _place(x: np.ndarray) -> str:
 
 def _shortly(value: complex) -> str:
     return f"{value.real:.4g}" if value.imag == 0.0 else f"{value:.4g}"
+
+
+FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to a point of least speed is the one at which it stays
+
+
+def nearby_equilibrium(
+    problem: CycleMesh, start: np.ndarray, p: float, sizes: np.ndarray
+) -> np.ndarray | None:
+    """The equilibrium to which Newton's method leads from a point of a cycle of such sizes; None where that is far away, or none."""
+    least = problem.flow.settings.rounded
+    y = problem.field.rest(start, p, sizes, least, FAR)
+    return None if y is None else np.where(np.abs(y) > least * sizes, y, 0.0)

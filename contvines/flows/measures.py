@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import mesh
-from .collocation import rule as rule_of
+from .mesh import Rule
 
 if TYPE_CHECKING:
-    from .collocation import Rule
     from .cycle_mesh import CycleMesh
+    from .mesh import Rule
+
 
 FINER = 4  # places between two nodes at which the largest value is looked for
 
@@ -56,7 +58,7 @@ def of_mesh(rule: Rule, ends: np.ndarray, widths: np.ndarray, word: str, j: int)
 @cache
 def _between(degree: int) -> np.ndarray:
     """Matrix from values at the nodes to values at many places in an interval."""
-    return rule_of(degree).interpolation(np.linspace(0.0, 1.0, FINER * degree + 1))
+    return mesh.rule(degree).interpolation(np.linspace(0.0, 1.0, FINER * degree + 1))
 
 
 def _largest(rule: Rule, ends: np.ndarray, widths: np.ndarray) -> float:
@@ -68,3 +70,90 @@ def _largest(rule: Rule, ends: np.ndarray, widths: np.ndarray) -> float:
     rises, falls = (middle - values[k - 1]) / before, (values[(k + 1) % len(values)] - middle) / after
     bend, slope = (falls - rises) / (before + after), (rises * after + falls * before) / (before + after)
     return float(middle - 0.25 * slope * slope / bend if bend < 0.0 else middle)
+
+
+OF_STATES = ("max", "min", "mean")
+TAKEN = ("norm", "period")
+
+
+def checked_names(given: Sequence[str] | None, count: int) -> tuple[str, ...]:
+    """The names of so many states: those given, or x0, x1, ...
+
+    Raises
+    ------
+    ValueError
+        If they are not as many, or one cannot be used.
+    """
+    if given is None:
+        return tuple(f"x{j}" for j in range(count))
+    if isinstance(given, str) or not all(isinstance(name, str) and name.isidentifier() for name in given):
+        raise ValueError(f"states = {given!r} must be names, for example ('x', 'y')")
+    if len(given) != count:
+        raise ValueError(f"states = {tuple(given)!r} has {len(given)} names; the flow has {count} states")
+    wrong = next((name for k, name in enumerate(given) if name in (*given[:k], *TAKEN)), None)
+    if wrong is not None:
+        why = "is that of a measure" if wrong in TAKEN else "is there twice"
+        raise ValueError(f"states: the name {wrong!r} {why}; choose another one")
+    return tuple(given)
+
+
+BUILDER = (
+    "contvines.flows.files:from_description"  # of flows whose functions can be imported; others have none
+)
+
+
+@dataclass(frozen=True)
+class MeasuresWithoutRates:
+    """Measures of equilibria or cycles of a flow that was loaded without its functions.
+
+    Attributes
+    ----------
+    states : tuple of str
+    rule : Rule
+    intervals : int
+        Of the mesh of cycles; 0 of equilibria.
+    """
+
+    states: tuple[str, ...]
+    rule: Rule
+    intervals: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """As with the functions, but for those of the user."""
+        each = tuple(f"{what} {state}" for what in OF_STATES for state in self.states)
+        if self.intervals:
+            return "norm", "period", *each
+        unknowns = tuple(f"u{j}" for j in range(len(self.states)))
+        return "norm", *unknowns, *self.states, *each, "period"
+
+    def __call__(self, name: str, u: np.ndarray) -> np.ndarray:
+        """A measure of solutions, shape (n, N)."""
+        word, _, state = name.rpartition(" ")
+        if not self.intervals:
+            if name in ("norm", "period"):
+                return np.linalg.norm(u, axis=1) if name == "norm" else np.full(len(u), np.nan)
+            return u[:, self.states.index(state) if state in self.states else int(name[1:])].copy()
+        n, m, d = self.intervals, self.rule.degree, len(self.states)
+        if name == "period":  # of forced flows it is no unknown
+            free = u.shape[1] > n * m * d + n
+            return u[:, n * m * d].copy() if free else np.full(len(u), np.nan)
+        j = self.states.index(state) if word else 0
+        ends = (mesh.closed(y[: n * m * d].reshape(n, m, d)) for y in u)
+        return np.array(
+            [of_mesh(self.rule, each, y[-n:], word or name, j) for each, y in zip(ends, u, strict=True)]
+        )
+
+
+def measures_without_rates(description: Mapping[str, Any], unknowns: int) -> MeasuresWithoutRates | None:
+    """What is measured of solutions with so many unknowns whose problem is described so; None if they are not those of a flow."""
+    flow, cycle = description.get("flow"), description.get("cycle")
+    if not isinstance(flow, Mapping) or description.get("factory") not in (None, BUILDER):
+        return None
+    states = checked_names(flow["states"], len(flow["x0"]))
+    if cycle is None:
+        found = MeasuresWithoutRates(states, mesh.rule(flow["degree"]), 0)
+        return found if unknowns == len(states) else None
+    found = MeasuresWithoutRates(states, mesh.rule(flow["degree"]), cycle["intervals"])
+    whole = found.intervals * (found.rule.degree * len(states) + 1)
+    return found if unknowns in (whole, whole + 1) else None

@@ -1,22 +1,153 @@
-"""Meshes of cycles: piecewise polynomials, estimated errors, equidistribution."""
+"""Gauss collocation on one interval, and meshes of cycles: piecewise polynomials, estimated errors, equidistribution.
+
+Reference: Ascher, Mattheij and Russell, Numerical Solution of Boundary Value Problems (SIAM 1995), chapter 5.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from math import factorial
 
 import numpy as np
-
-from .collocation import Rule
+from numpy.polynomial import Polynomial
+from numpy.polynomial.legendre import leggauss
 
 EVEN = 0.3  # part of the mean by which the function to be equidistributed is raised, so that intervals do not differ too much
 SLACK = 1.1  # largest over mean share of the error at which a mesh stays as it is
 
 
-def closed(x: np.ndarray, sign: float = 1.0) -> np.ndarray:
+@dataclass(frozen=True)
+class Rule:
+    """Polynomials of degree m on [0, 1], given by their values at m + 1 nodes.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (m + 1,)
+        Chebyshev points of the second kind, both ends included.
+    points, weights : ndarray, shape (m,)
+        Gauss points and weights.
+    values, slopes : ndarray, shape (m, m + 1)
+        From values at the nodes to values and derivatives at the Gauss points.
+    rates : ndarray, shape (m, m + 1)
+        From values at the nodes to derivatives at all nodes but the last.
+    barycentric : ndarray, shape (m + 1,)
+        Weights of the interpolation formula.
+    top : ndarray, shape (m + 1,)
+        From values at the nodes to the m-th derivative, a constant.
+    constant : float
+        Largest error of the polynomial is ``constant * h^(m + 1) * |x^(m + 1)|``.
+    """
+
+    nodes: np.ndarray
+    points: np.ndarray
+    weights: np.ndarray
+    values: np.ndarray
+    slopes: np.ndarray
+    rates: np.ndarray
+    barycentric: np.ndarray
+    top: np.ndarray
+    constant: float
+
+    @property
+    def degree(self) -> int:
+        """m."""
+        return len(self.points)
+
+    @property
+    def resolved(self) -> float:
+        """Size of z = h lambda from which on R(z) has no zeros and poles, and comes nearer to 1 in size the larger z is.
+
+        Its zeros and poles are smaller than 2 m + 4 / 3: Saff and Varga, in Pade and Rational Approximation (1977), p. 195.
+        """
+        return 2.0 * (self.degree + 2.0 / 3.0)
+
+    def stability(self, z: np.ndarray) -> np.ndarray:
+        """R(z), what collocation makes of x' = lambda x in an interval of length h, for z = h lambda: Pade's approximant of exp(z)."""
+        m = self.degree
+        terms = [factorial(2 * m - k) / (factorial(k) * factorial(m - k)) for k in range(m, -1, -1)]
+        return np.polyval(terms, z) / np.polyval(terms, -z)
+
+    def blocks(self, jacobian: np.ndarray) -> np.ndarray:
+        """Derivatives of the equations of intervals by the values at their nodes, shape (N, m d, (m + 1) d).
+
+        Parameters
+        ----------
+        jacobian : ndarray, shape (N m, d, d)
+            Of the rates at the Gauss points, times the length of the interval.
+        """
+        m, d = self.degree, jacobian.shape[-1]
+        found = -np.einsum("cj,icab->icajb", self.values, jacobian.reshape(-1, m, d, d))
+        each = np.arange(d)
+        found[:, :, each, :, each] += self.slopes
+        return found.reshape(-1, m * d, (m + 1) * d)
+
+    def interpolation(self, places: np.ndarray) -> np.ndarray:
+        """Matrix from values at the nodes to values at some places in [0, 1], shape (len(places), m + 1)."""
+        gaps = np.asarray(places, dtype=float)[:, None] - self.nodes
+        hit = gaps == 0.0
+        gaps[hit] = 1.0
+        parts = self.barycentric / gaps
+        parts[hit.any(axis=1)] = 0.0
+        parts[hit] = 1.0
+        return parts / parts.sum(axis=1, keepdims=True)
+
+
+@lru_cache(maxsize=16)
+def rule(degree: int) -> Rule:
+    """The rule of a degree.
+
+    Raises
+    ------
+    ValueError
+        If the degree is not 2 to 7.
+    """
+    if not (isinstance(degree, (int, np.integer)) and 2 <= degree <= 7):
+        raise ValueError(f"degree = {degree!r} must be a whole number from 2 to 7")
+    m = int(degree)
+    nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(m + 1) / m)
+    points, weights = leggauss(m)
+    points, weights = 0.5 + 0.5 * points, 0.5 * weights
+    values, slopes, rates = np.empty((3, m, m + 1))
+    barycentric, top = np.empty((2, m + 1))
+    for j in range(m + 1):
+        others = np.delete(nodes, j)
+        barycentric[j] = 1.0 / np.prod(nodes[j] - others)
+        basis = Polynomial.fromroots(others) * barycentric[j]
+        values[:, j], slopes[:, j], rates[:, j] = (
+            basis(points),
+            basis.deriv()(points),
+            basis.deriv()(nodes[:-1]),
+        )
+        top[j] = factorial(m) * barycentric[j]
+    # the error of Gauss collocation begins with the integral of the polynomial that vanishes at the Gauss points
+    kernel = Polynomial.fromroots(points).integ()
+    constant = float(np.abs(kernel(np.linspace(0.0, 1.0, 401)) - kernel(0.0)).max()) / factorial(m)
+    return Rule(nodes, points, weights, values, slopes, rates, barycentric, top, constant)
+
+
+# ------------------------------------------------------------------ piecewise polynomials
+def closed(x: np.ndarray) -> np.ndarray:
     """Values at all nodes of each interval, shape (..., N, m + 1, d), from those without the last one, (..., N, m, d)."""
-    after = np.concatenate([x[..., 1:, :1, :], sign * x[..., :1, :1, :]], axis=-3)
+    after = np.concatenate([x[..., 1:, :1, :], x[..., :1, :1, :]], axis=-3)
     return np.concatenate([x, after], axis=-2)
+
+
+def at_gauss_points(matrix: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Values, or derivatives, at the Gauss points of all intervals, shape (N m, d), from those at the nodes, (N, m, d)."""
+    return np.matmul(matrix, closed(x)).reshape(-1, x.shape[-1])
+
+
+def phase_row(rule: Rule, widths: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray, float]:
+    """Row of the phase condition, shape (N, m d), from rates at the Gauss points, (N, m, d), and the length that it had."""
+    row = np.matmul(rule.values.T, (widths[:, None] * rule.weights)[:, :, None] * rates)
+    row[1:, 0] += row[:-1, -1]
+    row[0, 0] += row[-1, -1]
+    phase = row[:, :-1].reshape(len(widths), -1)
+    size = math.sqrt(np.vdot(phase, phase))
+    return phase / (size or 1.0), size
 
 
 def halved(rule: Rule, x: np.ndarray) -> np.ndarray:

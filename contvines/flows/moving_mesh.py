@@ -14,7 +14,7 @@ import numpy as np
 from ..core.library import NOTHING, POINTER, function, native
 from ..core.records import pack, place
 from . import mesh
-from .collocation import Rule
+from .mesh import Rule
 
 STIFFNESS = 0.3  # with less, meshes lose their shares of the error; with more, they stand still
 FEWEST = 3  # intervals of a ring

@@ -5,17 +5,17 @@ from __future__ import annotations
 from copy import copy
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast
 
 import numpy as np
 
+from ..problems.functions import NotEvaluable
 from ..shared.number_text import pairs
 from ..shared.stability import attracts, onto_circle
 from . import mesh
 from .elimination import multipliers_of
-from .kernels import growth_of_volume, linearise, spectrum
-from .newton import solved
-from .simulation import integrated, variational
+from .kernels import linearise, solved
+from .work import CycleWork, workspace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from ..problems.protocol import Problem
     from .cycle_mesh import CycleMesh
+    from .field import Field
 
 SEGMENTS = 8  # parts in which a cycle is simulated, so that unstable directions do not grow too much
 
@@ -92,7 +93,7 @@ class CycleOrbit:
         t = np.asarray(t, dtype=float)
         x, _, widths = self._problem.parts(self.u, self.value)
         found = mesh.evaluate(self._problem.rule, widths, x, t.reshape(-1) / self.period)
-        return found.reshape(*t.shape, -1)
+        return found.reshape(*t.shape, self._problem.node)
 
     def to_dict(self) -> dict[str, Any]:
         """The cycle as JSON-able dict."""
@@ -108,9 +109,12 @@ class CycleOrbit:
     # ------------------------------------------------------------------ stability
     @cached_property
     def _spectrum(self) -> tuple[np.ndarray, float]:
-        work = self._problem.workspace()
+        return self._linearised().spectrum()
+
+    def _linearised(self) -> CycleWork:
+        work = workspace(self._problem)
         linearise(self._problem, self.u, self.value, work)
-        return spectrum(self._problem, work)
+        return work
 
     @property
     def multipliers(self) -> np.ndarray:
@@ -153,11 +157,9 @@ class CycleOrbit:
         """
         if self._problem.sparse is not None:
             return 0.0
-        work = self._problem.workspace()
-        linearise(self._problem, self.u, self.value, work)
         with np.errstate(divide="ignore"):
             found = float(np.log(np.abs(self.multipliers)).sum())
-        return abs(found - growth_of_volume(self._problem, work))
+        return abs(found - self._linearised().growth_of_volume())
 
     @property
     def stable(self) -> bool | None:
@@ -247,3 +249,38 @@ class CycleOrbit:
         from ..plots.cycles import animate_cycle
 
         return animate_cycle(self, path, **options)
+
+
+def integrated(field: Field, p: float, x: np.ndarray, start: float, stop: float) -> np.ndarray:
+    """The state at another time; NaN where the integrator fails."""
+    from scipy.integrate import solve_ivp
+
+    s = field.settings
+    size = cast("float", s.exact_absolute * (s.smallest * field.lengths + np.abs(x)))
+    found = solve_ivp(field.rate_at(p), (start, stop), x, method="DOP853", rtol=s.exact_relative, atol=size)
+    return found.y[:, -1] if found.success else np.full(len(x), np.nan)
+
+
+def variational(
+    field: Field, p: float, x: np.ndarray, start: float, stop: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The state at another time and its derivative by the first one; NaN where the integrator fails."""
+    from scipy.integrate import solve_ivp
+
+    d = len(x)
+
+    def rate(t: float, y: np.ndarray) -> np.ndarray:
+        time, state = np.array([t]) if field.forced else None, y[None, :d]
+        matrix = field.jacobian(state, p, time)[0]
+        return np.concatenate([field(state, p, time)[0], (matrix @ y[d:].reshape(d, d)).reshape(-1)])
+
+    begin = np.concatenate([x, np.eye(d).reshape(-1)])
+    s = field.settings
+    try:
+        found = solve_ivp(
+            rate, (start, stop), begin, method="DOP853", rtol=s.exact_relative, atol=s.exact_absolute
+        )
+    except NotEvaluable:
+        return np.full(d, np.nan), np.full((d, d), np.nan)
+    end = found.y[:, -1] if found.success else np.full(len(begin), np.nan)
+    return end[:d], end[d:].reshape(d, d)

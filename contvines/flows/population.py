@@ -4,26 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from contvines.shared.even_points import low_discrepancy
-from contvines.shared.floating_point import ROUNDED, TINY
+from contvines.shared.floating_point import TINY
 from contvines.shared.motions import Motion, mean_of_blocks, wandering
 
 from ..problems.functions import NotEvaluable
 from ..problems.populations import StartsInBox
 from ..problems.registry import rebuild
-from .attractors import AtRest, Escaped, Irregular, Place, Stopped, last_round
-from .field import Field
 from .flow import Flow
-from .march import March
-from .settings import FlowSettings
+from .simulation import AtRest, Escaped, Irregular, March, Place, Stopped, last_round
 
 if TYPE_CHECKING:
     from ..problems.algebraic import AlgebraicProblem
-    from ..problems.functions import ParameterSet
     from ..problems.protocol import Problem
     from .cycle_mesh import CycleMesh
     from .orbit import CycleOrbit
@@ -44,11 +40,9 @@ AGAIN = (
     4,
     np.inf,
 )  # motions solved for though known, after which others are left to come nearer by themselves
-NEWTON = 30
 GROWTH = 4000  # times the time scale of a motion over which a vector's growth is followed
 BLOCKS = 20
 FEW = 8  # motions at least, copies of those there are ...
-RANK = 8.0 * ROUNDED  # singular values below this part of the largest one are zero
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,45 +52,6 @@ class Settled(Motion["AlgebraicProblem | CycleMesh"]):
     curve: np.ndarray | None = field(default=None, repr=False)  # states on it
     image: np.ndarray | None = field(default=None, repr=False)  # states on its mirror image
     size: np.ndarray | float = field(default=0.0, repr=False)  # range of each state along it
-
-
-@dataclass(frozen=True)
-class WithVectors:
-    """A field whose states are those of a flow, then a vector that the linearised flow carries along."""
-
-    field: Field
-
-    @property
-    def forced(self) -> bool:
-        """Whether f depends on time."""
-        return self.field.forced
-
-    @property
-    def settings(self) -> FlowSettings:
-        """Of the field."""
-        return self.field.settings
-
-    def __call__(self, x: np.ndarray, p: float, t: np.ndarray | None = None) -> np.ndarray:
-        """Rates, shape (n, 2 d)."""
-        d = x.shape[1] // 2
-        return np.concatenate(self.field.carried(x[:, :d], x[:, d:], p, t), axis=1)
-
-
-class PopulatedFlow(Flow, Protocol):
-    """A flow of which many starts are simulated."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def x0(self) -> np.ndarray: ...
-    @property
-    def values(self) -> ParameterSet: ...
-    @property
-    def box(self) -> Sequence[tuple[float, float]] | None: ...
-    def attractor_at(
-        self, values: Mapping[str, float], x0: np.ndarray, *, longest: int = 64, doublings: int = 12
-    ) -> CycleOrbit: ...
-    def cycle_at(self, values: Mapping[str, float], times: np.ndarray, states: np.ndarray) -> CycleOrbit: ...
 
 
 class FlowPopulation(StartsInBox):
@@ -119,7 +74,7 @@ class FlowPopulation(StartsInBox):
 
     def __init__(
         self,
-        flow: PopulatedFlow,
+        flow: Flow,
         parameter: str,
         values: Mapping[str, float],
         box: Sequence[tuple[float, float]] | None = None,
@@ -340,21 +295,8 @@ class FlowPopulation(StartsInBox):
         return self.flow.equilibria(self.parameter, {**self.values.values, self.parameter: p})
 
     def _rest(self, x: np.ndarray, p: float) -> np.ndarray | None:
-        """The equilibrium next to a state, by Newton's method; None if there is none."""
-        x = np.array(x, dtype=float)
-        for _ in range(NEWTON):
-            with np.errstate(all="ignore"):
-                try:
-                    rate, matrix = self.field(x[None], p)[0], self.field.jacobian(x[None], p)[0]
-                except (ValueError, NotEvaluable):
-                    return None
-            if not (np.isfinite(rate).all() and np.isfinite(matrix).all()):
-                return None
-            step = np.linalg.lstsq(matrix * self.size, -rate, rcond=RANK)[0] * self.size
-            x = x + step
-            if np.abs(step / self.size).max() < self.field.settings.solved:
-                return x
-        return None
+        """The equilibrium next to a state; None if there is none."""
+        return self.field.rest(np.asarray(x, dtype=float), p, self.size, self.field.settings.solved)
 
     def _attracts(self, x: np.ndarray, p: float) -> bool:
         return bool((np.linalg.eigvals(self.field.jacobian(x[None], p)[0]).real < 0.0).all())
@@ -374,7 +316,7 @@ class FlowPopulation(StartsInBox):
                 else GROWTH / BLOCKS / max(speed, TINY)
             )
             vectors = self.size * rng.standard_normal((count, d))
-            march = March(WithVectors(self.field), p, np.hstack([states, vectors]), np.tile(self.size, 2))
+            march = March(self.field, p, np.hstack([states, vectors]), np.tile(self.size, 2))
             logs = []
             for k in range(1 + -(-BLOCKS // count)):
                 before = march.t.copy()

@@ -2,65 +2,367 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
+from contvines.shared.floating_point import ROUNDED
+
 from ..problems.functions import NotEvaluable
+from .field import Field
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from scipy.integrate._ivp.ivp import OdeResult
 
     from .field import Field
 
 
-def rates(field: Field, p: float) -> Callable[[float, np.ndarray], np.ndarray]:
-    """(t, x) -> x' for scipy."""
-
-    f, parameters, forced = field.f, field.values.at(p), field.forced
-
-    def rate(t: float, x: np.ndarray) -> np.ndarray:
-        try:
-            value = np.asarray(f(x, parameters, t) if forced else f(x, parameters)).reshape(len(x))
-            if value.dtype.kind == "c":
-                value = np.where(np.imag(value) == 0.0, np.real(value), np.nan)
-            return value.astype(float)
-        except Exception:  # a user's function may fail in any way
-            return np.full(len(x), np.nan)
-
-    return rate
+SAMPLES = 400  # states of a period that are handed over
+FIRST = 50.0  # time scales of the first transient
+CAUTION = 10.0  # times the tolerance of a simulation
+DOUBLINGS = 12  # of the transient
+BRIEF = 100  # steps of the integrator: a motion that takes no more has hardly gone on; of a stiff flow, whose fastest scale begins the transient
+MOST = 80  # such motions
 
 
-def integrated(field: Field, p: float, x: np.ndarray, start: float, stop: float) -> np.ndarray:
-    """The state at another time; NaN where the integrator fails."""
-    from scipy.integrate import solve_ivp
+class Place(NamedTuple):
+    """Where a motion is at a time, and its rate."""
 
-    s = field.settings
-    size = cast("float", s.exact_absolute * (s.smallest * field.lengths + np.abs(x)))
-    found = solve_ivp(rates(field, p), (start, stop), x, method="DOP853", rtol=s.exact_relative, atol=size)
-    return found.y[:, -1] if found.success else np.full(len(x), np.nan)
+    t: float
+    x: np.ndarray
+    rate: np.ndarray
 
 
-def variational(
-    field: Field, p: float, x: np.ndarray, start: float, stop: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """The state at another time and its derivative by the first one; NaN where the integrator fails."""
-    from scipy.integrate import solve_ivp
+class Way:
+    """A motion through some places, between them along cubic polynomials."""
 
-    d = len(x)
+    def __init__(self, places: Sequence[Place]) -> None:
+        self.t = np.array([place.t for place in places])
+        self.y, self.rates = (np.column_stack([place[k] for place in places]) for k in (1, 2))
 
-    def rate(t: float, y: np.ndarray) -> np.ndarray:
-        time, state = np.array([t]) if field.forced else None, y[None, :d]
-        matrix = field.jacobian(state, p, time)[0]
-        return np.concatenate([field(state, p, time)[0], (matrix @ y[d:].reshape(d, d)).reshape(-1)])
+    def sol(self, time: np.ndarray | float) -> np.ndarray:
+        """States at times."""
+        i = np.clip(np.searchsorted(self.t, time) - 1, 0, len(self.t) - 2)
+        h = self.t[i + 1] - self.t[i]
+        s = (time - self.t[i]) / h
+        a, b = self.y[:, i], self.y[:, i + 1]
+        bent = (1.0 - s) * (h * self.rates[:, i] - b + a) - s * (h * self.rates[:, i + 1] - b + a)
+        return (1.0 - s) * a + s * b + s * (1.0 - s) * bent
 
-    begin = np.concatenate([x, np.eye(d).reshape(-1)])
-    s = field.settings
-    try:
-        found = solve_ivp(
-            rate, (start, stop), begin, method="DOP853", rtol=s.exact_relative, atol=s.exact_absolute
+
+class AtRest(ValueError):
+    """A motion that comes to rest in `state`."""
+
+    def __init__(self, state: np.ndarray) -> None:
+        self.state = state
+        super().__init__(
+            f"the motion comes to rest at {np.array2string(state, precision=6)}; contvines.diagram of the flow follows equilibria"
         )
-    except NotEvaluable:
-        return np.full(d, np.nan), np.full((d, d), np.nan)
-    end = found.y[:, -1] if found.success else np.full(len(begin), np.nan)
-    return end[:d], end[d:].reshape(d, d)
+
+
+class Escaped(ValueError):
+    """A motion that cannot be simulated on."""
+
+
+class Stopped(ValueError):
+    """A motion that one of the flow's events stops."""
+
+
+class Irregular(ValueError):
+    """A motion that does not recur."""
+
+
+def recurrence(
+    field: Field,
+    p: float,
+    x: np.ndarray,
+    transient: float | None,
+    longest: int,
+    doublings: int = DOUBLINGS,
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Times and states of one period of the cycle on which a motion settles, and after how many periods of the forcing it recurs.
+
+    Raises
+    ------
+    ValueError
+        If the motion escapes, comes to rest, or does not recur.
+    """
+    settled = _forced if field.forced else _free
+    try:
+        return settled(field, p, x, transient, longest, doublings)
+    except NotEvaluable as error:
+        raise Escaped(f"the motion cannot be simulated: {error}") from error
+
+
+def _run(
+    field: Field, p: float, x: np.ndarray, start: float, stop: float, dense: bool = False, rough: bool = False
+) -> OdeResult:
+    from scipy.integrate import solve_ivp
+
+    s, size = field.settings, field.lengths + np.abs(x)
+    rate, largest = field.rate_at(p), s.endless * size
+
+    def bounded(t: float, y: np.ndarray) -> np.ndarray:
+        if not (np.abs(y) < largest).all():
+            raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {t:.6g}")
+        return rate(t, y)
+
+    relative, absolute = (s.rough_relative, s.rough_absolute) if rough else (s.relative, s.absolute)
+    found = solve_ivp(
+        bounded,
+        (start, stop),
+        x,
+        method="LSODA",
+        rtol=relative,
+        atol=cast("float", absolute * size),
+        dense_output=dense,
+        events=field.events.crossings(field.values, p) or None,
+    )
+    if found.status == 1:
+        name = next(name for name, times in zip(field.events.names, found.t_events) if len(times))
+        raise Stopped(
+            f"the event {name} stops the motion at {np.array2string(found.y[:, -1], precision=6)}; begin elsewhere, or with other parameters"
+        )
+    if found.status != 0 or not np.isfinite(found.y[:, -1]).all():
+        raise Escaped(f"the motion escapes: it cannot be simulated beyond t = {found.t[-1]:.6g}")
+    return found
+
+
+def _forced(
+    field: Field, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
+) -> tuple[np.ndarray, np.ndarray, int]:
+    period, s = float(field.length_of_period(p)), field.settings
+    count = 100 if transient is None else max(1, int(np.ceil(transient / period)))
+    for _ in range(doublings if transient is None else 1):
+        x = _run(field, p, x, 0.0, count * period, rough=True).y[:, -1]
+        points = [x]
+        low = high = x
+        for k in range(1, longest + 1):
+            run = _run(field, p, points[-1], 0.0, period)
+            points.append(run.y[:, -1])
+            low, high = np.minimum(low, run.y.min(axis=1)), np.maximum(high, run.y.max(axis=1))
+            own = (high - low) / field.lengths
+            near = s.recurs * np.maximum(own, s.least * own.max()) + s.still
+            if (np.abs(points[-1] - points[0]) <= near * field.lengths).all():
+                whole = _run(field, p, points[0], 0.0, k * period, dense=True)
+                times = np.linspace(0.0, k * period, SAMPLES * k + 1)
+                return times, whole.sol(times).T, k
+        x, count = points[-1], 2 * count
+        if count > 20000:
+            break
+    raise Irregular(
+        f"the motion has not become periodic after {count} periods of the forcing; it may be chaotic: try another x0 or other parameters"
+    )
+
+
+def _free(
+    field: Field, p: float, x: np.ndarray, transient: float | None, longest: int, doublings: int
+) -> tuple[np.ndarray, np.ndarray, int]:
+    rate, s = field.rate_at(p), field.settings
+    matrix = field.jacobian(x[None, :], p)[0]
+    fastest = float(np.abs(np.linalg.eigvals(matrix)).max())
+    span = transient if transient is not None else FIRST / (fastest if fastest > 0.0 else 1.0)
+    if not rate(0.0, x).any():
+        x = x + s.beside * field.lengths / np.arange(
+            1.0, len(x) + 1
+        )  # upwards: concentrations may be zero there
+    x = _run(field, p, x, 0.0, span, rough=True).y[:, -1]
+    brief = 0
+    while doublings > 0 and brief < MOST:
+        run = _run(field, p, x, 0.0, span, dense=True, rough=True)
+        doublings -= len(run.t) > BRIEF
+        brief += len(run.t) <= BRIEF
+        ranges = np.ptp(run.y, axis=1)
+        still = (ranges <= s.still * (field.lengths + np.abs(x))).all()
+        rest = x if still else _rest(field, p, run.y[:, -1])
+        if rest is not None:
+            raise AtRest(rest)
+        plane, unit = _fastest(field, p, run)
+        if _returned(run, plane, s.nearly * unit, longest) is not None:
+            exact = _run(field, p, plane.x, 0.0, span, dense=True)
+            found = _returned(exact, plane, s.recurs * unit, longest)
+            if found is not None:
+                start, period = exact.sol(found[0]), found[1] - found[0]
+                whole = _run(field, p, start, 0.0, period, dense=True)
+                times = np.linspace(0.0, period, SAMPLES + 1)
+                return times, whole.sol(times).T, 1
+        x, span = run.y[:, -1], 2.0 * span
+    raise Irregular(
+        "the motion has not become periodic; it may be chaotic, or settle slowly: try another x0, other parameters or transient="
+    )
+
+
+def last_round(
+    field: Field, p: float, places: Sequence[Place], longest: int
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Times and states of the last period of a motion through some places; None where it does not recur."""
+    settled = places[len(places) // 2 :]
+    if len(settled) < 2:
+        return None
+    way, (plane, unit) = Way(places), _fastest(field, p, Way(settled))
+    found = _returned(way, plane, field.settings.recurs * unit, longest)
+    if found is None:
+        return None
+    times = np.linspace(*found, SAMPLES + 1)
+    return times, way.sol(times).T
+
+
+def _fastest(field: Field, p: float, run: OdeResult | Way) -> tuple[Place, np.ndarray]:
+    """Where a motion is fastest in units of its size, with its rate there in those of their squares, and these units."""
+    own = np.ptp(run.y, axis=1) / field.lengths
+    unit = field.lengths * np.maximum(own, field.settings.least * own.max())
+    rates = field(run.y.T, p)
+    i = int(np.argmax(np.linalg.norm(rates / unit, axis=1)))
+    return Place(float(run.t[i]), run.y[:, i], rates[i] / unit**2), unit
+
+
+def _rest(field: Field, p: float, x: np.ndarray) -> np.ndarray | None:
+    """The equilibrium that attracts, if it is as near to a state as the errors of a rough simulation allow."""
+    s, matrix = field.settings, field.jacobian(x[None], p)[0]
+    try:
+        step = np.linalg.solve(matrix, -field(x[None], p)[0])
+    except np.linalg.LinAlgError:
+        return None
+    near = (np.abs(step) <= CAUTION * s.rough_relative * (field.lengths + np.abs(x))).all()
+    return x + step if near and (np.linalg.eigvals(matrix).real < 0.0).all() else None
+
+
+def _returned(
+    run: OdeResult | Way, plane: Place, close: np.ndarray, longest: int
+) -> tuple[float, float] | None:
+    """The times at which a motion last passes a plane in one and the same state; None if it does not come back to one."""
+    heights = plane.rate @ (run.y - plane.x[:, None])
+    passed = np.flatnonzero((heights[:-1] < 0.0) & (heights[1:] >= 0.0))[-longest - 1 :]
+    if len(passed) < 2:
+        return None
+    end = _crossing(run, plane, int(passed[-1]))
+    last = run.sol(end)
+    for i in passed[-2::-1]:
+        time = _crossing(run, plane, int(i))
+        if (np.abs(run.sol(time) - last) <= close).all():
+            return time, end
+    return None
+
+
+def _crossing(run: OdeResult | Way, plane: Place, i: int) -> float:
+    """Time at which a motion passes a plane in a step of the integrator, by bisection."""
+    low, high = float(run.t[i]), float(run.t[i + 1])
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if plane.rate @ (run.sol(middle) - plane.x) < 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+FIRST_STEP = 0.001  # step at first, in times after which a motion has gone its size
+SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+PLACES = (0.2, 0.3, 0.8, 8 / 9, 1.0)
+STAGES = [
+    np.array([1 / 5]),
+    np.array([3 / 40, 9 / 40]),
+    np.array([44 / 45, -56 / 15, 32 / 9]),
+    np.array([19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729]),
+    np.array([9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]),
+]
+WHOLE = np.array([35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84])
+ERROR = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
+
+
+class March:
+    """Motions that go on from where they are.
+
+    Parameters
+    ----------
+    field : Field
+    p : float
+    x : ndarray, shape (n, d), or (n, 2 d) with a vector that the linearised flow carries along each
+    size : ndarray, likewise of shape (d,) or (2 d,)
+        What counts as large in each coordinate.
+    """
+
+    def __init__(self, field: Field, p: float, x: np.ndarray, size: np.ndarray) -> None:
+        self.field, self.p, self.size = field, p, size
+        self.vectors = x.shape[1] > field.node
+        self.x, self.t = np.array(x, dtype=float), np.zeros(len(x))
+        with np.errstate(all="ignore"):
+            self.slope = self._rates(self.x, self.t)
+        speed = np.abs(self.slope / size).max(axis=1)
+        self.h = FIRST_STEP / np.where(np.isfinite(speed) & (speed > 0.0), speed, 1.0)
+        self.steps = 0
+        self.stopped = np.zeros(len(x), dtype=bool)  # by an event of the flow
+        self._stop(np.arange(len(x)))
+
+    def _rates(self, x: np.ndarray, t: np.ndarray) -> np.ndarray:
+        field, d, times = self.field, self.field.node, t if self.field.forced else None
+        try:
+            if self.vectors:
+                return np.concatenate(field.carried(x[:, :d], x[:, d:], self.p, times), axis=1)
+            return np.asarray(field(x, self.p, times), dtype=float)
+        except NotEvaluable:
+            if len(x) == 1:
+                return np.full(x.shape, np.nan)
+            return np.concatenate([self._rates(x[i : i + 1], t[i : i + 1]) for i in range(len(x))])
+
+    def _stop(self, rows: np.ndarray) -> None:
+        """Those that are beyond an event become NaN."""
+        field = self.field
+        if self.vectors or not len(field.events) or not rows.size:
+            return
+        with np.errstate(all="ignore"):
+            beyond = (field.events(self.x[rows], field.values.at(self.p), self.t[rows]) < 0.0).any(axis=1)
+        self.stopped[rows[beyond]] = True
+        self.x[rows[beyond]] = np.nan
+
+    def go(
+        self,
+        rows: np.ndarray,
+        steps: int,
+        until: float = np.inf,
+        far: float = np.inf,
+        ways: Mapping[int, list[Place]] | None = None,
+    ) -> None:
+        """Go on with these motions for so many steps, or until a time; what leaves `far` sizes, or fails, becomes NaN.
+
+        The places to which steps lead are added to the ways of motions that have one.
+        """
+        relative, absolute = self.field.settings.rough_relative, self.field.settings.rough_absolute
+        for _ in range(steps):
+            rows = rows[np.isfinite(self.x[rows, 0]) & (self.t[rows] < until)]
+            if not rows.size:
+                return
+            x, t, h = self.x[rows], self.t[rows], np.minimum(self.h[rows], until - self.t[rows])
+            k = np.empty((7, *x.shape))
+            k[0] = self.slope[rows]
+            with np.errstate(all="ignore"):
+                for s, (place, weights) in enumerate(zip(PLACES, STAGES, strict=True), start=1):
+                    k[s] = self._rates(x + h[:, None] * _weighted(weights, k[:s]), t + place * h)
+                new = x + h[:, None] * _weighted(WHOLE, k[:6])
+                k[6] = self._rates(new, t + h)
+                wrong = h[:, None] * _weighted(ERROR, k)
+                allowed = absolute * self.size + relative * np.maximum(np.abs(x), np.abs(new))
+                error = np.sqrt(np.mean((wrong / allowed) ** 2, axis=1))
+                factor = np.clip(SAFETY * error**-0.2, SHRINK, GROW)
+            good = error <= 1.0
+            took = rows[good]
+            self.x[took], self.t[took], self.slope[took] = new[good], (t + h)[good], k[6][good]
+            for i, way in (ways or {}).items():
+                if good[rows == i].any():
+                    way.append(Place(float(self.t[i]), self.x[i].copy(), self.slope[i].copy()))
+            self._stop(took)
+            whole = h == self.h[rows]
+            with np.errstate(all="ignore"):
+                scaled = np.where(whole | ~good, h * factor, self.h[rows])
+            self.h[rows] = np.where(np.isfinite(error), scaled, SHRINK * h)
+            lost = (np.abs(self.x[rows]) > far * self.size).any(axis=1) | (
+                h < ROUNDED * np.maximum(1.0, np.abs(t))
+            )
+            self.x[rows[lost]] = np.nan
+            self.steps += len(rows)
+
+
+def _weighted(weights: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """Weighted sum of rates (s, n, d), shape (n, d)."""
+    return (weights @ k.reshape(len(k), -1)).reshape(k.shape[1:])

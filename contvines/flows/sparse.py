@@ -20,7 +20,7 @@ from ..problems.settings import LINEAR
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .collocation import Rule
+    from .mesh import Rule
 
 LARGE = 30  # states from which on entries that are zero are looked for
 DENSE = 0.25  # part of the entries from which on a Jacobian counts as full

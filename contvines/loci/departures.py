@@ -22,9 +22,9 @@ from ..bifurcation.kinds import CODIMENSION_TWO
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
 from ..flows import mesh
-from ..flows.collocation import rule
 from ..flows.cycles import CycleProblem
 from ..flows.equilibria import Equilibria
+from ..flows.mesh import rule
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Embedding
 from .adaptive import on_mesh

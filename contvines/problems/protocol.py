@@ -64,7 +64,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, cast
 
 import numpy as np
 
-from ..core.kernel_functions import KernelFunctions
+from ..core.table import KernelFunctions
 
 if TYPE_CHECKING:
     from .scales import Scales

@@ -51,7 +51,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from contvines.core.kernel_functions import KernelFunctions
+from contvines.core.table import KernelFunctions
 from contvines.shared.near_names import did_you_mean
 from orbits.contacts.letters import Change, Site
 from orbits.flows.trajectory import ModelOf, Trajectory

@@ -19,7 +19,7 @@ import numpy as np
 
 import contvines as cv
 from contvines.flows import mesh
-from contvines.flows.newton import solved
+from contvines.flows.kernels import solved
 
 from .auto import Auto
 

@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from contvines.flows.equilibria import Equilibria
-    from contvines.flows.flow import Problem
-    from contvines.flows.problem import BorderPoint
+    from contvines.flows.flow import BorderPoint, Problem
     from orbits.flows.protocol import Equations, Motion
 
 SAMPLES = (
@@ -192,11 +191,11 @@ class WithoutEvents(FlowProblem):
         tangent = newton(orbits.equations, u, p, row)[3]
         return list(orbits.beyond(Touching(u, p, tangent, self.contacts[k])))
 
-    def dead_end(self, problem: Problem, point: BorderPoint, k: int) -> str:
+    def dead_end(self, k: int, x: np.ndarray, when: float | None = None) -> str:
         """Where the contact is touched."""
         return (
             super()
-            .dead_end(problem, point, k)
+            .dead_end(k, x, when)
             .replace("the event ", "")
             .replace(" stops the motion: it", " is touched: its guard")
         )

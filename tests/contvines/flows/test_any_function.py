@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines
-from contvines.flows.attractors import Escaped
+from contvines.flows.simulation import Escaped
 
 
 @pytest.mark.parametrize("size", [abs, math.fabs, lambda b: float(b), lambda b: np.sqrt(np.abs(b) ** 2)])

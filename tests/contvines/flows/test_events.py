@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.flows.attractors import Stopped
+from contvines.flows.simulation import Stopped
 
 
 def stuart_landau(x, p):

@@ -9,7 +9,7 @@ from scipy.optimize import root_scalar
 
 import contvines as cv
 from contvines.flows import mesh
-from contvines.flows.collocation import rule
+from contvines.flows.mesh import rule
 from contvines.graph.persistence import same_graph
 
 

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 import contvines as cv
 from contvines.flows import mesh
-from contvines.flows.collocation import rule
+from contvines.flows.mesh import rule
 from contvines.flows.moving_mesh import MovingMesh
 
 RULE = rule(4)

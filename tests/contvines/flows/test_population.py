@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contvines as cv
-from contvines.flows.march import March
+from contvines.flows.simulation import March
 
 pytestmark = pytest.mark.slow
 

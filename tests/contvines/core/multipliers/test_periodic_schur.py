@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 
 from contvines.core.library import native
-from contvines.core.multipliers import periodic_qr
-from contvines.core.multipliers.periodic_schur import multipliers, periodic_multipliers, reference
+from contvines.core.multipliers.periodic_schur import (
+    multipliers,
+    periodic_multipliers,
+    periodic_reference,
+    reference,
+)
 
 NATIVE = [multipliers, periodic_multipliers] if native() else []
-REFERENCE = [reference, periodic_qr.periodic_multipliers]
+REFERENCE = [reference, periodic_reference]
 BOTH = pytest.mark.parametrize("method", [*NATIVE, *REFERENCE])
 
 

@@ -1,21 +1,110 @@
-"""Right-hand sides in compiled code: a table of C functions that are called with many points at once."""
+"""Functions at many points at once: those of users in Python, and tables of C functions."""
 
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.sparse import issparse
 
 from ..core.library import address
+from ..problems.functions import NotEvaluable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..problems.functions import Parameters
 
+TRIED = 7  # points at which it is tried whether a function may be asked at all of them at once
 _FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_int64, *[ctypes.c_void_p] * 4)
+
+
+class AtPoints:
+    """A user's function of (x, p), or (x, p, t), at points (n, d) and times (n,): of all at once, as columns, where it is written for arrays.
+
+    Parameters
+    ----------
+    f : callable
+    forced : bool
+        Whether it depends on time.
+    shape : tuple of int
+        Of what it returns for one point.
+    """
+
+    many: bool | None = None  # whether it is written for arrays; None: not known
+
+    def __init__(self, f: Callable, forced: bool, shape: tuple[int, ...]) -> None:
+        self.f, self.forced, self.shape = f, forced, shape
+
+    def __call__(
+        self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Values, shape (n, *shape).
+
+        Raises
+        ------
+        NotEvaluable
+            If one has another shape. What the function itself raises goes on.
+        """
+        return (self._together if self.many else self._each)(x, parameters, t)
+
+    def _asked(self, x: np.ndarray, parameters: Parameters | complex, t: object) -> object:
+        return self.f(x, parameters, t) if self.forced else self.f(x, parameters)
+
+    def _each(
+        self, x: np.ndarray, parameters: Parameters | complex, t: Sequence | np.ndarray | None
+    ) -> np.ndarray:
+        times = [None] * len(x) if t is None else t
+        found = [_full(self._asked(y.copy(), parameters, s)) for y, s in zip(x, times, strict=True)]
+        for value in found:
+            if value.shape != self.shape:
+                raise NotEvaluable(f"the right-hand side has shape {value.shape}; {self.shape} is needed")
+        return np.array(found)
+
+    def _together(self, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None) -> np.ndarray:
+        return _stacked(self._asked(x.T.copy(), parameters, t), len(x), self.shape)
+
+    def find(
+        self, agree: float, x: np.ndarray, parameters: Parameters | complex, t: np.ndarray | None
+    ) -> None:
+        """Find out whether it is written for arrays, by values at some points that agree to a relative accuracy."""
+        if self.many is not None or len(x) < 3:
+            return
+        x, t = x[:TRIED], None if t is None else t[:TRIED]
+        try:
+            single = self._each(x, parameters, t)
+        except Exception:  # the points may be outside of where it is defined
+            return
+        try:
+            together = self._together(x, parameters, t)
+        except Exception:  # a function of one point may fail in any way when it is called with many
+            self.many = False
+            return
+        size = agree * np.abs(single).max(initial=0.0)
+        self.many = bool(np.allclose(single, together, rtol=agree, atol=size))
+
+
+def _full(given: object) -> np.ndarray:
+    return np.asarray(given.toarray()) if issparse(given) else np.array(given)  # type: ignore[union-attr]
+
+
+def _stacked(given: object, n: int, shape: tuple[int, ...]) -> np.ndarray:
+    """What a function of arrays of n numbers returned, nested as `shape` has it, as array (n, *shape)."""
+    if not shape or (isinstance(given, np.ndarray) and given.dtype != object):
+        value = np.asarray(given)
+        if value.shape != (*shape, n):
+            raise ValueError(f"shape {value.shape}")
+        return np.moveaxis(value, -1, 0)
+    assert isinstance(given, Iterable)
+    flat = list(given)
+    if len(flat) != shape[0]:
+        raise ValueError(f"{len(flat)} entries")
+    if len(shape) == 2:
+        return np.stack([_stacked(row, n, shape[1:]) for row in flat], axis=1)
+    return np.stack([np.broadcast_to(value, n) for value in flat], axis=1)
 
 
 class CompiledRates:
