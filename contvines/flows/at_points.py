@@ -104,7 +104,11 @@ def _stacked(given: object, n: int, shape: tuple[int, ...]) -> np.ndarray:
         raise ValueError(f"{len(flat)} entries")
     if len(shape) == 2:
         return np.stack([_stacked(row, n, shape[1:]) for row in flat], axis=1)
-    return np.stack([np.broadcast_to(value, n) for value in flat], axis=1)
+    values = [np.asarray(value) for value in flat]
+    result = np.empty((n, len(values)), dtype=np.result_type(*values))
+    for j, value in enumerate(values):
+        result[:, j] = value
+    return result
 
 
 class CompiledRates:

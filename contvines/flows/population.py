@@ -16,7 +16,7 @@ from ..problems.functions import NotEvaluable
 from ..problems.populations import StartsInBox
 from ..problems.registry import rebuild
 from .flow import Flow
-from .simulation import AtRest, Escaped, Irregular, March, Place, Stopped, last_round
+from .simulation import AtRest, Escaped, March, Place, Stopped, last_round
 
 if TYPE_CHECKING:
     from ..problems.algebraic import AlgebraicProblem
@@ -105,75 +105,22 @@ class FlowPopulation(StartsInBox):
     # ------------------------------------------------------------------ what attracts
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Settled], np.ndarray, np.ndarray]:
         """Integrate all starts and recognise what they settle on."""
-        march = March(self.field, p, np.asarray(starts, dtype=float), self.size)
-        n = len(march.x)
-        index, mirrored = np.full(n, -1), np.zeros(n, dtype=bool)
-        motions: list[Settled] = []
         try:
             period = float(self.field.length_of_period(p)) if self.field.forced else None
         except NotEvaluable:  # there is no forcing with such parameters
-            return [Settled("escaped")], np.zeros(n, dtype=int), mirrored
-        rounds = 0
-        for steps, periods, most, again in zip(STEPS, PERIODS, TRIED, AGAIN, strict=True):
-            ways: dict[int, list[Place]] = {int(i): [] for i in np.flatnonzero(index < 0)[:most]}
-            for _ in range(steps if period is None else periods):
-                left = np.flatnonzero(index < 0)
-                if period is None:
-                    march.go(left, BLOCK, far=self.field.settings.far, ways=ways)
-                else:
-                    rounds += BLOCK_PERIODS
-                    march.go(left, MOST_STEPS, until=rounds * period, far=self.field.settings.far)
-                gone = left[~np.isfinite(march.x[left]).all(axis=1)]
-                for kind, which in (
-                    ("escaped", gone[~march.stopped[gone]]),
-                    ("stopped", gone[march.stopped[gone]]),
-                ):
-                    if which.size:
-                        self._add(motions, index, which, Settled(kind))
-                for k, motion in enumerate(motions):
-                    self._assign(march.x, index, mirrored, k, motion)
-                if (index >= 0).all():
-                    break
-            self.work += march.steps / PER_PERIOD
-            march.steps = 0
-            self._recognise(march, ways, index, mirrored, motions, p, most, again)
-            if (index >= 0).all():
-                return motions, index, mirrored
-        left = np.flatnonzero(index < 0)
-        if left.size:
-            self._add(motions, index, left, self._wandering(march.x[left[:BLOCKS]], p))
-        return motions, index, mirrored
+            return [Settled("escaped")], np.zeros(len(starts), dtype=int), np.zeros(len(starts), dtype=bool)
+        found = Settling(self, np.asarray(starts, dtype=float), p)
+        found.go(period)
+        self.work += found.march.steps / PER_PERIOD
+        return found.motions, found.index, found.mirrored
 
-    def _add(self, motions: list[Settled], index: np.ndarray, which: np.ndarray, motion: Settled) -> None:
-        same = [k for k, m in enumerate(motions) if m.kind == motion.kind and m.curve is None]
-        if same:
-            index[which] = same[0]
-            return
-        index[which] = len(motions)
-        motions.append(motion)
-
-    def _assign(
-        self, x: np.ndarray, index: np.ndarray, mirrored: np.ndarray, k: int, motion: Settled
-    ) -> None:
-        """Give the motion, or its mirror image, the states that lie on it."""
-        if motion.curve is None:
-            return
-        left = np.flatnonzero((index < 0) & np.isfinite(x).all(axis=1))
-        near = self._on(x[left], motion.curve, motion.size)
-        index[left[near]] = k
-        if motion.image is not None:
-            left = left[~near]
-            near = self._on(x[left], motion.image, motion.size)
-            index[left[near]], mirrored[left[near]] = k, True
-
-    def _on(self, x: np.ndarray, curve: np.ndarray, size: np.ndarray | float) -> np.ndarray:
+    def on(self, x: np.ndarray, curve: np.ndarray, size: np.ndarray | float) -> np.ndarray:
         """Which states lie on a curve of a motion of such a size, of one point or of many that follow each other round it (in forced flows: apart)."""
         s = self.field.settings
         size = np.maximum(size, s.smallest * self.size)
         near = np.zeros(len(x), dtype=bool)
         apart = self.field.forced or len(curve) == 1
-        ahead = (curve if apart else np.roll(curve, -1, axis=0)) - curve
-        unit = ahead / size
+        unit = ((curve if apart else np.roll(curve, -1, axis=0)) - curve) / size
         length = (unit**2).sum(axis=1)
         for i, state in enumerate(x):
             gap = (state - curve) / size
@@ -182,96 +129,32 @@ class FlowPopulation(StartsInBox):
             near[i] = distance.min() <= s.near * np.sqrt(self.node)
         return near
 
-    def _recognise(
-        self,
-        march: March,
-        ways: Mapping[int, Sequence[Place]],
-        index: np.ndarray,
-        mirrored: np.ndarray,
-        motions: list[Settled],
-        p: float,
-        most: int,
-        again: float,
-    ) -> None:
-        """Solve for what the states that belong to nothing yet have come near to."""
-        tried: list[int] = []
-        while len(tried) < most and again > 0:
-            left = [int(i) for i in np.flatnonzero(index < 0) if i not in tried]
-            if not left:
-                return
-            i = left[0]
-            motion = self._solved(march.x[i], ways.get(i, ()), p)
-            if motion is None:
-                tried.append(i)
-                continue
-            if motion.curve is None:
-                self._add(motions, index, np.array([i]), motion)
-                continue
-            known = [k for k, m in enumerate(motions) if m.curve is not None and self._same(m, motion)]
-            if known:
-                again -= 1
-            else:
-                motions.append(motion)
-            k = known[0] if known else len(motions) - 1
-            index[i], mirrored[i] = (
-                k,
-                bool(known) and not self._along(motion, motions[k].curve, motions[k].size),
-            )
-            self._assign(march.x, index, mirrored, k, motion)
-
-    def _same(self, one: Settled, other: Settled) -> bool:
-        alike = one.word == other.word and one.periods == other.periods
-        return alike and any(self._along(other, curve, one.size) for curve in (one.curve, one.image))
-
-    def _along(self, motion: Settled, curve: np.ndarray | None, size: np.ndarray | float) -> bool:
-        """Whether a motion lies on a curve of another one, of such a size."""
-        if curve is None or motion.curve is None:
-            return False
-        return bool(self._on(motion.curve[:: max(1, len(motion.curve) // 8)], curve, size).all())
-
-    def _solved(self, x: np.ndarray, way: Sequence[Place], p: float) -> Settled | None:
+    def solved(self, x: np.ndarray, way: Sequence[Place], p: float) -> Settled | None:
         """The equilibrium or cycle on which the motion from a state settles, which came some way; None where it is neither, or not soon."""
         if not self.field.forced:
             rest = self._rest(x, p)
-            if (
-                rest is not None
-                and np.abs((rest - x) / self.size).max() <= self.field.settings.near
-                and self._attracts(rest, p)
-            ):
-                return self._equilibrium(rest, p)
+            near = rest is not None and np.abs((rest - x) / self.size).max() <= self.field.settings.near
+            if near and (found := self._equilibrium(rest, p)) is not None:
+                return found
         values = {**self.values.values, self.parameter: p}
         try:
-            orbit = self._recurring(way, p)
+            orbit = self._recurring(way, values, p)
             if orbit is None:
                 orbit = self.flow.attractor_at(values, x, longest=LONGEST, doublings=DOUBLINGS)
         except AtRest as still:
-            rest = self._rest(still.state, p)
-            return None if rest is None or not self._attracts(rest, p) else self._equilibrium(rest, p)
+            return self._equilibrium(self._rest(still.state, p), p)
         except Escaped:
             return Settled("escaped")
         except Stopped:
             return Settled("stopped")
-        except (Irregular, ValueError):
+        except ValueError:
             return None
         if not orbit.stable:
             return None
-        problem = orbit.problem(self.parameter)
-        return self._cycle(problem, orbit)
-
-    def _recurring(self, way: Sequence[Place], p: float) -> CycleOrbit | None:
-        """The stable cycle along which a motion has gone round already; None if it has not."""
-        last = last_round(self.field, p, way, LONGEST)
-        if last is None:
-            return None
-        try:
-            orbit = self.flow.cycle_at({**self.values.values, self.parameter: p}, *last)
-        except (ValueError, NotEvaluable):
-            return None
-        return orbit if orbit.stable else None
-
-    def _cycle(self, problem: CycleMesh, orbit: CycleOrbit) -> Settled:
+        problem: CycleMesh = orbit.problem(self.parameter)
         rounds = problem.rounds if self.field.forced else 0
         curve, image = curves(self.flow, orbit, rounds)
+        size = np.ptp(orbit.states, axis=0)
         return Settled(
             "periodic",
             "cycle",
@@ -281,14 +164,27 @@ class FlowPopulation(StartsInBox):
             state=curve[0],
             curve=curve,
             image=image,
-            size=np.ptp(orbit.states, axis=0),
+            size=size,
         )
 
-    def _equilibrium(self, x: np.ndarray, p: float) -> Settled:
-        mirror, curve = self.flow.mirror, x[None]
-        image = None if mirror is None else mirror(x)[None]
+    def _recurring(self, way: Sequence[Place], values: Mapping[str, float], p: float) -> CycleOrbit | None:
+        """The stable cycle along which a motion has gone round already; None if it has not."""
+        last = last_round(self.field, p, way, LONGEST)
+        if last is None:
+            return None
+        try:
+            orbit = self.flow.cycle_at(values, *last)
+        except (ValueError, NotEvaluable):
+            return None
+        return orbit if orbit.stable else None
+
+    def _equilibrium(self, x: np.ndarray | None, p: float) -> Settled | None:
+        """The equilibrium at a state, if it attracts."""
+        if x is None or not (np.linalg.eigvals(self.field.jacobian(x[None], p)[0]).real < 0.0).all():
+            return None
+        image = None if self.flow.mirror is None else self.flow.mirrored(x[None])
         return Settled(
-            "periodic", "equilibrium", 0, self._equilibria(p), x, state=x, curve=curve, image=image
+            "periodic", "equilibrium", 0, self._equilibria(p), x, state=x, curve=x[None], image=image
         )
 
     def _equilibria(self, p: float) -> AlgebraicProblem:
@@ -298,10 +194,7 @@ class FlowPopulation(StartsInBox):
         """The equilibrium next to a state; None if there is none."""
         return self.field.rest(np.asarray(x, dtype=float), p, self.size, self.field.settings.solved)
 
-    def _attracts(self, x: np.ndarray, p: float) -> bool:
-        return bool((np.linalg.eigvals(self.field.jacobian(x[None], p)[0]).real < 0.0).all())
-
-    def _wandering(self, x: np.ndarray, p: float) -> Settled:
+    def irregular(self, x: np.ndarray, p: float) -> Settled:
         """Motions that do not recur, judged by the growth of vectors along them; motions and blocks of time give the error of the mean."""
         d, count = self.node, max(len(x), FEW)
         states = x[np.arange(count) % len(x)]
@@ -350,12 +243,9 @@ class FlowPopulation(StartsInBox):
         found: list[np.ndarray] = []
         for start in np.asarray(starts, dtype=float):
             x = self._rest(start, p)
-            inside = x is not None and ((x >= self._box[:, 0]) & (x <= self._box[:, 1])).all()
-            if (
-                x is not None
-                and inside
-                and not any((np.abs(x - y) <= self.field.settings.same * self.size).all() for y in found)
-            ):
+            if x is None or not ((x >= self._box[:, 0]) & (x <= self._box[:, 1])).all():
+                continue
+            if not any((np.abs(x - y) <= self.field.settings.same * self.size).all() for y in found):
                 found.append(x)
         return [(self._equilibria(p), x) for x in found]
 
@@ -364,10 +254,110 @@ class FlowPopulation(StartsInBox):
         return rebuild(description)
 
 
+class Settling:
+    """Starts on their way to what they settle on.
+
+    Attributes
+    ----------
+    motions : list of Settled
+        Those that are known.
+    index, mirrored : ndarray, shape (n,)
+        Which of them each start settles on, -1 of none yet, and whether on its mirror image.
+    """
+
+    def __init__(self, population: FlowPopulation, starts: np.ndarray, p: float) -> None:
+        self.population, self.p = population, p
+        self.march = March(population.field, p, starts, population.size)
+        self.motions: list[Settled] = []
+        self.index, self.mirrored = np.full(len(starts), -1), np.zeros(len(starts), dtype=bool)
+
+    @property
+    def left(self) -> np.ndarray:
+        """Starts that have settled on nothing."""
+        return np.flatnonzero(self.index < 0)
+
+    def go(self, period: float | None) -> None:
+        """Until all have settled, or long enough; of forced flows from period to period."""
+        march, far, rounds = self.march, self.population.field.settings.far, 0
+        for steps, periods, most, again in zip(STEPS, PERIODS, TRIED, AGAIN, strict=True):
+            ways: dict[int, list[Place]] = {int(i): [] for i in self.left[:most]}
+            for _ in range(steps if period is None else periods):
+                left = self.left
+                if period is None:
+                    march.go(left, BLOCK, far=far, ways=ways)
+                else:
+                    rounds += BLOCK_PERIODS
+                    march.go(left, MOST_STEPS, until=rounds * period, far=far)
+                gone = left[~np.isfinite(march.x[left]).all(axis=1)]
+                self._add(Settled("escaped"), gone[~march.stopped[gone]])
+                self._add(Settled("stopped"), gone[march.stopped[gone]])
+                for k in range(len(self.motions)):
+                    self._assign(k)
+                if not self.left.size:
+                    return
+            self._recognise(ways, most, again)
+        left = self.left
+        if left.size:
+            self._add(self.population.irregular(march.x[left[:BLOCKS]], self.p), left)
+
+    def _add(self, motion: Settled, which: np.ndarray) -> None:
+        """Starts have settled on what is no curve."""
+        if not which.size:
+            return
+        same = [k for k, m in enumerate(self.motions) if m.kind == motion.kind and m.curve is None]
+        self.index[which] = same[0] if same else len(self.motions)
+        if not same:
+            self.motions.append(motion)
+
+    def _assign(self, k: int) -> None:
+        """Give a motion, or its mirror image, the states that lie on it."""
+        motion, x = self.motions[k], self.march.x
+        for curve, mirrored in ((motion.curve, False), (motion.image, True)):
+            if curve is not None:
+                left = np.flatnonzero((self.index < 0) & np.isfinite(x).all(axis=1))
+                near = left[self.population.on(x[left], curve, motion.size)]
+                self.index[near], self.mirrored[near] = k, mirrored
+
+    def _recognise(self, ways: Mapping[int, Sequence[Place]], most: int, again: float) -> None:
+        """Solve for what the states that belong to nothing yet have come near to."""
+        tried: list[int] = []
+        while len(tried) < most and again > 0:
+            i = next((int(i) for i in self.left if i not in tried), None)
+            if i is None:
+                return
+            motion = self.population.solved(self.march.x[i], ways.get(i, ()), self.p)
+            if motion is None:
+                tried.append(i)
+            elif motion.curve is None:
+                self._add(motion, np.array([i]))
+            else:
+                k = next((k for k, known in enumerate(self.motions) if self._same(known, motion)), None)
+                if k is None:
+                    k = len(self.motions)
+                    self.motions.append(motion)
+                else:
+                    again -= 1
+                self.index[i], self.mirrored[i] = (
+                    k,
+                    not self._along(motion, self.motions[k].curve, self.motions[k].size),
+                )
+                self._assign(k)
+
+    def _same(self, one: Settled, other: Settled) -> bool:
+        alike = one.word == other.word and one.periods == other.periods
+        return alike and any(self._along(other, curve, one.size) for curve in (one.curve, one.image))
+
+    def _along(self, motion: Settled, curve: np.ndarray | None, size: np.ndarray | float) -> bool:
+        """Whether a motion lies on a curve of another one, of such a size."""
+        if curve is None or motion.curve is None:
+            return False
+        return bool(self.population.on(motion.curve[:: max(1, len(motion.curve) // 8)], curve, size).all())
+
+
 def curves(flow: Flow, orbit: CycleOrbit, rounds: int) -> tuple[np.ndarray, np.ndarray | None]:
     """States on a cycle and on its mirror image: all along, or where it repeats after so many periods of a forcing once per period."""
     times = np.arange(rounds) * orbit.period / rounds if rounds else np.linspace(0.0, orbit.period, 1001)[:-1]
     if flow.mirror is None:
         return orbit(times), None
     later = 0.5 * orbit.period / rounds if flow.mirror_shifted else 0.0
-    return orbit(times), np.array([flow.mirror(x) for x in orbit((times + later) % orbit.period)])
+    return orbit(times), flow.mirrored(orbit((times + later) % orbit.period))

@@ -1,4 +1,4 @@
-"""ReturnMap: motions beside a cycle, from one return to the next, many at once, with derivatives.
+"""Motions beside a cycle, from one return to the next: the return map, many at once with derivatives, and the section that invariant circles ask for.
 
 The section is the plane across the cycle at its first mesh point (of forced flows: all states); its coordinates y are orthonormal in the
 scale of the cycle's states. Motions are solved by the collocation equations of the cycle's own mesh, interval by interval, with Newton's method: the cycle
@@ -9,7 +9,8 @@ the plane.
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,21 +20,16 @@ from ..problems.functions import NotEvaluable
 from . import mesh
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from .cycle_mesh import CycleMesh
 
 
 SWEEPS = 20  # of Newton's method in an interval
 QUICK = 0.1  # part of the last correction above which slopes are renewed
+SOLVED = 8.0 * ROUNDED  # change of the place at which a cycle passes the plane, in units of the period
+AWAY, LATEST = 0.5, 1.6  # periods after which, and until when, the next passage is looked for
 
-
-class Step(NamedTuple):
-    """Where motions are after an interval, shape (n, d), with derivatives by where they were, (n, d, d), and by the parameter, (n, d)."""
-
-    end: np.ndarray
-    by_state: np.ndarray
-    by_value: np.ndarray
+#: of motions through a part of the cycle: where they end, values at the nodes, lengths, times at the Gauss points, and the derivative of length times rate by the parameter
+Flight = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None, Callable[[np.ndarray], np.ndarray]]
 
 
 class ReturnMap:
@@ -77,98 +73,77 @@ class ReturnMap:
         """Points of the section, shape (n, k)."""
         return (states - self.start) @ self.inverse.T
 
-    def __call__(self, y: np.ndarray, p: float | None = None) -> np.ndarray:
+    def __call__(self, y: np.ndarray) -> np.ndarray:
         """The next points, shape (n, k); NaN where a motion does not come back."""
-        return self.coordinates(self._returned(self.states(np.atleast_2d(y)), p, False).end)
+        return self.coordinates(self._returned(self.states(np.atleast_2d(y)), self.p, False)[0])
 
     def varied(self, y: np.ndarray, p: float | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The next points, their derivatives by the points, (n, k, k), and by the parameter, (n, k)."""
-        found = self._returned(self.states(np.atleast_2d(y)), p, True)
-        by_state = np.einsum("ka,nab,bl->nkl", self.inverse, found.by_state, self.basis)
-        return self.coordinates(found.end), by_state, found.by_value @ self.inverse.T
+        end, found = self._returned(self.states(np.atleast_2d(y)), self.p if p is None else p, True)
+        by_state = np.einsum("ka,nab,bl->nkl", self.inverse, found[:, :, :-1], self.basis)
+        return self.coordinates(end), by_state, found[:, :, -1] @ self.inverse.T
 
     # ------------------------------------------------------------------ motions
-    def _returned(self, x: np.ndarray, p: float | None, derivatives: bool) -> Step:
-        p = self.p if p is None else float(p)
-        x = np.array(x, dtype=float)
-        ahead = np.broadcast_to(np.eye(self.node), (len(x), self.node, self.node)).copy()
-        slope, moved = np.zeros_like(x), x - self.nodes[0, 0]
+    def _returned(self, x: np.ndarray, p: float, derivatives: bool) -> tuple[np.ndarray, np.ndarray]:
+        """Where motions are at the next return, with derivatives by where they were and, in the last column, by the parameter, (n, d, d + 1)."""
+        d, x = self.node, np.array(x, dtype=float)
+        total = np.tile(np.eye(d, d + 1), (len(x), 1, 1))
         with np.errstate(all="ignore"):
-            for i in range(len(self.widths)):
-                guess = self.nodes[i][None, 1:] + moved[:, None, :]
-                step = self._through(x, guess, i, p, derivatives)
+            for i in range(len(self.widths) + self.problem.free_period):
+                through = self._through(i, x, p) if i < len(self.widths) else self._onto_plane(x, p)
+                x, nodes, steps, times, by = through
                 if derivatives:
-                    slope = np.einsum("nab,nb->na", step.by_state, slope) + step.by_value
-                    ahead = np.matmul(step.by_state, ahead)
-                x = step.end
-                moved = x - self.nodes[i, -1]
-            if self.problem.free_period:
-                step = self._onto_plane(x, p, derivatives)
-                if derivatives:
-                    slope = np.einsum("nab,nb->na", step.by_state, slope) + step.by_value
-                    ahead = np.matmul(step.by_state, ahead)
-                x = step.end
-        return Step(x, ahead, slope)
+                    own = self._varied(nodes, steps, p, times, by)
+                    if i == len(self.widths):
+                        speed = self._rates(x, p)
+                        off = np.einsum("a,nab->nb", self.normal, own) / (speed @ self.normal)[:, None]
+                        own = own - speed[:, :, None] * off[:, None, :]
+                    total = np.matmul(own[:, :, :d], total)
+                    total[:, :, d] += own[:, :, d]
+        return x, total
 
-    def _length(self, p: complex) -> complex:
-        return self.period if self.problem.free_period else self.rounds * self.field.length_of_period(p)
-
-    def _through(self, x: np.ndarray, guess: np.ndarray, i: int, p: float, derivatives: bool) -> Step:
+    def _through(self, i: int, x: np.ndarray, p: float) -> Flight:
         """Through an interval of the mesh."""
-        r, count = self.rule, len(x)
-        places = self.begins[i] + self.widths[i] * r.points
+        field, count, width = self.field, len(x), self.widths[i]
+        places = self.begins[i] + width * self.rule.points
 
-        def rate(points: np.ndarray, q: complex) -> np.ndarray:
-            length = self._length(q)
-            times = np.tile(length * places, count) if self.field.forced else None
-            return length * self.widths[i] * self.field(points, q, times)
+        def length(q: complex) -> complex:
+            return self.period if self.problem.free_period else self.rounds * field.length_of_period(q)
 
-        step = float(np.real(self._length(p))) * self.widths[i]
-        times = np.tile(float(np.real(self._length(p))) * places, count) if self.field.forced else None
-        steps = np.full(count, step)
-        nodes = self._solved(x, guess, steps, p, times, self.nodes[i][None])
-        end = nodes[:, -1]
-        if not derivatives:
-            return Step(end, np.empty(0), np.empty(0))
+        def times(q: complex) -> np.ndarray | None:
+            return np.tile(length(q) * places, count) if field.forced else None
 
         def by(points: np.ndarray) -> np.ndarray:
-            return self.field.along(lambda q: rate(points, q), p)
+            return field.along(lambda q: length(q) * width * field(points, q, times(q)), p)
 
-        found = self._varied(x, nodes, steps, p, times, by)
-        return Step(end, found[:, :, :-1], found[:, :, -1])
+        steps, when = np.full(count, float(np.real(length(p))) * width), times(p)
+        guess = self.nodes[i][None, 1:] + (x - self.nodes[i, 0])[:, None, :]
+        nodes = self._solved(x, guess, steps, p, when, self.nodes[i][None])
+        return nodes[:, -1], nodes, steps, when, by
 
-    def _onto_plane(self, x: np.ndarray, p: float, derivatives: bool) -> Step:
+    def _onto_plane(self, x: np.ndarray, p: float) -> Flight:
         """By one step of each motion's own length."""
-        speed = self._rates(x, p)
-        time = -((x - self.start) @ self.normal) / (speed @ self.normal)
-        nodes = np.repeat(x[:, None, :], self.rule.degree, axis=1)
-        for _ in range(SWEEPS):
-            nodes = self._solved(x, nodes, time, p, None)
-            end = nodes[:, -1]
-            speed = self._rates(end, p)
-            change = -((end - self.start) @ self.normal) / (speed @ self.normal)
-            time = time + change
-            if not (np.abs(change) > ROUNDED * self.period).any():
-                break
-        far = ~(np.abs(time) < 0.5 * self.period)
-        nodes = self._solved(x, nodes, time, p, None)
-        end = nodes[:, -1].copy()
-        end[far] = np.nan
-        if not derivatives:
-            return Step(end, np.empty(0), np.empty(0))
+
+        def until(x: np.ndarray) -> np.ndarray:
+            return -((x - self.start) @ self.normal) / (self._rates(x, p) @ self.normal)
 
         def by(points: np.ndarray) -> np.ndarray:
             return np.repeat(time, self.rule.degree)[:, None] * self.field.slope(points, p)
 
-        found = self._varied(x, nodes, time, p, None, by)
-        speed = self._rates(end, p)
-        off = np.einsum("a,nab->nb", self.normal, found) / (speed @ self.normal)[:, None]
-        found = found - speed[:, :, None] * off[:, None, :]
-        return Step(end, found[:, :, :-1], found[:, :, -1])
+        time, nodes = until(x), np.repeat(x[:, None, :], self.rule.degree + 1, axis=1)
+        for _ in range(SWEEPS):
+            nodes = self._solved(x, nodes[:, 1:], time, p, None)
+            change = until(nodes[:, -1])
+            time = time + change
+            if not (np.abs(change) > ROUNDED * self.period).any():
+                break
+        nodes = self._solved(x, nodes[:, 1:], time, p, None)
+        end = nodes[:, -1].copy()
+        end[~(np.abs(time) < 0.5 * self.period)] = np.nan
+        return end, nodes, time, None, by
 
     def _varied(
         self,
-        x: np.ndarray,
         nodes: np.ndarray,
         steps: np.ndarray,
         p: float,
@@ -176,12 +151,10 @@ class ReturnMap:
         by: Callable[[np.ndarray], np.ndarray],
     ) -> np.ndarray:
         """Derivatives of the ends by where motions were and, in the last column, by the parameter, (n, d, d + 1)."""
-        d, m, count = self.node, self.rule.degree, len(x)
-        whole = np.concatenate([x[:, None, :], nodes], axis=1)
-        slopes = self._slopes(whole, steps, p, times)
-        points = self._points(whole)
-        last = by(points) if np.isfinite(points).all() else np.zeros((count * m, d))
-        sides = np.concatenate([-slopes[..., :d], last.reshape(count, m * d, 1)], axis=2)
+        d, inner = self.node, self.rule.degree * self.node
+        slopes, points = self._slopes(nodes, steps, p, times), self._points(nodes)
+        last = by(points) if np.isfinite(points).all() else np.zeros_like(points)
+        sides = np.concatenate([-slopes[..., :d], last.reshape(-1, inner, 1)], axis=2)
         return self._linear(slopes[..., d:], sides)[:, -d:]
 
     def _points(self, whole: np.ndarray) -> np.ndarray:
@@ -202,41 +175,38 @@ class ReturnMap:
         times: np.ndarray | None,
         beside: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Values at the nodes but the first, (n, m, d); NaN where there are none.
+        """Values at the nodes, (n, m + 1, d), from a guess of all but the first; NaN where there are none.
 
         Slopes are those at a known motion, `beside`, as long as corrections shrink quickly, then those of each motion itself.
         """
-        d, m, count = self.node, self.rule.degree, len(x)
-        nodes, last, inverse = np.array(guess), np.full(count, np.inf), np.empty(0)
+        d, inner, count = self.node, self.rule.degree * self.node, len(x)
+        nodes, last, inverse = (
+            np.concatenate([x[:, None, :], guess], axis=1),
+            np.full(count, np.inf),
+            np.empty(0),
+        )
         slow, rounded = beside is None, self.field.settings.rounded
         for sweep in range(SWEEPS):
-            whole = np.concatenate([x[:, None, :], nodes], axis=1)
             if slow or sweep == 0:
-                known, own = (
-                    (whole, times)
-                    if beside is None or slow
-                    else (beside, times if times is None else times[:m])
+                if beside is None or slow:
+                    slopes = self._slopes(nodes, steps, p, times)
+                else:
+                    own = None if times is None else times[: self.rule.degree]
+                    slopes = self._slopes(beside, steps[:1], p, own)
+                inverse = self._linear(
+                    slopes[..., d:], np.broadcast_to(np.eye(inner), (len(slopes), inner, inner))
                 )
-                inverse = self._inverse(self._slopes(known, steps[: len(known)], p, own)[..., d:])
-            rates = self._rates(self._points(whole), p, times).reshape(count, m, d)
-            residual = np.matmul(self.rule.slopes, whole) - steps[:, None, None] * rates
-            change = -np.matmul(inverse, residual.reshape(count, m * d, 1)).reshape(count, m, d)
-            nodes = nodes + change
-            size = np.abs(change / (self.scale + np.abs(nodes))).max(axis=(1, 2))
+            rates = self._rates(self._points(nodes), p, times).reshape(count, -1, d)
+            residual = np.matmul(self.rule.slopes, nodes) - steps[:, None, None] * rates
+            change = -np.matmul(inverse, residual.reshape(count, inner, 1)).reshape(residual.shape)
+            nodes[:, 1:] += change
+            size = np.abs(change / (self.scale + np.abs(nodes[:, 1:]))).max(axis=(1, 2))
             done = (size < ROUNDED) | ((size < rounded) & (size > 0.3 * last)) | ~np.isfinite(size)
             slow, last = bool((size > QUICK * last)[~done].any()), size
             if done.all():
                 break
-        nodes[~(last < rounded)] = np.nan
+        nodes[~(last < rounded), 1:] = np.nan
         return nodes
-
-    @staticmethod
-    def _inverse(matrix: np.ndarray) -> np.ndarray:
-        found = np.full(matrix.shape, np.nan)
-        good = np.isfinite(matrix).all(axis=(1, 2))
-        with contextlib.suppress(np.linalg.LinAlgError):
-            found[good] = np.linalg.inv(matrix[good])
-        return found
 
     @staticmethod
     def _linear(matrix: np.ndarray, sides: np.ndarray) -> np.ndarray:
@@ -264,12 +234,11 @@ class ReturnMap:
         return found
 
 
-SOLVED = 8.0 * ROUNDED  # change of the place at which a cycle passes the plane, in units of the period
-AWAY, LATEST = 0.5, 1.6  # periods after which, and until when, the next passage is looked for
-
-
 class FlowSection:
-    """The section at a parameter value.
+    """Motions seen once per period; the contract is that of :mod:`contvines.circles.section`.
+
+    A point has the states but the one along which the plane is steepest; of forced flows it has all states. `step` is a simulation by scipy,
+    `images`, many at once and with derivatives, are those of the return map.
 
     Parameters
     ----------
