@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from orbits.machines import coupled_orbits
 from orbits.machines.base import Model
-from orbits.machines.closed_forms import coupled as closed_forms
 from orbits.machines.measures import DRIVEN
 from orbits.machines.parameters import (
     FREQUENCY,
@@ -153,7 +153,7 @@ class Coupled(Model):
             If there is none with these parameters.
         """
         params = self.vector(parameters)
-        found = closed_forms.symmetric_nodes(params)
+        found = coupled_orbits.symmetric_nodes(params)
         if not found:
             raise ParameterError(
                 f"frequency = {params[1]:g} and forcing = {params[0]:g} have no symmetric orbit with two impacts per "
@@ -170,7 +170,7 @@ class Coupled(Model):
             If the shaking is too weak to slide without sticking.
         """
         params = self.vector(parameters)
-        nodes = closed_forms.sliding_nodes(params)
+        nodes = coupled_orbits.sliding_nodes(params)
         if nodes is None:
             raise ParameterError(
                 f"frequency = {params[1]:g} and forcing = {params[0]:g} shake too weakly for pure sliding; go nearer to "
@@ -202,7 +202,7 @@ class Coupled(Model):
         values = {"frequency": 1.0 + eps * equilibrium.detuning} | parameters
         params = self.vector(values)
         word = "LR" if equilibrium.manifold == "impacting" else "tt"
-        guess = self._closed(word, closed_forms.nodes_from_equilibrium(params, equilibrium), params)
+        guess = self._closed(word, coupled_orbits.nodes_from_equilibrium(params, equilibrium), params)
         return self.orbit(word, 1, guess.nodes, **values)
 
     def _closed(self, word: str, nodes: np.ndarray, params: np.ndarray):
@@ -210,19 +210,34 @@ class Coupled(Model):
 
         reading = Word.parse(word, frictionless=self.frictionless(params))
         if reading.modes[0] != (-1 if word == "LR" else 1):
-            nodes = np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
+            nodes = _begun_later(nodes)
         return Orbit(self, reading, 1, nodes, params)
 
     def start_nodes(self, word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-        return closed_forms.start_nodes(word, periods, params)
+        """Nodes of the words in closed form: `LR`, `RL`, `tt`."""
+        if periods != 1:
+            return
+        events = "".join(word.events)
+        if events in ("LR", "RL"):
+            for nodes in coupled_orbits.symmetric_nodes(params):
+                yield nodes if events == "LR" else _begun_later(nodes)
+        elif events == "tt":
+            nodes = coupled_orbits.sliding_nodes(params, int(word.mode_codes[0]))
+            if nodes is not None:
+                yield nodes
 
-    def stuck_response(self, **parameters: float) -> closed_forms.StuckResponse:
+    def stuck_response(self, **parameters: float) -> coupled_orbits.StuckResponse:
         """The linear response with the absorber stuck, and whether friction holds it."""
-        return closed_forms.stuck_response(self.vector(parameters))
+        return coupled_orbits.stuck_response(self.vector(parameters))
 
     def stuck_frequencies(self, **parameters: float) -> np.ndarray:
         """Frequencies at which the stuck response begins or ceases to slip, ascending."""
-        return closed_forms.stuck_frequencies(self.vector(parameters))
+        return coupled_orbits.stuck_frequencies(self.vector(parameters))
+
+
+def _begun_later(nodes: np.ndarray) -> np.ndarray:
+    """Two nodes counted from the second one."""
+    return np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]])
 
 
 def _underdamped(damping: float, mass_ratio: float) -> None:

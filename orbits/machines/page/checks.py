@@ -116,8 +116,7 @@ def _check_periods(draws: Draws) -> None:
     if e.phase_rate is None:
         return
     told = [(f"motion's rate of {n}", replaced(r, e.without_forces)) for n, r in zip(e.states, e.rates)]
-    for table, what in ((e.gap, "gap"), (e.velocity, "velocity"), (e.limit, "limit"), (e.surface, "surface")):
-        told += [(f"the {what} of {e.contacts[j].described}", value) for j, value in table.items()]
+    told += [(name, table[j]) for name, _, j, table in e.formulas()]
     values = [value for _, value in told]
     here, there = draws.of(values), draws.of(values, clock=draws.clock + 2.0 * np.pi)
     for (what, _), a, b in zip(told, here.T, there.T):

@@ -6,8 +6,7 @@ A machine may have it at some values of its parameters only: a slope of zero, wa
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property, lru_cache
-from typing import Any
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from orbits.machines.page.checks import DRAWS, Draws
 from orbits.machines.page.page import PageError
 from orbits.machines.page.patterns import Equations
 from orbits.settings import FORMULAS
+from orbits.symbols import Symbol
 
 VARIED = 0.5  # parts of its own value (of 1, where it is 0) by which a parameter is varied
 
@@ -46,20 +46,28 @@ class MirrorImage:
     """
 
     def __init__(self, equations: Equations, params: np.ndarray, pairs: Mapping[str, str]) -> None:
-        self.equations = equations
-        self.images = _images(equations, pairs)
-        self.turned = self._turned(Draws(equations, params))
+        e = self.equations = equations
+        self.images = _images(e, pairs)
+        draws = Draws(e, params)
+        self.turned = self._turned(draws)
+        # name, formula, formula whose mirror image equals it, and that image's sign
+        rows: list[tuple[str, Symbol, Symbol, float]] = []
+        for name, what, j, table in e.formulas():
+            turns = what == "velocity" or (what == "surface" and j in self.turned)
+            rows.append((name, table[j], table[self.images[j]], -1.0 if turns else 1.0))
+        rates = e.pattern(e.pattern_key([1 if j in e.signed else 0 for j in range(len(e.contacts))])).rates
+        rows += [(f"motion's rate of {name}", rate, rate, -1.0) for name, rate in zip(e.states, rates)]
+        names, own, images, signs = zip(*rows)
+        self._own, self._image, self._signs = Values(e.layout, own), Values(e.layout, images), np.array(signs)
         self._holds = lru_cache(maxsize=256)(self._checked)
-        draws = Draws(equations, params)
-        here, there = self._both(draws)
-        for k, (name, _, _, _) in enumerate(self._rows):
-            wrong = self._wrong(here[:, k], there[:, k])
+        for name, here, there in zip(names, *(table.T for table in self._both(draws))):
+            wrong = self._wrong(here, there)
             if wrong is not None:
-                state = ", ".join(f"{n} = {v:.4g}" for n, v in zip(equations.states, draws.states[wrong]))
-                when = f", phase = {draws.clock[wrong]:.4g}" if equations.phase_rate is not None else ""
+                state = ", ".join(f"{n} = {v:.4g}" for n, v in zip(e.states, draws.states[wrong]))
+                when = f", phase = {draws.clock[wrong]:.4g}" if e.phase_rate is not None else ""
                 raise PageError(
-                    f"mirror: {name} is not the mirror image: at {state}{when} it is {float(here[wrong, k]):.6g}, its image "
-                    f"gives {float(there[wrong, k]):.6g}; set mirror=None, or correct the formula"
+                    f"mirror: {name} is not the mirror image: at {state}{when} it is {float(here[wrong]):.6g}, its image "
+                    f"gives {float(there[wrong]):.6g}; set mirror=None, or correct the formula"
                 )
 
     def holds(self, params: np.ndarray, varying: int | None = None) -> bool:
@@ -75,46 +83,18 @@ class MirrorImage:
         here, there = self._both(draws)
         return all(self._wrong(a, b) is None for a, b in zip(here.T, there.T))
 
-    @cached_property
-    def _rows(self) -> list[tuple[str, Any, Any, float]]:
-        """Name, formula, formula whose mirror image equals it, and that image's sign."""
-        e, rows = self.equations, []
-        for j, contact in enumerate(e.contacts):
-            what, k = contact.described, self.images[j]
-            if isinstance(contact, Wall):
-                rows.append((f"the gap of {what}", e.gap[j], e.gap[k], 1.0))
-                rows.append((f"the restitution of {what}", e.restitution[j], e.restitution[k], 1.0))
-            elif isinstance(contact, DryFriction):
-                rows.append((f"the velocity of {what}", e.velocity[j], e.velocity[k], -1.0))
-                rows.append((f"the limit of {what}", e.limit[j], e.limit[k], 1.0))
-            else:
-                sign = -1.0 if j in self.turned else 1.0
-                rows.append((f"the surface of {what}", e.surface[j], e.surface[k], sign))
-        rates = e.pattern(e.pattern_key([1 if j in e.signed else 0 for j in range(len(e.contacts))])).rates
-        rows += [(f"motion's rate of {name}", rate, rate, -1.0) for name, rate in zip(e.states, rates)]
-        return rows
-
-    @cached_property
-    def _values(self) -> tuple[Values, Values]:
-        layout = self.equations.layout
-        return (
-            Values(layout, [row[1] for row in self._rows]),
-            Values(layout, [row[2] for row in self._rows]),
-        )
-
     def _both(self, draws: Draws) -> tuple[np.ndarray, np.ndarray]:
         """Values of all formulas at random states, and those of their images there, both of shape (DRAWS, count)."""
-        signs = np.empty_like(draws.signs)
-        for place, j in enumerate(self.equations.signed):
-            turns = isinstance(self.equations.contacts[j], DryFriction) or j in self.turned
-            signs[:, self.equations.signed.index(self.images[j])] = draws.signs[:, place] * (
-                -1.0 if turns else 1.0
+        e, signs = self.equations, np.empty_like(draws.signs)
+        for place, j in enumerate(e.signed):
+            turns = isinstance(e.contacts[j], DryFriction) or j in self.turned
+            signs[:, e.signed.index(self.images[j])] = (
+                -draws.signs[:, place] if turns else draws.signs[:, place]
             )
-        own, image = self._values
         with np.errstate(all="ignore"):
-            here = own(draws.states, draws.clock, np.hstack([draws.params, draws.signs]))
-            there = image(-draws.states, draws.clock + np.pi, np.hstack([draws.params, signs]))
-        return here, there * np.array([row[3] for row in self._rows])
+            here = self._own(draws.states, draws.clock, np.hstack([draws.params, draws.signs]))
+            there = self._image(-draws.states, draws.clock + np.pi, np.hstack([draws.params, signs]))
+        return here, there * self._signs
 
     def _turned(self, draws: Draws) -> frozenset[int]:
         """Switches whose surface is nearer to minus its image."""

@@ -13,7 +13,7 @@ Independent variable (`clock`) of every compiled flow: the forcing phase (radian
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -259,6 +259,14 @@ class Equations:
     def _in_si(self, name: str, shown: Symbol) -> Symbol:
         """A parameter or state as the formulas see it."""
         return shown * self.factors.get(name, 1.0)
+
+    def formulas(self) -> Iterator[tuple[str, str, int, Mapping[int, Symbol]]]:
+        """What the page says of each contact: in words, what it is, the contact, and those of all contacts of the kind."""
+        kinds = ("gap", "restitution", "velocity", "limit", "surface")
+        for j, contact in enumerate(self.contacts):
+            for what in kinds:
+                if j in (table := getattr(self, what)):
+                    yield f"the {what} of {contact.described}", what, j, table
 
     # ------------------------------------------------------------------ derivatives
     def along(self, value: Symbol, rates: Sequence[Symbol]) -> Symbol:

@@ -238,9 +238,9 @@ def _on_numbers(
 
 def _on_symbols(e: Equations, modes: Sequence[int]) -> Iterator[tuple[str, list[Any]]]:
     yield "motion", e.pattern(e.pattern_key(modes)).rates
-    for what, symbols in (("gap", e.gap), ("velocity", e.velocity), ("surface", e.surface)):
-        for j, symbol in symbols.items():
-            yield f"the {what} of {e.contacts[j].described}", [symbol]
+    for name, what, j, table in e.formulas():
+        if what in ("gap", "velocity", "surface"):
+            yield name, [table[j]]
 
 
 def _named(error: Exception) -> str:

@@ -63,6 +63,16 @@ def registry() -> Any:
 
 
 @cache
+def _in_base(unit: str) -> Any:
+    """One of a unit in base units, as pint counts it; None if it is none."""
+    units = registry()
+    try:
+        return units.Quantity(1.0, units.parse_units(unit)).to_base_units()
+    except Exception:  # pint refuses in many ways; which one does not matter
+        return None
+
+
+@cache
 def size(unit: str, kind: str) -> float | None:
     """How many of the SI unit `kind` one `unit` is; None if it is something else.
 
@@ -70,20 +80,14 @@ def size(unit: str, kind: str) -> float | None:
     """
     if unit == kind:
         return 1.0
-    units = registry()
-    try:
-        one = units.Quantity(1.0, units.parse_units(unit)).to_base_units()
-        wanted = units.Quantity(1.0, units.parse_units(kind)).to_base_units()
-    except Exception:  # pint refuses in many ways; which one does not matter
-        return None
-    if one.dimensionality != wanted.dimensionality:
+    one, wanted = _in_base(unit), _in_base(kind)
+    if one is None or wanted is None or one.dimensionality != wanted.dimensionality:
         return None
     turns = one.units._units.get("radian", 0) - wanted.units._units.get("radian", 0)
     found = float(one.magnitude) / float(wanted.magnitude) * (2.0 * math.pi) ** -float(turns)
     return found if math.isfinite(found) and found > 0.0 else None
 
 
-@cache
 def in_si(unit: str) -> float:
     """What one of a unit is in SI units, radians and all.
 
@@ -92,11 +96,10 @@ def in_si(unit: str) -> float:
     QuantityError
         If it is no unit.
     """
-    units = registry()
-    try:
-        return float(units.Quantity(1.0, units.parse_units(unit)).to_base_units().magnitude)
-    except Exception:  # pint refuses in many ways; which one does not matter
-        raise QuantityError(f"{unit!r} is no unit that is known; for example 'mm' or 'N s/m'") from None
+    one = _in_base(unit)
+    if one is None:
+        raise QuantityError(f"{unit!r} is no unit that is known; for example 'mm' or 'N s/m'")
+    return float(one.magnitude)
 
 
 def read(quantity: Quantity, value: object) -> tuple[float, str]:
@@ -121,18 +124,12 @@ def read(quantity: Quantity, value: object) -> tuple[float, str]:
         if quantity.unit and value != 0:
             raise QuantityError(f"{shown} has no unit; {would}")
         return _finite(quantity, float(value), shown, would), unit_of(quantity)
-    match = _NUMBER.fullmatch(value)
-    if match is None:
-        what = f"{_a_number(quantity.unit)}{_comma(value)}"
-        raise QuantityError(f"{shown} is not {what}; {would}{_many(quantity, value)}")
-    number, unit = float(match[1]), match[2]
+    number, unit = _parsed(quantity.name, value, quantity.unit, would + _many(quantity, value), would)
     if not quantity.unit:
         factor = size(unit, "") if unit else 1.0
         if factor is None:
             raise QuantityError(f"{shown}: {quantity.name} is a plain number; {would}")
         return _finite(quantity, number * factor, shown, would), ""
-    if not unit:
-        raise QuantityError(f"{shown} has no unit; {would}")
     factor = size(unit, quantity.unit)
     if factor is None:
         kind = _KINDS.get(quantity.unit, quantity.unit)
@@ -178,24 +175,24 @@ def counted(name: str, value: str, own: str) -> float:
         If it is no number with a unit of this kind.
     """
     would = f'for example "1 {own}"' if own else "expected a plain number"
-    match = _NUMBER.fullmatch(value)
-    if match is None:
-        raise QuantityError(f"{name} = {value!r} is not {_a_number(own)}{_comma(value)}; {would}")
-    if own and not match[2]:
-        raise QuantityError(f"{name} = {value!r} has no unit; {would}")
-    factor = size(match[2], own) if match[2] else 1.0
+    number, unit = _parsed(name, value, own, would, would)
+    factor = size(unit, own) if unit else 1.0
     if factor is None:
         what = f"shown in {own}" if own else "a plain number"
         raise QuantityError(f"{name} = {value!r}: {name} is {what}; {would}")
-    return float(match[1]) * factor
+    return number * factor
 
 
-def _a_number(unit: str) -> str:
-    return "a number with a unit" if unit else "a number"
-
-
-def _comma(value: str) -> str:
-    return " (decimals stand behind a point)" if _COMMA.match(value) else ""
+def _parsed(name: str, value: str, kind: str, otherwise: str, with_unit: str) -> tuple[float, str]:
+    """Number and unit of a text; the ways out where it is none, and where a unit of a kind is missing."""
+    match = _NUMBER.fullmatch(value)
+    if match is None:
+        what = "a number with a unit" if kind else "a number"
+        comma = " (decimals stand behind a point)" if _COMMA.match(value) else ""
+        raise QuantityError(f"{name} = {value!r} is not {what}{comma}; {otherwise}")
+    if kind and not match[2]:
+        raise QuantityError(f"{name} = {value!r} has no unit; {with_unit}")
+    return float(match[1]), match[2]
 
 
 def _many(quantity: Quantity, value: object) -> str:

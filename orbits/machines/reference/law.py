@@ -98,11 +98,6 @@ class Law(NamedTuple):
         """Whether turns are no events."""
         return self.pull_left == self.pull_right
 
-    @property
-    def strength(self) -> float:
-        """Amplitude of the excitation."""
-        return abs(self.force) * np.sqrt(1.0 + self.base * self.base)
-
 
 def absorber(par: Sequence[Number]) -> Law:
     """Amplitude, restitution, friction, gravity, mass ratio, frequency."""

@@ -31,8 +31,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.machines.path import place
-from orbits.machines.reference.law import Law, LawOf
-from orbits.machines.reference.oscillation import Point, State, after, chosen, leg
+from orbits.machines.reference.law import LawOf
+from orbits.machines.reference.oscillation import State, after, chosen, leg
 from orbits.numbers import COMPLEX_STEP
 from orbits.words.alphabet import CODES
 
@@ -86,13 +86,22 @@ def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Wor
     then[-1] *= twist
     if twist < 0.0 and events[0] < 2:
         arrival[-1] = 1 - events[0]
-    begin, end, point, pull, t = _flight(law, events, modes, node, phase)
+    hit = events < 2
+    if law.prescribed:
+        v, v_rate = law.amplitude * np.sin(node[0]), law.amplitude * law.omega * np.cos(node[0])
+    else:
+        v, v_rate = node[2], node[3]
+    wall = np.where(events == 0, law.left, law.right)
+    begin = State(np.where(hit, wall, node[1]), np.where(hit, v_rate - node[1], 0.0), v, v_rate)
+    q, t = leg(law, node[0], begin, modes), (phase - node[0]) / law.omega
+    point = q.at(t)
+    end = after(law, q, point, begin, modes, t)
     hits, left = arrival < 2, arrival == 0
     y = following[:, 1] + 0j
     if twist < 0.0 and events[0] > 1:  # the image about the middle between the walls
         y = y + np.where(np.arange(length) == length - 1, law.left + law.right, 0.0)
     from_rest = (events >= 2) & (modes != 0)
-    stops = np.where(from_rest, point.mean - pull, end.rate)
+    stops = np.where(from_rest, point.mean - q.q2_pull, end.rate)
     slips = law.whole * (point.h2 + point.z2 - chosen(then, law.pull_left, law.pull_right, 0.0))
     back = end.v_rate + np.where(left, law.restitution_left, law.restitution_right) * end.rate - y
     place_ = end.w - np.where(left, law.left, law.right)
@@ -119,23 +128,6 @@ def linearise(law_of: LawOf, data: CycleData, u: np.ndarray, p: float, work: Wor
         middle = (law.left + law.right) * np.ones((size, 1))
         largest = max(largest, _pin(data, u, work, middle[-1, 0]))
     return largest if np.isfinite(largest) else np.inf
-
-
-def _flight(
-    law: Law, events: np.ndarray, modes: np.ndarray, node: np.ndarray, phase: np.ndarray
-) -> tuple[State, State, Point, np.ndarray, np.ndarray]:
-    """Start and end of each segment, the motion at its end, q2'' in it, its duration."""
-    hit = events < 2
-    if law.prescribed:
-        v, v_rate = law.amplitude * np.sin(node[0]), law.amplitude * law.omega * np.cos(node[0])
-    else:
-        v, v_rate = node[2], node[3]
-    wall = np.where(events == 0, law.left, law.right)
-    begin = State(np.where(hit, wall, node[1]), np.where(hit, v_rate - node[1], 0.0), v, v_rate)
-    q = leg(law, node[0], begin, modes)
-    t = (phase - node[0]) / law.omega
-    point = q.at(t)
-    return begin, after(law, q, point, begin, modes, t), point, q.q2_pull, t
 
 
 def last_flight(modes: np.ndarray) -> int:

@@ -118,20 +118,6 @@ class Oscillation:
         """The fourth derivative of q1."""
         return -self.omega * self.omega * at.h2 - 2.0 * self.alpha * at.z3 - self.kappa * at.z2
 
-    def fifth(self, at: Point) -> Number:
-        """The fifth derivative of q1."""
-        own = 2.0 * self.alpha * (2.0 * self.alpha * at.z3 + self.kappa * at.z2) - self.kappa * at.z3
-        return own - self.omega * self.omega * at.h3
-
-    def bound(self, at: Point, order: int, strength: float, span: float) -> float:
-        """Bound of the derivative of q1 of this order, 3 or 4, in a span of time after a point, where the excitation has this amplitude.
-
-        The derivative is an oscillator's response to a force of amplitude Omega^order `strength`, which feeds its energy.
-        """
-        one, rate = (at.h3 + at.z3, self.fourth(at)) if order == 3 else (self.fourth(at), self.fifth(at))
-        fed = self.omega**order * strength * span / np.sqrt(self.kappa)
-        return np.sqrt(one * one + rate * rate / self.kappa) + fed
-
     def driven(self, order: int) -> float:
         """Bound of the harmonic's derivative of this order."""
         return self.omega**order * np.hypot(self.h0, self.h1 / self.omega)

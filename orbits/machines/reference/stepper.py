@@ -9,9 +9,7 @@ and w is monotone for as long as y is positive: inside such a step the wall ahea
 the end of it, and steps towards a turn approach it from one side like Newton's method. So no hit and no turn can be missed. The slip
 is found in the same way from a - |v'' - b| > 0, b being the acceleration down a slope and a that of friction in the direction of the slip.
 
-M comes from the energy of the third derivative u = q1''', which is itself an oscillator's response to a force of amplitude
-f = Omega^3 eps G sqrt(1 + (eps lambda Omega)^2): sqrt(u^2 + u'^2/kappa) grows by at most f/sqrt(kappa) per unit of time. Of a shaken cavity it stays
-as it is.
+M is the sum of the largest third derivatives of the forced harmonic and, from then on, of the free oscillation, which decays; it is renewed now and then.
 
 Close to the start of a leg differences are taken from the Taylor series, and positions are kept with the digits below
 their roundoff, so that flights, turns and impacts keep their relative accuracy however small they are.
@@ -286,7 +284,7 @@ class Run:
 
     def _slide(self, q: Oscillation, s: float, Y0: float, Y1: float, target: float, left: float) -> _Sliding:
         """Slide until the wall ahead is hit or the absorber halts, or for the time `left`."""
-        brake, strength = s * q.q2_pull, self.law.strength
+        brake = s * q.q2_pull
 
         def look(tau: float) -> tuple[Point, float, float, float]:
             at = q.at(tau)
@@ -299,7 +297,7 @@ class Run:
         renew, bound = -1.0, 0.0
         while True:
             if tau >= renew:
-                bound = q.bound(at, 3, strength, _HORIZON)
+                bound = q.driven(3) + q.own(3, tau)
                 renew = tau + _HORIZON
             if y <= SMALLEST:
                 # the native core of coupled machines takes a speed that hardly is one for rest
@@ -307,7 +305,7 @@ class Run:
                     return _Sliding(_HALT, tau, at, y, y_rate, gain)
                 # from rest: y' or, after a slip, y'' opens the flight
                 jerk = s * (at.h3 + at.z3)
-                further = q.bound(at, 4, strength, _HORIZON)
+                further = q.driven(4) + q.own(4, tau)
                 if (
                     bound == 0.0 and further == 0.0 and not y_rate > 0.0
                 ):  # neither friction, slope nor forcing

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.machines.closed_forms.coupled import stuck_frequencies, stuck_response
+from orbits.machines.coupled_orbits import stuck_frequencies, stuck_response
 from orbits.theory.manifolds import squared_amplitude
 from tests.machines import COUPLED
 

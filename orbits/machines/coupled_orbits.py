@@ -18,70 +18,48 @@ Source: own derivation from the equations of motion; parameters as in `orbits.ma
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.polynomial.polynomial import polymul, polyroots
 
 from orbits.machines.reference.law import Law, coupled
 from orbits.settings import FORMULAS
-from orbits.words import Word
 
 if TYPE_CHECKING:
     from orbits.theory.multiple_scales import Equilibrium
 
 
-@dataclass(frozen=True)
 class _Half:
-    """The oscillator over half a forcing period of sliding: response X, Y and z(0) = z_0 + beta z_1 as a pair (z, z')."""
+    """The oscillator over half a forcing period T of sliding in direction s, z(0) = start + beta ahead as a pair (z, z'); `transition` takes it to z(T).
 
-    omega: float
-    T: float
-    X: float
-    Y: float
-    offset: float
-    start: np.ndarray
-    start_beta: np.ndarray
-    transition: np.ndarray
+    `pull`: mu g. `square`: X^2 + Y^2. `offset`: o.
+    """
+
+    def __init__(self, params: np.ndarray, s: int) -> None:
+        law = _law(params)
+        self.eps, self.pull, self.omega, self.T = law.eps, law.friction_left, law.omega, math.pi / law.omega
+        self.X, self.Y, alpha, beta = law.slide
+        decay = math.exp(-alpha * self.T)
+        c, d = decay * math.cos(beta * self.T), decay * math.sin(beta * self.T) / beta
+        self.transition = np.array([[c + alpha * d, d], [-d, c - alpha * d]])
+        self.offset = -self.eps * self.pull * s
+        solve = np.linalg.inv(self.transition + np.eye(2))
+        self.start = solve @ np.array([-2.0 * self.offset, -self.eps * s * self.pull * self.T])
+        self.ahead = solve @ np.array([0.0, -2.0 * self.eps])
+        self.square = self.X**2 + self.Y**2
+
+    def phase(self, h0: float, h1: float) -> float:
+        """Psi from X sin Psi + Y cos Psi = h0 and X cos Psi - Y sin Psi = h1."""
+        return math.atan2(self.X * h0 - self.Y * h1, self.X * h1 + self.Y * h0) % (2.0 * math.pi)
 
 
 def _law(params: np.ndarray) -> Law:
     """The numbers of the equations; the response is infinite, or no number, at a resonance without damping."""
     with np.errstate(all="ignore"):
         return coupled([*params])
-
-
-def _half(params: np.ndarray, s: int) -> _Half:
-    law = _law(params)
-    omega, eps, pull, alpha, beta = law.omega, law.eps, law.friction_left, law.slide.alpha, law.slide.beta
-    T = math.pi / omega
-    decay = math.exp(-alpha * T)
-    c, d = decay * math.cos(beta * T), decay * math.sin(beta * T) / beta
-    transition = np.array([[c + alpha * d, d], [-d, c - alpha * d]])
-    offset = -eps * pull * s
-    solve = np.linalg.inv(transition + np.eye(2))
-    start = solve @ np.array([-2.0 * offset, -eps * s * pull * T])
-    ahead = solve @ np.array([0.0, -2.0 * eps])
-    return _Half(omega, T, law.slide.X, law.slide.Y, offset, start, ahead, transition)
-
-
-def _quadratic(params: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, _Half]:
-    """Coefficients (of 1, beta) of h and h' just after the impact on the left wall, and those of the quadratic equation."""
-    r, pull = float(params[4]), float(params[5]) * float(params[6])
-    half = _half(params, -1)
-    T = half.T
-    z = np.array([half.start, half.start_beta])  # rows: 1, beta; columns: z, z'
-    z_end = z @ half.transition.T
-    h = -z[:, 0] + np.array([1.0 - half.offset + 0.25 * pull * T**2, -0.5 * T])
-    # h' (1 + r) = r (z'(T) - beta + mu g T) - z'(0) + beta
-    h_rate = (r * (z_end[:, 1] + np.array([pull * T, -1.0])) - z[:, 1] + np.array([0.0, 1.0])) / (1.0 + r)
-    polynomial = (
-        np.polynomial.polynomial.polymul(h, h)
-        + np.polynomial.polynomial.polymul(h_rate, h_rate) / half.omega**2
-    )
-    polynomial[0] -= half.X**2 + half.Y**2
-    return h, h_rate, polynomial, half
 
 
 def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
@@ -91,21 +69,25 @@ def symmetric_nodes(params: np.ndarray) -> list[np.ndarray]:
     """
     if params[8] != 0.0:
         return []
-    omega, eps, pull = float(params[1]), float(params[3]), float(params[5]) * float(params[6])
-    h, h_rate, polynomial, half = _quadratic(params)
-    c, b, a = polynomial
+    half, r = _Half(params, -1), float(params[4])
+    eps, pull, T = half.eps, half.pull, half.T
+    # h and h' just after the impact on the left wall, and z there and at the end: coefficients of 1 and beta
+    z = np.array([half.start, half.ahead])
+    z_end = z @ half.transition.T
+    h = -z[:, 0] + np.array([1.0 - half.offset + 0.25 * pull * T**2, -0.5 * T])
+    # h' (1 + r) = r (z'(T) - beta + mu g T) - z'(0) + beta
+    h_rate = (r * (z_end[:, 1] + np.array([pull * T, -1.0])) - z[:, 1] + np.array([0.0, 1.0])) / (1.0 + r)
+    c, b, a = polymul(h, h) + polymul(h_rate, h_rate) / half.omega**2 - np.array([half.square, 0.0, 0.0])
     discriminant = b * b - 4.0 * a * c
     if not discriminant >= 0.0 or not np.isfinite(half.X):
         return []
     found = []
     for beta in sorted({(-b + sign * math.sqrt(discriminant)) / (2.0 * a) for sign in (1.0, -1.0)}):
-        h0, h1 = h[0] + h[1] * beta, h_rate[0] + h_rate[1] * beta
-        z = half.start + beta * half.start_beta
-        psi = _phase(h0, h1 / omega, half)
-        q1, q1_rate = h0 + half.offset + z[0], h1 + z[1]
-        q2 = -0.5 * (beta * half.T - 0.5 * pull * half.T**2)
-        first = np.array([psi, (1.0 + eps) * beta, q1 + eps * q2, q1_rate + eps * beta])
-        found.append(_mirrored(first))
+        (h0, h1), (z0, z1) = np.array([h, h_rate]) @ [1.0, beta], half.start + beta * half.ahead
+        q1, q1_rate = h0 + half.offset + z0, h1 + z1
+        q2 = -0.5 * (beta * T - 0.5 * pull * T**2)
+        psi = half.phase(h0, h1 / half.omega)
+        found.append(_mirrored([psi, (1.0 + eps) * beta, q1 + eps * q2, q1_rate + eps * beta]))
     return found[::-1] if abs(found[0][0, 1]) < abs(found[-1][0, 1]) else found
 
 
@@ -129,18 +111,12 @@ def nodes_from_equilibrium(params: np.ndarray, equilibrium: Equilibrium) -> np.n
     else:
         v, speed, second = -(equilibrium.turning_point or 0.0), -h, -(equilibrium.turning_point or 0.0)
     psi = (math.atan2(v, speed) - equilibrium.phase) % (2.0 * math.pi)
-    return _mirrored(np.array([psi, second, v, omega * speed]))
+    return _mirrored([psi, second, v, omega * speed])
 
 
-def _phase(h0: float, h1: float, half: _Half) -> float:
-    """Psi from X sin Psi + Y cos Psi = h0 and X cos Psi - Y sin Psi = h1."""
-    return math.atan2(half.X * h0 - half.Y * h1, half.X * h1 + half.Y * h0) % (2.0 * math.pi)
-
-
-def _mirrored(first: np.ndarray) -> np.ndarray:
-    second = -first
-    second[0] = first[0] + math.pi
-    return np.array([first, second])
+def _mirrored(first: Sequence[float]) -> np.ndarray:
+    """A node and its mirror image half a period later."""
+    return np.array([first, [first[0] + math.pi, *(-value for value in first[1:])]])
 
 
 def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray | None:
@@ -154,19 +130,17 @@ def sliding_nodes(params: np.ndarray, mode: int = 1) -> np.ndarray | None:
     """
     if params[8] != 0.0:
         return None
-    pull = float(params[5]) * float(params[6])
-    eps = float(params[3])
-    half = _half(params, mode)
-    beta = -0.5 * mode * pull * half.T
-    z = half.start + beta * half.start_beta
+    half = _Half(params, mode)
+    beta = -0.5 * mode * half.pull * half.T
+    z = half.start + beta * half.ahead
     h1 = (beta - z[1]) / half.omega
-    square = half.X**2 + half.Y**2 - h1**2
+    square = half.square - h1**2
     if not 0.0 <= square < math.inf:
         return None
     for h0 in (-mode * math.sqrt(square), mode * math.sqrt(square)):
         w = h0 + half.offset + z[0]  # q2 = 0 at the turns
         if mode * w < 0.0:
-            return _mirrored(np.array([_phase(h0, h1, half), w, w, (1.0 + eps) * beta]))
+            return _mirrored([half.phase(h0, h1), w, w, (1.0 + half.eps) * beta])
     return None
 
 
@@ -218,7 +192,7 @@ def stuck_frequencies(params: np.ndarray) -> np.ndarray:
     if held < 0.0:
         return np.zeros(0)
     square, hold, force = (eps * lam) ** 2, held**2, (eps * G) ** 2
-    roots = np.polynomial.polynomial.polyroots(
+    roots = polyroots(
         np.trim_zeros(
             [
                 -hold,
@@ -231,17 +205,3 @@ def stuck_frequencies(params: np.ndarray) -> np.ndarray:
     )
     real = roots[np.abs(roots.imag) < FORMULAS.real * np.abs(roots)].real
     return np.sqrt(np.sort(real[real > 0.0]))
-
-
-def start_nodes(word: Word, periods: int, params: np.ndarray) -> Iterator[np.ndarray]:
-    """Nodes of the words in closed form: `LR`, `RL`, `tt`."""
-    if periods != 1:
-        return
-    events = "".join(word.events)
-    if events in ("LR", "RL"):
-        for nodes in symmetric_nodes(params):
-            yield (nodes if events == "LR" else np.array([nodes[1], nodes[0] + [2.0 * np.pi, 0.0, 0.0, 0.0]]))
-    elif events == "tt":
-        nodes = sliding_nodes(params, int(word.mode_codes[0]))
-        if nodes is not None:
-            yield nodes

@@ -1,1 +1,0 @@
-"""Orbits in closed form, which nobody has to look for."""
