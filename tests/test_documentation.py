@@ -77,7 +77,7 @@ def test_every_public_name_is_in_the_reference():
 
 
 def test_every_option_of_a_command_in_the_pages_exists():
-    from contvines.command.commands import COMMANDS, command
+    from contvines.command.cli import COMMANDS, command
 
     options = {
         name: {text for entry in command(name).params for text in (*entry.opts, *entry.secondary_opts)}

@@ -5,31 +5,30 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import typer
 
-from contvines.command.frame import draw, tell
-from contvines.command.study_data import Sort, Study
-from contvines.command.survey_study import (
+from ..shared.number_text import figures
+from ..text_table import fitted
+from .frame import draw, tell
+from .study_data import Sort, Study
+from .survey_study import (
     family_of,
-    options_of,
     outcomes_of,
     plan_and_machine,
     units_of,
     ways_of,
 )
-from contvines.shared.number_text import figures
-from contvines.text_table import fitted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from contvines.survey import Survey
     from orbits.design import Choice
+
+    from ..survey import Survey
 
 LOW, HIGH = ("lowest", "smallest", "least"), ("highest", "largest", "most")
 FILLING = ("worst-case", "worst", "robust", "%", "quantile", "of")  # words that say nothing more
@@ -110,7 +109,7 @@ def asking(study: Study, outcome: str) -> Study:
     prefixes = tuple(one.replace(":", "_") for one in said if ":" in one)
     if outcome.startswith(prefixes) or any(outcome in BESIDE.get(one, ()) for one in said):
         return study
-    return replace(study, survey=study.survey.model_copy(update={"outcomes": [*said, outcome]}))
+    return study.having("survey", outcomes=[*said, outcome])
 
 
 def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
@@ -131,9 +130,10 @@ def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
     ValueError
         If the outcome is not known of any machine.
     """
-    from contvines.survey.outcomes import OF_ALL
-    from contvines.survey.work import Job, work
     from orbits.design import best
+
+    from ..survey.outcomes import OF_ALL
+    from ..survey.work import Job, work
 
     plan, model = plan_and_machine(study)
     largest, quantile, outcome = wish = read_wish(text)
@@ -142,7 +142,7 @@ def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
             f"--best {text!r}: the survey has no outcome {outcome}; it has {', '.join(found.columns) or 'none'}."
         )
     job = Job(
-        family_of(study, model), study.parameter, study.within, tuple(outcomes_of(study)), options=options_of(study), **ways_of(study),
+        family_of(study, model), study.parameter, study.within, tuple(outcomes_of(study)), options=study.options, **ways_of(study),
     )  # fmt: skip
 
     def evaluate(values: dict[str, float]) -> dict[str, float]:
@@ -168,12 +168,13 @@ def choose(study: Study, text: str, least: float, found: Survey) -> Choice:
 
 
 def tell_choice(
-    study: Study, text: str, least: float, found: Survey, json_: bool, quiet: bool, plot: Path | None
+    study: Study, text: str, covered: float | None, found: Survey, json_: bool, quiet: bool, plot: Path | None
 ) -> None:
-    """Print and draw the choice beside its other outcomes."""
-    from contvines.command.compare import compared_text, peaks_compared
+    """Print and draw the choice beside its other outcomes; `covered` as for `choose`, by default as in the survey."""
+    from ..survey.outcomes import KNOWN
+    from .plot import compared_text, peaks_compared
 
-    wish = read_wish(text)
+    wish, least = read_wish(text), KNOWN if covered is None else covered
     outcome = wish.outcome
     choice, (_, model) = choose(study, text, least, found), plan_and_machine(study)
     units = units_of(study, model)

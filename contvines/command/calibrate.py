@@ -2,29 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypedDict
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.amounts import amount
-from contvines.command.compose import check_shaken, machine
-from contvines.command.frame import draw, tell
-from contvines.command.measured import Column, Scales, measured
-from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
-from contvines.command.physical_study import number_of
-from contvines.command.study import read_study
-from contvines.command.study_data import Sort, Study
-from contvines.graph.table import with_unit
-from contvines.shared.number_text import figures
-from contvines.text_table import Table, fitted, terminal_width
 from orbits.machines.physical.machine import Physical
-from orbits.machines.physical.units import counted
+
+from ..graph.table import with_unit
+from ..shared.number_text import figures
+from ..text_table import Table, fitted, terminal_width
+from .compose import check_shaken, machine
+from .frame import draw, tell
+from .measured import Scales, measured
+from .options import (
+    JsonOption,
+    PlotOption,
+    SizeOption,
+    amount,
+    argument,
+    option,
+    refuse_alone,
+)
+from .physical_study import number_of
+from .study import read_study
+from .study_data import Sort, Study
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from orbits.design.calibration import Calibration
     from orbits.machines.base import Model
 
@@ -91,42 +95,23 @@ def calibrate(
         check_shaken(read, names)
     model, guesses = _guesses(read, names)
     bounds = _limits(limits or [], names, model)
-    known: Known = {"unknown": guesses, "limits": bounds, "fixed": read.loose, "confidence": confidence}
+    known = {"unknown": guesses, "limits": bounds, "fixed": read.loose, "confidence": confidence}
+    path = sweep if impacts is None else impacts
+    assert path is not None
     try:
         if impacts is not None:
-            found, look = _from_impacts(read, model, impacts, release, known)
+            found, look = _from_impacts(read, model, path, release, known)
         else:
-            assert sweep is not None
-            found, look = _from_sweep(read, model, sweep, measure, known)
+            found, look = _from_sweep(read, model, path, measure, known)
     except ValueError as error:
-        sentence, path = str(error).rstrip("."), impacts or sweep
-        raise ValueError(
-            sentence + "." if sentence.startswith(str(path)) else f"{path}: {sentence}."
-        ) from None
+        said = str(error).rstrip(".")
+        raise ValueError(f"{said}." if said.startswith(str(path)) else f"{path}: {said}.") from None
     units = {name: model.units[name] for name in names if model.units.get(name)}
     tell(fitted(calibration_text(found, units, guesses)), as_json(found, units) if json_ else None)
     if plot is not None:
-        from contvines.plots.measured import plot_calibration
+        from ..plots.measured import plot_calibration
 
         draw(plot, lambda: plot_calibration(residuals=found.residuals, figsize=size, **look), json_)
-
-
-class Known(TypedDict):
-    """What a calibration knows beside the measurement; see `orbits.design.calibration.from_sweep`."""
-
-    unknown: dict[str, float]
-    limits: Mapping[str, tuple[float, float]]
-    fixed: Mapping[str, float]
-    confidence: float
-
-
-class Look(TypedDict):
-    """What the picture shows beside the residuals; see `contvines.plots.measured.plot_calibration`."""
-
-    places: np.ndarray
-    heights: np.ndarray | None
-    xlabel: str
-    ylabel: str
 
 
 def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
@@ -145,13 +130,7 @@ def as_json(found: Calibration, units: dict[str, str]) -> dict[str, Any]:
 def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[str, float]) -> str:
     """The estimates, what the data cannot tell apart, and lines for the study."""
     rows = [
-        (
-            name,
-            figures(value),
-            *(figures(end) for end in found.intervals[name]),
-            figures(guesses[name]),
-            units.get(name, ""),
-        )
+        (name, *map(figures, (value, *found.intervals[name], guesses[name])), units.get(name, ""))
         for name, value in found.values.items()
     ]
     heads = ("parameter", "estimate", "from", "to", "study says", "unit")
@@ -173,11 +152,8 @@ def calibration_text(found: Calibration, units: dict[str, str], guesses: dict[st
                 )
     lines += ["", "for [survey] of the study:"]
     for name, value in found.values.items():
-        low, high = found.intervals[name]
-        if units.get(name):
-            ends = ", ".join(f'"{x:.6g} {units[name]}"' for x in (low, high))
-        else:
-            ends = f"{low:.6g}, {high:.6g}"
+        unit = units.get(name)
+        ends = ", ".join(f'"{x:.6g} {unit}"' if unit else f"{x:.6g}" for x in found.intervals[name])
         lines.append(f"vary.{name} = {{ uniform = [{ends}] }}    # {figures(value)}")
     return "\n".join(lines)
 
@@ -222,9 +198,7 @@ def _limit(text: str, name: str, said: str, model: Model) -> float:
     try:
         value = amount("", said, name, model.units)
         if isinstance(model, Physical) and model.units.get(name):
-            refusal = number_of(model, name, f"{value!r} {model.units[name]}", said)[1]
-            if refusal:
-                raise ValueError(refusal)
+            number_of(model, name, f"{value!r} {model.units[name]}", said)
         else:
             model.check_value(name, value)
     except ValueError as error:
@@ -233,32 +207,33 @@ def _limit(text: str, name: str, said: str, model: Model) -> float:
 
 
 def _from_impacts(
-    study: Study, model: Model, path: Path, release: str | None, known: Known
-) -> tuple[Calibration, Look]:
+    study: Study, model: Model, path: Path, release: str | None, known: dict[str, Any]
+) -> tuple[Calibration, dict[str, Any]]:
     from orbits.design.calibration import from_impacts
 
     scales = Scales(model, model.vector(study.loose))
-    unit, second = scales.unit("length"), scales.unit("time")
-    (times,) = measured(path, (Column("time", second),))
+    second = scales.unit("time")
+    (times,) = measured(path, {"time": second})
     start = study.named_state
     if release is not None:
-        displacement = counted("--release", release, unit) / scales.factor("length")
+        displacement = scales.number("--release", release, "length")
         if "damping" not in model.parameter_names:
             raise ValueError(
                 f"--release {release}: the machine {model.name!r} has no oscillator to be let go."
             )
         start, model = {"q1": displacement, "q2": displacement}, model.changed(forcing=0.0)
     ylabel = with_unit("measured less computed", second)
-    look: Look = {"places": times, "heights": None, "xlabel": with_unit("time", second), "ylabel": ylabel}
+    look = {"places": times, "heights": None, "xlabel": with_unit("time", second), "ylabel": ylabel}
     return from_impacts(model, times, start=start, **known), look
 
 
 def _from_sweep(
-    study: Study, model: Model, path: Path, measure: str | None, known: Known
-) -> tuple[Calibration, Look]:
-    from contvines.plots.style import axis_label
+    study: Study, model: Model, path: Path, measure: str | None, known: dict[str, Any]
+) -> tuple[Calibration, dict[str, Any]]:
     from orbits.attractors.observation import measure_names
     from orbits.design.calibration import from_sweep
+
+    from ..plots.style import axis_label
 
     names = measure_names(model)
     over, name = study.parameter, measure or next(name for name in names if name.startswith("max_"))
@@ -269,13 +244,10 @@ def _from_sweep(
             f"--unknown {over}: this is what was swept ([continue] parameter); estimate something else."
         )
     unit, own = model.units.get(name, ""), model.units.get(over, "")
-    values, heights = measured(path, (Column(over, own), Column("response", unit)))
+    values, heights = measured(path, {over: own, "response": unit})
     if own and isinstance(model, Physical):
         for row, value in enumerate(values, 1):
-            place = f"{path}: {over} of measurement {row}"
-            _, refusal = number_of(model, over, f"{float(value)!r} {own}", place)
-            if refusal:
-                raise ValueError(refusal)
+            number_of(model, over, f"{float(value)!r} {own}", f"{path}: {over} of measurement {row}")
     ylabel = axis_label(name, unit=unit or None, notation=model.notation)
-    look: Look = {"places": values, "heights": heights, "xlabel": with_unit(over, own), "ylabel": ylabel}
+    look = {"places": values, "heights": heights, "xlabel": with_unit(over, own), "ylabel": ylabel}
     return from_sweep(model, over, values, heights, measure=name, **known), look

@@ -3,22 +3,28 @@
 from pathlib import Path
 from typing import Any
 
-from contvines.command.schema import (
-    UnknownModel,
-    catalogue_model,
-    expected_value,
-    given,
-    model_section,
-    number,
-)
-from contvines.command.study_data import Sort, Study, without_word, wrong_intervals
-from contvines.command.study_errors import StudyError, refuse, validated
-from contvines.shared.near_names import did_you_mean
 from orbits.machines.base import Model
 from orbits.machines.catalogue import build
 from orbits.machines.names import NAMES, PAGES, STRUCTURE, model_class
 from orbits.machines.parameters import CONTACT_TIME
 from orbits.words import Word
+
+from ..shared.near_names import did_you_mean
+from .schema import (
+    UnknownModel,
+    catalogue_model,
+    expected_value,
+    values_of,
+)
+from .study_data import (
+    Sort,
+    Study,
+    StudyError,
+    refuse,
+    validated,
+    without_word,
+    wrong_intervals,
+)
 
 
 def read_catalogue(data: dict[str, Any], path: Path) -> Study:
@@ -36,36 +42,31 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
     file = validated(catalogue_model(name), data)
     machine = model_class(name)
     entries = {entry.name: entry for entry in machine.settable}
-    values = {**given(model_section(file), entries), **given(file.start, entries)}
-    parameters = {key: float(values[key]) for key in entries if key in values}
+    parameters = values_of(file, entries)
 
     def refusal(parameter: str, value: float) -> str:
-        from pydantic import TypeAdapter, ValidationError
+        if value in entries[parameter].limits.in_studies:
+            return ""
+        expected = expected_value(entries[parameter])
+        return f" leaves the range of {parameter} at {value!r}; expected {expected} at both ends."
 
-        try:
-            TypeAdapter(number(entries[parameter])).validate_python(value)
-        except ValidationError:
-            return f" leaves the range of {parameter} at {value!r}; expected {expected_value(entries[parameter])} at both ends."
-        return ""
-
-    go = file.continue_
+    over, driver = file.continue_.parameter, machine.driven_by
+    low, high = file.continue_.within
     if file.start.word is None:
-        parameters.setdefault(go.parameter, 0.5 * sum(go.within))
-    wrong = wrong_intervals(file, parameters.get(go.parameter), refusal)
-    if go.parameter not in parameters and not wrong:
-        low, high = go.within
+        parameters.setdefault(over, 0.5 * (low + high))
+    wrong = wrong_intervals(file, parameters.get(over), refusal)
+    if over not in parameters and not wrong:
         wrong.append(
-            f"[start] {go.parameter} is missing: it is the continuation parameter's first value; expected a number from {low!r} to {high!r}."
+            f"[start] {over} is missing: it is the continuation parameter's first value; expected a number from {low!r} to {high!r}."
         )
-    elif machine.driven_by not in parameters and machine.driven_by != go.parameter:
-        wrong.append(
-            f"[start] {machine.driven_by} is missing; expected {expected_value(entries[machine.driven_by])}."
-        )
+    elif driver not in parameters and driver != over:
+        wrong.append(f"[start] {driver} is missing; expected {expected_value(entries[driver])}.")
     refuse([*wrong, *wrong_guess(file.start.guess, machine)])
-    loose = {key: value for key, value in parameters.items() if key not in machine.field_names()}
-    own = {key: value for key, value in parameters.items() if key not in loose}
+    own = machine.field_names()
+    loose = {key: value for key, value in parameters.items() if key not in own}
+    given = {key: value for key, value in parameters.items() if key in own}
     try:
-        made = build({"name": name, **own, **given(model_section(file), [CONTACT_TIME.name])})
+        made = build({"name": name, **given, **values_of(file, [CONTACT_TIME.name])})
     except ValueError as error:
         raise StudyError(f"[model] {error}") from error
     return built(Study.of(path, Sort.CATALOGUE, name, parameters, file, model=made, loose=loose))
@@ -73,9 +74,10 @@ def read_catalogue(data: dict[str, Any], path: Path) -> Study:
 
 def _without_machine(data: dict[str, Any], model: object, name: object) -> list[str]:
     """What is wrong with a study of which nobody knows whose it is."""
-    names = f'{", ".join(repr(known) for known in (*NAMES, *PAGES, STRUCTURE))}, or a machine of your own, "FILE.py:NAME"'
+    known = (*NAMES, *PAGES, STRUCTURE)
+    names = f'{", ".join(map(repr, known))}, or a machine of your own, "FILE.py:NAME"'
     if name is not None:
-        hint = did_you_mean(name, (*NAMES, *PAGES, STRUCTURE)) if isinstance(name, str) else ""
+        hint = did_you_mean(name, known) if isinstance(name, str) else ""
         wrong = f"[model] name = {repr(name)[:60]}: there is no such machine{hint}; expected {names}."
     elif isinstance(model, dict):
         wrong = f"[model] name is missing; expected {names}."

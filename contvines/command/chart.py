@@ -1,4 +1,6 @@
-"""`contvines chart` and `contvines locus`: one or all special points of a diagram followed in a second parameter."""
+"""`contvines locus`, `chart` and `circle`: one or all special points of a diagram followed in a second parameter, and the invariant circles beside one."""
+
+from __future__ import annotations
 
 import hashlib
 import json
@@ -6,36 +8,43 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from contvines.command.amounts import interval
-from contvines.command.frame import (
+from .frame import (
+    beside,
     check_special,
     draw,
     finished_of,
     held,
     load_file,
+    made,
     place_of,
+    present,
     refuse_detached,
     refuse_unfinished,
     say,
     tell_result,
     working,
 )
-from contvines.command.options import (
+from .options import (
     DetailsOption,
     FileArgument,
     FreshOption,
+    JsonOption,
     LabelArgument,
     PlotOption,
     QuietOption,
+    SizeOption,
     TrustOption,
     VirtualOption,
+    amount,
     argument,
+    interval,
     option,
 )
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
     from ..loci.chart import Chart
+
 
 OutputOption = Annotated[
     Path | None,
@@ -65,7 +74,7 @@ def locus(
 
     The locus ends with either interval: that of the diagram, and --within.
     """
-    from contvines.loci.charting import chart_of_one
+    from ..loci.charting import chart_of_one
 
     target = place_of(output, file, f"-{label}.vines")
     graph = load_file(file, trust)
@@ -73,7 +82,7 @@ def locus(
     refuse_detached(graph, label)
     ends, kinds = interval("--within", within, over, graph.units), None
     if graph.special[label].kind in graph.own_kinds:  # its condition is a function of the study's
-        from contvines.command.kept_study import kept_kinds
+        from .study import kept_kinds
 
         kinds = kept_kinds(file, trust)
     with working("nothing new is kept; run the same command again", quiet) as progress:
@@ -118,7 +127,7 @@ def chart(
     _tell(found, target, plot, quiet, details)
 
 
-def _tell(found: "Chart", target: Path, plot: Path | None, quiet: bool, details: bool = False) -> None:
+def _tell(found: Chart, target: Path, plot: Path | None, quiet: bool, details: bool = False) -> None:
     """Say where a chart is kept, print it, draw it."""
     say(f"kept in {target}", quiet)
     if not quiet:
@@ -133,7 +142,7 @@ class Plane(NamedTuple):
     within: tuple[float, float]
     virtual: bool
 
-    def fingerprint(self, graph: "Graph") -> str:
+    def fingerprint(self, graph: Graph) -> str:
         """What tells charts of a diagram apart."""
         values = [(point.label, point.kind, point.value) for point in graph.special.values()]
         model = {
@@ -144,70 +153,87 @@ class Plane(NamedTuple):
         return hashlib.sha256(text.encode()).hexdigest()
 
 
-def chart_of(
-    graph: "Graph", plane: Plane, target: Path, quiet: bool, source: dict[str, Any] | None
-) -> "Chart":
+def chart_of(graph: Graph, plane: Plane, target: Path, quiet: bool, source: dict[str, Any] | None) -> Chart:
     """The chart of a diagram: from its file if that is finished, computed else; `source` is kept for `contvines rerun`."""
-    from contvines.loci.chart import Chart
-    from contvines.loci.charting import chart as make
-    from contvines.store import Store
+    from ..loci.chart import Chart
+    from ..loci.charting import chart as make
 
     fingerprint, (over, ends, virtual) = plane.fingerprint(graph), plane
     found = finished_of(Chart, target, fingerprint, quiet, problems=False)
     if found is not None:
         say(f"{target} holds the finished chart; nothing to compute.", quiet)
         return found
-    note = f"all finished points are kept in {target}; the same command goes on from there"
-    with Store.attach(target, fingerprint, {"chart": [over, *ends], "source": source}) as store:
-        with working(note, quiet) as progress:
-            found = make(graph, over, ends, virtual=virtual, journal=store, progress=progress)
-        store.tidy()
-    return found
+    study = {"chart": [over, *ends], "source": source}
+    return made(
+        target, fingerprint, study, quiet, lambda **to: make(graph, over, ends, virtual=virtual, **to)
+    )
 
 
 def _diagram(
     file: Path, over: str | None, within: tuple[str, str] | None, virtual: bool, trust: bool, fresh: bool
-) -> tuple["Graph", Path, Plane]:
+) -> tuple[Graph, Path, Plane]:
     """The diagram to chart, made first if a study is given, its file, and what to chart it over."""
-    from contvines.command.study import read_study
-    from contvines.file_names import is_database
+    from ..file_names import is_database
+    from .run import diagram
+    from .study import read_study
 
-    if is_database(file):
-        graph = load_file(file, trust)
-        refuse_unfinished(graph, file)
-        if over is None or within is None:
-            missing = "--over" if over is None else "--within"
-            raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8.")
-        return graph, file, Plane(over, interval("--within", within, over, graph.units), virtual)
-    from contvines.command.frame import beside
-    from contvines.command.run import diagram
-
-    said = read_study(file).chart
-    if said is not None:
-        over = over or said.parameter
+    known = is_database(file)
+    said = None if known else read_study(file).chart
+    over = over or (None if said is None else said.parameter)
+    if known and (over is None or within is None):
+        missing = "--over" if over is None else "--within"
+        raise ValueError(f"{missing} is missing: for example --over friction --within 0 0.8.")
     if over is None or (within is None and said is None):
         raise ValueError(
             f"{file}: name the second parameter and its interval: --over friction --within 0 0.8, or a section [chart] with "
             "parameter and within."
         )
-    diagram(file, quiet=True, fresh=fresh, look=False)
-    made = beside(file, ".vines")
-    graph = load_file(made)
+    if not known:
+        diagram(file, quiet=True, fresh=fresh, look=False)
+    place = file if known else beside(file, ".vines")
+    graph = load_file(place, trust)
+    refuse_unfinished(graph, place)
     if within is not None:
         ends = interval("--within", within, over, graph.units)
     else:
         assert said is not None
         ends = said.within[0], said.within[1]
-    return graph, made, Plane(over, ends, virtual)
+    return graph, place, Plane(over, ends, virtual)
 
 
 def _source(diagram: Path, target: Path, plane: Plane) -> dict[str, Any] | None:
     """The study of a diagram, as its file keeps it, and what is charted; None where it keeps none."""
-    from contvines.store import Store
+    from .study import source_of
 
-    with Store.open(diagram) as store:
-        kept = (store.study or {}).get("source")
+    kept = source_of(diagram)
     if not kept:
         return None
     place = os.path.relpath(diagram.absolute().parent / kept["study"], target.absolute().parent)
     return {**kept, "study": place, "chart": [plane.over, *plane.within], "virtual": plane.virtual}
+
+
+def circle(
+    file: FileArgument,
+    label: Annotated[str, argument("LABEL", "A Neimark-Sacker point, for example NS1.")],
+    to: Annotated[
+        str | None,
+        option(
+            "--to VALUE",
+            "Last value of the parameter; by default where the circle is half as large as the motion.",
+        ),
+    ] = None,
+    plot: PlotOption = None,
+    size: SizeOption = None,
+    json: JsonOption = False,
+    trust: TrustOption = False,
+) -> None:
+    """Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up."""
+    graph = load_file(file, trust)
+    if label not in graph.special:
+        known = ", ".join(point.label for point in graph.of_kind("neimark-sacker"))
+        raise ValueError(
+            f"{file}: {label} is no label of it; its Neimark-Sacker points are {known or 'none'}."
+        )
+    refuse_detached(graph, label)
+    end = None if to is None else amount("--to", to, graph.parameter, graph.units)
+    present(graph.special[label].circles(end), json, plot, size)

@@ -1,23 +1,145 @@
 """The command `contvines`: its sub-commands, and how errors reach a user (as sentences).
 
-Each sub-command lives in a file of this folder and has a line in `commands.py`. Importing this module must stay cheap:
+Each sub-command is a function in a file of this folder, imported when it is called, and has a line in `COMMANDS`. Importing this module must stay cheap:
 numpy, matplotlib, rich and pydantic are imported by the commands that need them.
 """
+
+from __future__ import annotations
 
 import atexit
 import gc
 import re
 import sys
+from importlib import import_module
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperOption
+from typer.main import get_command
 
-from contvines.command.commands import register
-from contvines.command.options import option
+from .options import option
 
 LONGEST = 200  # letters of a word in a sentence (paths aside)
 QUOTES = "'\""
+
+COMMANDS = {
+    "diagram": ("run", "Automatic bifurcation diagram of a study; an interrupted run goes on."),
+    "trace": ("run", "Follow the study's one branch, without switching."),
+    "switch": ("run", "Follow the branch that leaves a special point, and add it to the file."),
+    "atlas": (
+        "run",
+        "All coexisting motions: many starts are simulated, and all that they reach is continued.",
+    ),
+    "basins": (
+        "robustness",
+        "Basins of attraction in a plane of starts: shares, uncertainty exponent of the boundary.",
+    ),
+    "robustness": (
+        "robustness",
+        "Robustness of a stable motion: the smallest kick out of its basin, the share of its basin.",
+    ),
+    "locus": ("chart", "Follow one special point of a result in a second parameter."),
+    "chart": (
+        "chart",
+        "Chart of two parameters: loci of special points, codimension-two points, regions; an interrupted run goes on.",
+    ),
+    "circle": (
+        "chart",
+        "Follow the invariant circles (modulated motions) of a Neimark-Sacker point until they break up.",
+    ),
+    "show": ("results", "List branches, special points and switches."),
+    "orbit": ("orbit", "One orbit: its events, multipliers and margins."),
+    "prove": ("orbit", "Prove that orbits exist, are real or virtual, stable or unstable."),
+    "plot": ("plot", "Draw a result: the diagram, the multipliers of a branch, or the network of branches."),
+    "rerun": ("results", "Compute a result again from the study that its file keeps, and list what differs."),
+    "export": ("results", "Write a result for other programs: csv, json, graphml, mat, latex, auto or xpp."),
+    "report": ("results", "Write a result as one HTML page, which needs no network."),
+    "sweep": (
+        "sweep",
+        "Simulate over the parameter, each value from the last state; an interrupted run goes on.",
+    ),
+    "survey": (
+        "survey",
+        "Diagrams of many machines: grids, tolerances, samples; an interrupted run goes on.",
+    ),
+    "recommend": (
+        "recommend",
+        "Recommend a clearance: theory first, then diagrams of all samples; an interrupted run goes on.",
+    ),
+    "calibrate": (
+        "calibrate",
+        "Estimate restitution, friction and the like from a measurement, with confidence intervals.",
+    ),
+    "transient": (
+        "transient",
+        "A start-up, a shock, a recorded base motion or a free decay, compared with the bare oscillator.",
+    ),
+    "random": (
+        "random_excitation",
+        "Response to a random excitation of given spectral density: statistics with error bars.",
+    ),
+    "design": (
+        "design",
+        "Design figures in physical units: activation threshold, upper bound, operating ratio, sticking and sliding limits.",
+    ),
+    "help": ("begin", "List the commands by task, or explain one command or topic."),
+    "new": ("begin", "Write a commented study to begin with: every field with its meaning."),
+    "doctor": (
+        "begin",
+        "Print versions, the core that computes, the extras that are installed, and the result of a self-test.",
+    ),
+    "schema": (
+        "begin",
+        "Print the JSON Schema of studies, for editors that complete and check TOML.",
+    ),
+}
+"""Name of the sub-command, and of its function: the file of this folder, and the first sentence of what it says of itself."""
+
+
+class Command(TyperCommand):
+    """A command that takes no option's name for the value of the option before it."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        options = {
+            name: param
+            for param in self.get_params(ctx)
+            for name in (*param.opts, *param.secondary_opts)
+            if name.startswith("-")
+        }
+        for k, name in enumerate(args):
+            if name == "--":
+                break
+            option = options.get(name)
+            if not isinstance(option, TyperOption) or option.is_flag or option.count:
+                continue
+            follows = next((word for word in args[k + 1 : k + 1 + option.nargs] if word in options), None)
+            if follows:
+                raise typer.BadParameter(
+                    f"{name}: its value is missing, {follows} comes at once", ctx=ctx, param=option
+                )
+        return super().parse_args(ctx, args)
+
+
+def command(name: str) -> TyperCommand:
+    """The sub-command of a name, with all its options."""
+    own = typer.Typer(add_completion=False, rich_markup_mode=None)
+    own.command(name, cls=Command)(getattr(import_module(f"contvines.command.{COMMANDS[name][0]}"), name))
+    found = get_command(own)
+    assert isinstance(found, TyperCommand)
+    return found
+
+
+class Listed(TyperCommand):
+    """A sub-command of which nothing is known but its name and its sentence until it is called."""
+
+    def get_short_help_str(self, limit: int = 0) -> str:
+        """The whole sentence, which goes on in further lines of the list."""
+        return str(self.help)
+
+    def make_context(self, info_name: str | None, args: list[str], parent: Any = None, **extra: Any) -> Any:
+        return command(str(self.name)).make_context(info_name, args, parent=parent, **extra)
+
 
 app = typer.Typer(
     name="contvines",
@@ -32,7 +154,7 @@ app = typer.Typer(
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from contvines import __version__
+        from .. import __version__
 
         typer.echo(f"contvines {__version__}")
         raise typer.Exit
@@ -53,7 +175,8 @@ def _options(
     pass
 
 
-register(app)
+for name, (_, its_sentence) in COMMANDS.items():
+    app.command(name, cls=Listed, help=its_sentence)(lambda: None)  # imported when it is called
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -68,12 +191,10 @@ def main(arguments: list[str] | None = None) -> None:
     except Exception as error:
         if debug:
             raise
-        explain = getattr(error, "show", None)
-        if callable(explain):  # the line itself cannot be understood
-            from contvines.command.refusals import refusal
+        if explain := getattr(error, "show", None):  # the line itself cannot be understood
+            from .refusals import refusal
 
-            about = refusal(error, words)
-            if about:
+            if about := refusal(error, words):
                 print(f"contvines: {about}", file=sys.stderr)
             else:
                 explain()
@@ -83,7 +204,7 @@ def main(arguments: list[str] | None = None) -> None:
         print(f"contvines: {sentence(error)}", file=sys.stderr)
         sys.exit(1)
     if {"-h", "--help"} & set(words) and any(Path(word).suffix in (".toml", ".vines") for word in words):
-        from contvines.command.asked_measures import help_note
+        from .compose import help_note
 
         print(end=help_note(words))
     if status == 130:  # Ctrl-C outside the computation

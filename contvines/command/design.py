@@ -4,19 +4,21 @@ a picture."""
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
-from contvines.command.frame import draw as draw_in
-from contvines.command.frame import tell
-from contvines.command.options import JsonOption, StudyArgument, inches, option, picture
-from contvines.command.study import StudyError, read_study
-from contvines.command.study_data import Sort, Study
-from contvines.shared.number_text import figures
 from orbits.design.figures import Design
+
+from ..shared.number_text import figures
+from ..text_table import Table, titled
+from .frame import draw as draw_in
+from .frame import tell
+from .options import JsonOption, StudyArgument, inches, option, picture
+from .study import StudyError, read_study
+from .study_data import Sort, Study
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,11 +34,13 @@ MM = 1000.0  # of a metre
 BLUE, RED = "#0b3c6f", "#b5121b"
 
 
-def machine(study: Study, cavity: float | None, natural_frequency: float | None) -> Design:
-    """The study's dimensionless machine on a physical scale.
+def machine(
+    study: Study, cavity: float | None, natural_frequency: float | None
+) -> tuple[Design, dict[str, str]]:
+    """The study's machine on a physical scale, and what is assumed beyond the study, a sentence by name of the quantity.
 
     ``gravity`` = g/(b omega_0^2) ties the cavity's half-width b to the natural frequency: one of the two
-    is enough (`HALF_WIDTH` if none is given, see `assumptions`). Without gravity both are needed.
+    is enough (`HALF_WIDTH` if none is given). Without gravity both are needed.
 
     Raises
     ------
@@ -67,49 +71,43 @@ def machine(study: Study, cavity: float | None, natural_frequency: float | None)
                 f"--{name} = {value!r} is out of range; expected a number from {SCALE[0]:g} to {SCALE[1]:g} {unit}, "
                 f"for example {usual}."
             )
-    numbers = model.named(params) if physical else study.parameters
+    numbers, assumed = model.named(params) if physical else study.parameters, {}
     fields: dict[str, Any] = {name: numbers[name] for name in ("restitution", "friction", "mass_ratio")}
     fields["damping"], gravity = numbers.get("damping", DAMPING), numbers["gravity"]
     if physical:
         b, rate = numbers["half_width"], numbers["natural_rate"]
-        hertz, acceleration = rate / (2.0 * math.pi), gravity * b * rate**2
-        return Design(half_width=b, natural_frequency=hertz, acceleration=acceleration, **fields)
-    if gravity == 0:
-        if cavity is None or natural_frequency is None:
+        cavity, natural_frequency, fields["acceleration"] = b, rate / (2.0 * math.pi), gravity * b * rate**2
+    elif gravity != 0:
+        if cavity is not None and natural_frequency is not None:
             raise StudyError(
-                "[model] gravity = 0 fixes no scale; give both --cavity and --natural-frequency."
+                f"--cavity and --natural-frequency were both given, but [model] gravity = {gravity!r} "
+                "already ties one to the other; give one of them."
             )
-        return Design(half_width=cavity, natural_frequency=natural_frequency, acceleration=0.0, **fields)
-    if cavity is not None and natural_frequency is not None:
-        raise StudyError(
-            f"--cavity and --natural-frequency were both given, but [model] gravity = {gravity!r} "
-            "already ties one to the other; give one of them."
-        )
-    if natural_frequency is None:
-        fields["cavity"] = HALF_WIDTH if cavity is None else cavity
-    try:
-        return Design.from_dimensionless(gravity=gravity, natural_frequency=natural_frequency, **fields)
-    except ValueError as error:
-        raise StudyError(f"{study.path}: [model] {error}") from None
-
-
-def assumptions(study: Study, cavity: float | None, natural_frequency: float | None) -> dict[str, str]:
-    """What `machine` assumes beyond the study, a sentence by name of the quantity; empty if nothing."""
-    found = {}
-    if study.sort is Sort.CATALOGUE and study.parameters["gravity"] != 0:
-        found["acceleration"] = f"gravity is {Design.acceleration:g} m/s^2"
+        assumed["acceleration"] = f"gravity is {Design.acceleration:g} m/s^2"
         if cavity is None and natural_frequency is None:
-            found["half_width"] = (
+            cavity = HALF_WIDTH
+            assumed["half_width"] = (
                 f"the half-width of the cavity is {MM * HALF_WIDTH:g} mm, because the study is dimensionless; all lengths "
                 "are proportional to it; --half-width METRES or --natural-frequency HERTZ gives the machine's own"
             )
-    if "damping" not in (study.model.parameter_names if study.sort is Sort.PHYSICAL else study.parameters):
-        found["damping"] = f"the oscillator's damping is lambda = {DAMPING:g}, because the study gives none"
-    return found
+    else:
+        fields["acceleration"] = 0.0
+    if "damping" not in numbers:
+        assumed["damping"] = f"the oscillator's damping is lambda = {DAMPING:g}, because the study gives none"
+    if "acceleration" not in fields:
+        try:
+            return Design.from_dimensionless(
+                gravity=gravity, cavity=cavity, natural_frequency=natural_frequency, **fields
+            ), assumed
+        except ValueError as error:
+            raise StudyError(f"{study.path}: [model] {error}") from None
+    if cavity is None or natural_frequency is None:
+        raise StudyError("[model] gravity = 0 fixes no scale; give both --cavity and --natural-frequency.")
+    return Design(half_width=cavity, natural_frequency=natural_frequency, **fields), assumed
 
 
 def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, str, str, str]]:
-    """The table's lines: name, symbol, value, unit, meaning; lengths in millimetres; `assumed` are names of `assumptions`."""
+    """The table's lines: name, symbol, value, unit, meaning; lengths in millimetres; `assumed` are names of what the study does not say."""
     half, damped = "half_width" in assumed, "damping" in assumed
     given = [
         ("half-width of cavity", "b", MM * design.cavity, "mm", f"{'assumed; ' if half else ''}wall to wall is 2 b"),
@@ -125,19 +123,10 @@ def rows(design: Design, assumed: Collection[str] = ()) -> list[tuple[str, str, 
     return [(name, symbol, figures(value), unit, meaning) for name, symbol, value, unit, meaning in given]
 
 
-def table(title: str, lines: list[tuple[str, str, str, str, str]], assumed: Iterable[str] = ()) -> str:
-    """The lines as text, as wide as they are: nothing is cut in a pipe; below the title the assumptions, a line each."""
-    from contvines.text_table import Table, fitted, terminal_width
-
-    found = Table(("quantity", "symbol", "value", "unit", "meaning"), list(lines), ("meaning",), ("value",))
-    told = [fitted(f"assumed: {sentence}") for sentence in assumed]
-    return "\n".join([title, *told, "", *found.lines(terminal_width())])
-
-
-def as_json(design: Design, assumed: Mapping[str, str] | None = None) -> dict[str, Any]:
+def as_json(design: Design, assumed: Mapping[str, str]) -> dict[str, Any]:
     """Figures in SI units at full precision, and the assumptions."""
     found: dict[str, Any] = {
-        "assumed": dict(assumed or {}),
+        "assumed": assumed,
         "cavity": {"value": float(design.cavity), "unit": "m"},
         "natural_frequency": {"value": float(design.natural_frequency), "unit": "Hz"},
     }
@@ -154,10 +143,10 @@ def draw(design: Design, size: tuple[float, float] | None = None, assumed: Colle
     design : Design
     size : (float, float), optional
         Inches; a small figure has the bounds over friction alone.
-    assumed : names of `assumptions`
+    assumed : names of what the study does not say
         An assumed half-width is named above the figure.
     """
-    from contvines.plots.figures import new_figure, settle, styled, thin_ticks
+    from ..plots.figures import new_figure, settle, styled, thin_ticks
 
     mu0, b0 = float(design.friction), float(design.cavity)
     mu = np.linspace(0.0, max(2.0 * mu0, 0.3), 201)
@@ -285,9 +274,10 @@ def design(
     if no_plot and plot is not None:
         raise ValueError(f"--plot {plot} and --no-plot exclude each other; leave one of them out.")
     asked = read_study(study)
-    figures = machine(asked, cavity, natural_frequency)
-    assumed = assumptions(asked, cavity, natural_frequency)
-    told = table(f"Design figures of {study.name}", rows(figures, assumed), assumed.values())
-    tell(told, as_json(figures, assumed) if json_ else None)
+    figures, assumed = machine(asked, cavity, natural_frequency)
+    heads = ("quantity", "symbol", "value", "unit", "meaning")
+    title = "\n".join([f"Design figures of {study.name}", *(f"assumed: {said}" for said in assumed.values())])
+    shown = titled(title, Table(heads, rows(figures, assumed), ("meaning",), ("value",)))
+    tell(shown, as_json(figures, assumed) if json_ else None)
     if not no_plot:
         draw_in(plot or Path(f"{study.stem}-design.png"), lambda: draw(figures, size, assumed))

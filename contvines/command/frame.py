@@ -1,5 +1,7 @@
 """The frame of every verb: the place of its result, progress, Ctrl-C, and what is printed and drawn at the end."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -8,9 +10,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
-from contvines.command.options import MANY
-from contvines.file_names import refuse_ending, refuse_place
-from contvines.text_table import fitted
+from ..file_names import refuse_ending, refuse_place
+from ..text_table import fitted
+from .options import MANY
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
@@ -34,19 +36,22 @@ def beside(path: Path, ending: str) -> Path:
 
 
 def place_of(output: Path | None, source: Path, ending: str) -> Path:
-    """Where a .vines file goes: the place that was asked for, or the default; refused before any work if it will not do."""
-    path = output or beside(source, ending)
-    refuse_place(path)
-    refuse_ending(path, "vines")
-    refuse_source(path, source)
-    return path
+    """Where a result goes: the place that was asked for, or the default, whose name ends so; refused before any work if it will not do.
 
-
-def refuse_source(path: Path, source: Path) -> None:
-    """A result does not replace what it is made from."""
+    A result does not replace what it is made from.
+    """
+    path, kind = output or beside(source, ending), ending.rpartition(".")[2]
     if path.resolve() == source.resolve():
         what = "the study" if source.suffix == ".toml" else "the file"
         raise ValueError(f"{path}: this is {what} itself; choose another name with -o.")
+    if kind == "vines":
+        refuse_place(path)
+        refuse_ending(path, kind)
+    else:
+        from ..export import check_target
+
+        check_target(path, kind)
+    return path
 
 
 @contextmanager
@@ -68,7 +73,7 @@ def held(target: Path, quiet: bool, fresh: bool = False, others: tuple[Path, ...
     ValueError
         If a file cannot be set aside.
     """
-    from contvines.store.on_disk import TAILS, locked, remove_drafts, set_aside
+    from ..store.on_disk import TAILS, locked, remove_drafts, set_aside
 
     if not target.parent.is_dir() or (target.exists() and not target.is_file()):  # a pipe, or a terminal
         yield
@@ -93,7 +98,7 @@ def held(target: Path, quiet: bool, fresh: bool = False, others: tuple[Path, ...
 
 def _fold(target: Path) -> None:
     """Fold its log into a .vines file, unless that is damaged."""
-    from contvines.store import Store, StoreError
+    from ..store import Store, StoreError
 
     if target.suffix == ".vines" and target.exists():
         with suppress(StoreError), Store.open(target, write=True) as store:
@@ -113,7 +118,7 @@ def interruptible(note: str) -> Iterator[None]:
 @contextmanager
 def working(note: str, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
     """Interruptible work; gives what to hand to ``progress=``, which tells a terminal, or a log, where the work is."""
-    from contvines.progress import shown
+    from ..progress import shown
 
     with interruptible(note), shown(not quiet) as progress:
         yield progress
@@ -130,7 +135,7 @@ def finished_of(kind: type[R], target: Path, fingerprint: str, quiet: bool, *, p
     ValueError
         If the file is refused, or belongs to another run.
     """
-    from contvines.store import Store
+    from ..store import Store
 
     if not target.exists():
         return None
@@ -145,14 +150,26 @@ def finished_of(kind: type[R], target: Path, fingerprint: str, quiet: bool, *, p
         return None
 
 
+def made(target: Path, fingerprint: str, study: dict[str, Any], quiet: bool, make: Callable[..., R]) -> R:
+    """What a run makes with ``journal=`` and ``progress=``, each finished point kept in its file, which keeps its study, too."""
+    from ..store import Store
+
+    note = f"all finished points are kept in {target}; the same command goes on from there"
+    with Store.attach(target, fingerprint, study) as store:
+        with working(note, quiet) as progress:
+            found = make(journal=store, progress=progress)
+        store.tidy()
+    return found
+
+
 MOST_NAMED = 24  # labels in one sentence
 
 
 # ---------------------------------------------------------------------- results
-def load_file(file: Path, trust: bool = False, problems: bool = True) -> "Graph":
+def load_file(file: Path, trust: bool = False, problems: bool = True) -> Graph:
     """The graph of a file; a chart is refused."""
-    from contvines.graph.graph import Graph
-    from contvines.store import load
+    from ..graph.graph import Graph
+    from ..store import load
 
     graph = load(file, problems=problems, trust=trust)
     if not isinstance(graph, Graph):
@@ -160,7 +177,29 @@ def load_file(file: Path, trust: bool = False, problems: bool = True) -> "Graph"
     return graph
 
 
-def check_special(graph: "Graph", file: Path, label: str) -> None:
+def point_of(graph: Graph | Chart, label: str) -> tuple[Any, int | None]:
+    """What a label names, and of a branch or locus the number of a point where the label has one, as ``B1:12``.
+
+    Raises
+    ------
+    KeyError, ValueError
+        If there is no such label, or no such point.
+    """
+    name, _, place = label.partition(":")
+    thing: Any = graph[name]
+    if not place:
+        return thing, None
+    if not hasattr(thing, "__len__"):
+        raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
+    last = len(thing) - 1
+    if not (place.isdigit() and int(place) <= last):
+        raise ValueError(
+            f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}."
+        )
+    return thing, int(place)
+
+
+def check_special(graph: Graph, file: Path, label: str) -> None:
     """Refuse a label that is not that of a special point."""
     if label not in graph.special:
         what = "is a branch" if label in graph.branches else "is no label of it"
@@ -172,9 +211,9 @@ def check_special(graph: "Graph", file: Path, label: str) -> None:
         )
 
 
-def refuse_detached(graph: "Graph", *labels: str) -> None:
+def refuse_detached(graph: Graph, *labels: str) -> None:
     """Special points whose problem is not at hand, before work starts: a sentence that says why, and a way out."""
-    from contvines.problems.registry import without_problem
+    from ..problems.registry import without_problem
 
     for label in labels:
         point = graph.special[label]
@@ -183,16 +222,16 @@ def refuse_detached(graph: "Graph", *labels: str) -> None:
             raise ValueError(without_problem(label, None if branch is None else branch.description))
 
 
-def refuse_unfinished(graph: "Graph | Chart", file: Path) -> None:
+def refuse_unfinished(graph: Graph | Chart, file: Path) -> None:
     """Work on a result begins when that is finished."""
     if not graph.finished:
         raise ValueError(f"{file}: this file is unfinished; run the command that made it again first.")
 
 
-def say_state(graph: "Graph | Chart", file: Path, problems: bool = True) -> None:
+def say_state(graph: Graph | Chart, file: Path, problems: bool = True) -> None:
     """Branches that were loaded as numbers only, and why; whether the run goes on."""
-    from contvines.graph.graph import Graph
-    from contvines.problems.registry import without_problem
+    from ..graph.graph import Graph
+    from ..problems.registry import without_problem
 
     for branch in graph.branches.values() if problems and isinstance(graph, Graph) else ():
         if branch.problem is None and branch.description.get("factory") and not branch.default_measure:
@@ -209,44 +248,48 @@ def tell(found: object, data: object = None) -> None:
     if data is None:
         typer.echo(str(found))
         return
-    from contvines.export import json_text
+    from ..export import json_text
 
     typer.echo(json_text(data))
 
 
-def tell_result(found: "Graph | Chart", file: Path, details: bool) -> None:
+def tell_result(found: Graph | Chart, file: Path, details: bool) -> None:
     """What matters most of a result first; then its tables where they are short, or are asked for."""
-    from contvines.graph.graph import Graph
+    from ..graph.graph import Graph
 
-    if isinstance(found, Graph):
-        from contvines.graph.summary import summary
-
-        known = any(branch.stable is not None for branch in found.branches.values())
-        size, whole = (
-            len(found.branches),
-            f"{len(found.branches)} branches, {len(found.special)} special points",
-        )
-        first = (lambda brief: summary(found, brief=brief)) if known else None
-    else:
-        from contvines.loci.table import chart_summary
-
-        size, whole = len(found.loci), f"{len(found.loci)} loci, {len(found.points)} points"
-        first = (lambda brief: chart_summary(found)) if size > MANY else None
+    size = len(found.branches if isinstance(found, Graph) else found.loci)
     brief = size > MANY and not details
-    if first is not None:
-        typer.echo(first(brief) + "\n")
-    if brief and first is not None:
-        typer.echo(f"{whole}: contvines show {file}")
-        if found.message not in ("", "finished"):
-            typer.echo(fitted(found.message))
+    if isinstance(found, Graph):
+        from ..graph.summary import summary
+
+        whole = f"{size} branches, {len(found.special)} special points"
+        known = any(branch.stable is not None for branch in found.branches.values())
+        first = summary(found, brief=brief) if known else ""
+    else:
+        from ..loci.table import chart_summary
+
+        whole = f"{size} loci, {len(found.points)} points"
+        first = chart_summary(found) if size > MANY else ""
+    if first:
+        typer.echo(first + "\n")
+    if not (brief and first):
+        typer.echo(str(found))
         return
-    typer.echo(str(found))
+    typer.echo(f"{whole}: contvines show {file}")
+    if found.message not in ("", "finished"):
+        typer.echo(fitted(found.message))
+
+
+def present(found: Any, json: bool, plot: Path | None, size: tuple[float, float] | None) -> None:
+    """Print a result that has a text, ``to_dict`` and ``plot``, and draw it where a picture is wanted."""
+    tell(found, found.to_dict() if json else None)
+    draw(plot, lambda: found.plot(figsize=size), json)
 
 
 def draw(plot: Path | None, figure: Callable[[], Any], quiet: bool = False) -> None:
     """Draw a picture where one is wanted, and say where it is."""
     if plot is not None:
-        from contvines.plots.figures import save_figure
+        from ..plots.figures import save_figure
 
         save_figure(figure(), plot)
         say(f"drawn in {plot}", quiet)

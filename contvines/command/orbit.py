@@ -1,19 +1,22 @@
-"""`contvines orbit`: one orbit of a stored graph, or the start of a study."""
+"""`contvines orbit` and `prove`: one orbit of a stored graph, or the start of a study, shown, and theorems about orbits, with certificates."""
 
+from __future__ import annotations
+
+import json as json_
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from contvines.command.frame import draw, say, tell
-from contvines.command.options import JsonOption, PlotOption, TrustOption, argument, option
-from contvines.shared.number_text import complex_figures, figures
-from contvines.text_table import fitted
+import typer
+
+from ..shared.number_text import complex_figures, figures
+from ..shared.on_demand import needed
+from ..text_table import fitted
+from .frame import draw, held, interruptible, load_file, point_of, say, tell
+from .options import JsonOption, PlotOption, TrustOption, argument, interval, option
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from contvines.graph.graph import Graph
-    from contvines.loci.chart import Chart
+    pass
 
 
 def orbit(
@@ -34,15 +37,17 @@ def orbit(
     trust: TrustOption = False,
 ) -> None:
     """One orbit: its events, multipliers and margins."""
-    from contvines.plots.portrait import plot_portrait
+    from ..plots.portrait import plot_portrait
 
     if animate is not None:
-        from contvines.shared.animations import check_animation
+        from ..shared.animations import check_animation
 
         check_animation(animate)
 
     found = _orbit(file, label, trust)
-    tell(fitted(_describe(found)), _plain(found) if json else None)
+    about = _plain(found)
+    text = str(found) if "equilibrium" in about else _describe(about)
+    tell(fitted(text), about if json else None)
     draw(plot, lambda: plot_portrait(found))
     if animate is not None:
         animated = getattr(found, "animate", None)
@@ -53,73 +58,60 @@ def orbit(
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> object:
-    from contvines.command.study import read_study
-    from contvines.file_names import is_database
+    from ..file_names import is_database
 
     if not is_database(file) and file.suffix == ".toml":
-        from contvines.command.compose import first_orbit
-
-        if label is not None:
-            raise ValueError(
-                f"{label}: a study has no labels yet; leave the label out, or give a .vines file."
-            )
-        study = read_study(file)
-        return _solution(first_orbit(study), study.within)
-    from contvines.branches.special_point import SpecialPoint
-    from contvines.graph.graph import Graph
-    from contvines.loci.locus import PlanePoint
-    from contvines.problems.registry import without_problem
-    from contvines.store import load
+        return _solution(*_first_orbit(file, label))
+    from ..branches.special_point import SpecialPoint
+    from ..graph.graph import Graph
+    from ..problems.registry import without_problem
+    from ..store import load
 
     graph = load(file, trust=trust)
     if label is None:
-        raise ValueError(f"which orbit of {file}? Give one of the labels {', '.join(_labels(graph))}.")
-    name, _, place = label.partition(":")
-    thing = graph[name]
-    if isinstance(thing, SpecialPoint | PlanePoint):
-        if place:
-            raise ValueError(f"{label}: {name} is a single point; leave out :{place}.")
-        if isinstance(thing, SpecialPoint) and isinstance(graph, Graph) and thing.problem is None:
-            raise ValueError(without_problem(name, graph.branches[thing.branch].description))
-        return thing.orbit
-    last = len(thing) - 1
-    if place and not (place.isdigit() and int(place) <= last):
-        raise ValueError(
-            f"{label}: the points of {name} are numbered from 0 to {last}; for example {name}:{last // 2}."
+        labels = (
+            (*graph.special, *graph.branches) if isinstance(graph, Graph) else (*graph.points, *graph.loci)
         )
-    return thing.orbit(int(place or 0))
+        raise ValueError(f"which orbit of {file}? Give one of the labels {', '.join(labels)}.")
+    name = label.partition(":")[0]
+    thing, place = point_of(graph, label)
+    if place is not None or hasattr(thing, "__len__"):
+        return thing.orbit(place or 0)
+    if isinstance(thing, SpecialPoint) and isinstance(graph, Graph) and thing.problem is None:
+        raise ValueError(without_problem(name, graph.branches[thing.branch].description))
+    return thing.orbit
 
 
-def _labels(graph: "Graph | Chart") -> list[str]:
-    """All labels of a graph or chart."""
-    from contvines.graph.graph import Graph
+def _first_orbit(file: Path, label: str | None) -> tuple[Any, tuple[float, float]]:
+    """The start of a study and its interval; a label is refused."""
+    from .compose import first_orbit
+    from .study import read_study
 
-    if isinstance(graph, Graph):
-        return [*graph.special, *graph.branches]
-    return [*graph.points, *graph.loci]
+    if label is not None:
+        raise ValueError(f"{label}: a study has no labels yet; leave the label out, or give a .vines file.")
+    study = read_study(file)
+    return first_orbit(study), study.within
 
 
 def _solution(start: object, within: tuple[float, float]) -> object:
     """The start of a study: an orbit as it is; of a problem (equilibria, cycles of maps) its first solution."""
-    from contvines.problems.abilities import Started
+    from ..problems.abilities import Started
 
     if not isinstance(start, Started):
         return start
-    from contvines.continuation.engine import Engine
-    from contvines.continuation.settings import Settings
-    from contvines.continuation.starts import problem_and_start, solve_start
+    from ..continuation.engine import Engine
+    from ..continuation.settings import Settings
+    from ..continuation.starts import problem_and_start, solve_start
 
     problem, u, p = problem_and_start(start, None)
     first = solve_start(Engine(problem, within, Settings()), u, p)
     return problem.orbit(first.u, first.p)
 
 
-def _plain(found: object) -> dict[str, Any]:
-    to_dict: Callable[[], dict[str, Any]] | None = getattr(found, "to_dict", None)
-    if to_dict is not None:
-        return to_dict()
-    names = [n for n in ("parameter", "value", "u", "points") if hasattr(found, n)]
-    return {n: getattr(found, n) for n in names}
+def _plain(found: Any) -> dict[str, Any]:
+    if hasattr(found, "to_dict"):
+        return found.to_dict()
+    return {n: getattr(found, n) for n in ("parameter", "value", "u", "points") if hasattr(found, n)}
 
 
 # which measure's unit an event's number has
@@ -133,62 +125,219 @@ EVENTS = {
 }
 
 
-def _stability(about: dict[str, Any]) -> str:
-    """Whether a motion is stable, or why that is undecided."""
-    from contvines.shared.stability import marginal_text
+def _describe(about: dict[str, Any]) -> str:
+    """An orbit as a readable text, from what --json prints."""
+    from ..graph.shortening import short_word
+    from ..graph.table import with_unit
+    from ..shared.stability import marginal_text
+    from ..text_table import Table, terminal_width
 
-    if about["stable"] is None:
-        return marginal_text(complex(re, im) for re, im in about["multipliers"])
-    return "stable" if about["stable"] else "unstable"
-
-
-def _describe(found: object) -> str:
-    """An orbit as a readable text, from the same object that --json prints."""
-    from contvines.graph.shortening import short_word
-    from contvines.graph.table import with_unit
-    from contvines.text_table import Table, terminal_width
-
-    about = _plain(found)
-    if "equilibrium" in about:
-        return str(found)
-    lines = []
+    lines, units, margins = [], about.get("units", {}), about.get("margins")
+    pairs = about.get("multipliers", [])
+    multipliers = [complex(*pair) for pair in pairs]
+    stable = about.get("stable")
+    stability = marginal_text(multipliers) if stable is None and pairs else "stable" if stable else "unstable"
     if "word" in about:
         nature = "real" if about["real"] else "virtual: no machine follows it"
         word = short_word(about["word"]) or about.get("rest", "stuck")
         lines.append(f"{word}  k = {about['periods']}  ({nature})")
     if "states" in about:  # a cycle of a flow
-        lines.append(f"cycle of period {figures(about['period'])}  ({_stability(about)})")
-    parameters = about.get("parameters", {})
-    if parameters:
-        units = about.get("units", {})
-        lines.append(
-            "  " + "  ".join(f"{k} = {v:.7g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
-        )
-    nodes = about.get("nodes", [])
-    if nodes:
-        names = list(nodes[0])
-        units = about.get("units", {})
+        lines.append(f"cycle of period {figures(about['period'])}  ({stability})")
+    if parameters := about.get("parameters"):
+        told = (f"{k} = {v:.7g} {units.get(k, '')}".rstrip() for k, v in parameters.items())
+        lines.append(f"  {'  '.join(told)}")
+    if nodes := about.get("nodes"):
         head = tuple(
             with_unit(name, None if name == "phase" else units.get(name) or units.get(EVENTS.get(name, "")))
-            for name in names
+            for name in nodes[0]
         )
-        rows = [tuple(figures(n[k]) if isinstance(n[k], float) else str(n[k]) for k in names) for n in nodes]
+        rows = [
+            tuple(figures(x) if isinstance(x, float) else str(x) for x in node.values()) for node in nodes
+        ]
         width = terminal_width()
         lines += [f"  {line}" for line in Table(head, rows, right=head).lines(width and width - 2)]
     if "multipliers" in about:
-        pairs = about["multipliers"]
-        text = complex_figures(complex(re, im) for re, im in pairs)
+        text = complex_figures(multipliers)
         if any(math.isnan(part) for pair in pairs for part in pair):
             text = "not defined at a graze"
         elif text and "word" in about:
-            text = f"{text}  ({_stability(about)})"
+            text = f"{text}  ({stability})"
         lines.append(f"  multipliers: {text or 'none'}")
-    if about.get("margins"):
-        smallest = min(about["margins"], key=lambda m: m["value"])
+    if margins:
+        smallest = min(margins, key=lambda m: m["value"])
         lines.append(
             f"  smallest margin: {figures(smallest['value'])} ({smallest['kind']}, segment {smallest['segment']}) "
-            f"of {len(about['margins'])}"
+            f"of {len(margins)}"
         )
-    if not lines:
-        lines = [f"{k}: {v}" for k, v in about.items()]
-    return "\n".join(lines)
+    return "\n".join(lines or [f"{k}: {v}" for k, v in about.items()])
+
+
+MANY = 2000  # boxes: checking more of them is announced
+
+
+def prove(
+    file: Annotated[
+        Path,
+        argument("FILE.vines|STUDY.toml", "A result, or a study, whose first orbit is proved."),
+    ],
+    labels: Annotated[
+        list[str] | None,
+        argument(
+            "LABEL",
+            "With FILE.vines: special points (PD1), orbits (B1:12), branches (B1); by default all special points.",
+        ),
+    ] = None,
+    json: JsonOption = False,
+    check: Annotated[
+        bool,
+        option("--check", "Check the certificates in the file with an independent program."),
+    ] = False,
+    bits: Annotated[
+        int | None,
+        option("--bits", "Precision in bits at the beginning; raised where that helps.", min=64, max=4096),
+    ] = None,
+    within: Annotated[
+        tuple[str, str] | None,
+        option("--within LOW HIGH", "With branches: only this interval of the parameter."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        option("-o, --output FILE.json", "Also write the certificates to a file."),
+    ] = None,
+    trust: TrustOption = False,
+) -> None:
+    """Prove that orbits exist, are real or virtual, stable or unstable.
+
+    Everything is computed in ball arithmetic, so each answer is a theorem
+    about the machine with exactly these decimals as parameters, or says which
+    step failed and what would help. Certificates are kept in FILE.vines;
+    --check verifies them (or those of a certificate file) with nothing but
+    the certificate and another arithmetic.
+    """
+    names = list(dict.fromkeys(labels or []))
+    if check:
+        _check(file, names, json)
+        return
+    if file.suffix == ".toml":
+        proofs = _of_study(file, names, bits)
+    else:
+        with held(file, quiet=False):
+            proofs = _of_file(file, names, bits, trust, within)
+    if json:
+        about = {label: {"label": label, **proof.to_dict()} for label, proof in proofs.items()}
+        alone = len(names) == 1 or file.suffix == ".toml"
+        typer.echo(json_.dumps(next(iter(about.values())) if alone else about, indent=1))
+    else:
+        for label, proof in proofs.items():
+            typer.echo(fitted(f"{label}: {proof}"))
+    if output is not None:
+        made = {label: proof.certificate() for label, proof in proofs.items() if proof.existence}
+        output.write_text(json_.dumps(made, indent=1) + "\n", encoding="utf-8")
+
+
+def _of_study(file: Path, labels: list[str], bits: int | None) -> dict[str, Any]:
+    orbit, _ = _first_orbit(file, next(iter(labels), None))
+    if not hasattr(orbit, "prove"):
+        raise ValueError(
+            f"{file}: its machine offers no proofs, for flights of declared machines have no closed form; machines of orbits that have one do"
+        )
+    return {"start": orbit.prove(bits=bits)}
+
+
+def _of_file(
+    file: Path, labels: list[str], bits: int | None, trust: bool, within: tuple[str, str] | None
+) -> dict[str, Any]:
+    from ..graph.proving import prove as prove_labels
+    from ..graph.proving import subject
+    from ..store import Store
+
+    graph = load_file(file, trust)
+    if not (labels or graph.special):
+        raise ValueError(f"{file} has no special points to prove; give branches or orbits, B1 or B1:12.")
+    if within is not None and not (labels and all(label in graph.branches for label in labels)):
+        raise ValueError(
+            f"--within {within[0]} {within[1]} is for branches; name them, {next(iter(graph.branches))} for one."
+        )
+    options = {} if within is None else {"within": interval("--within", within, graph.parameter, graph.units)}
+    for label in labels:
+        subject(graph, label)
+    proofs: dict[str, Any] = {}
+    note = f"what is proved is kept in {file}; name the labels that are missing to go on"
+    with Store.open(file, write=True) as store, interruptible(note):
+        for label in labels or list(graph.special):
+            proofs |= prove_labels(graph, [label], bits=bits, **options)
+            with store.transaction():
+                store.put("proof", label, graph.proofs[label])
+        store.tidy()
+    return proofs
+
+
+def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
+    """The certificates kept in a file, by label."""
+    from ..file_names import is_database
+    from ..store import printable
+
+    if is_database(file):
+        kept = load_file(file, problems=False).proofs
+        found = {label: proof["certificate"] for label, proof in kept.items()}
+    else:
+        try:
+            found = json_.loads(file.read_text(encoding="utf-8"))
+        except (ValueError, RecursionError):  # no JSON, thousands of digits, lists in lists without end
+            raise ValueError(f"{file}: this is neither a .vines file nor a file of certificates.") from None
+        if isinstance(found, dict) and "format" in found:
+            found = {"certificate": found}
+        if not isinstance(found, dict):
+            raise ValueError(f"{file}: this is no file of certificates.")
+        found = printable(found)
+    for label in labels:
+        if label not in found:
+            raise ValueError(
+                f"{label}: {file} holds no proof of it; contvines prove {file} {label} makes one."
+            )
+    found = {label: found[label] for label in labels or found}
+    if not found:
+        raise ValueError(f"{file} holds no certificates; contvines prove {file} makes them.")
+    return found
+
+
+def _check(file: Path, labels: list[str], json: bool) -> None:
+    needed("mpmath", "proofs")
+    from orbits.proofs.checker import Refused
+    from orbits.proofs.checker import check as verify
+
+    verdicts: dict[str, dict[str, Any]] = {}
+    for label, certificate in _certificates(file, labels).items():
+        if (boxes := _boxes(certificate)) > MANY:
+            typer.echo(f"{label}: {boxes} boxes to check, each takes milliseconds; Ctrl-C stops", err=True)
+        try:
+            if certificate is not None:
+                verify(certificate)
+                verdicts[label] = {"verified": True, "claims": _claims(certificate)}
+            else:
+                verdicts[label] = {"verified": None, "why": "nothing was proved"}
+        except Refused as refusal:
+            verdicts[label] = {"verified": False, "why": str(refusal)}
+    if json:
+        typer.echo(json_.dumps(verdicts, indent=1))
+    else:
+        for label, verdict in verdicts.items():
+            said = "verified" if verdict["verified"] else f"NOT verified: {verdict['why']}"
+            typer.echo(fitted(f"{label}: {said}"))
+    if any(verdict["verified"] is False for verdict in verdicts.values()):
+        raise typer.Exit(1)
+
+
+def _boxes(certificate: object) -> int:
+    """How many boxes a certificate, or those of a branch's stretches, have; none if it is no certificate."""
+    if isinstance(certificate, list):
+        return sum(_boxes(one) for one in certificate if isinstance(one, dict))
+    boxes = certificate.get("boxes") if isinstance(certificate, dict) else None
+    return len(boxes) if isinstance(boxes, list) else 0
+
+
+def _claims(certificate: object) -> object:
+    """What a certificate claims; of a branch the claims of its stretches in turn."""
+    if isinstance(certificate, list):
+        return [_claims(one) for one in certificate]
+    return certificate["claims"] if isinstance(certificate, dict) else None

@@ -4,21 +4,25 @@ The file is run when the study is read: the user has named it. It lies in the st
 has not come with it.
 """
 
-from collections.abc import Mapping
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import Field
 
-from contvines.command.own_code import own_code
-from contvines.command.schema import FlowSections, PageSections, given, model_section, study_model, text
-from contvines.command.study_data import Sort, Study, wrong_intervals
-from contvines.command.study_errors import StudyError, refuse, validated
 from orbits.machines.names import PAGES, STRUCTURE
 
+from ..shared.files import module_of, names_of
+from .schema import FlowSections, PageSections, study_model, text, values_of
+from .study_data import Sort, Study, StudyError, refuse, refused, validated, wrong_intervals
+
 if TYPE_CHECKING:
-    from contvines.flows.problem import FlowProblem
     from orbits.machines.page.machine import Machine
+
+    from ..flows.problem import FlowProblem
 
 F = TypeVar("F", PageSections, FlowSections)
 
@@ -30,15 +34,16 @@ def read_own(data: dict[str, Any], path: Path) -> Study:
     ------
     StudyError, OSError
     """
-    from contvines.flows.files import load_flow
+    from orbits.machines.page.machine import Machine
+
+    from ..flows.files import load_flow
 
     said = str(data["model"]["name"])
     if said == STRUCTURE:
-        machine, plain = _structure(data, path)
-        return _page(plain, path, machine)
+        machine, data = _structure(data, path)
+        return _page(data, path, machine)
     if said in PAGES:
         from orbits.machines.names import page_machine
-        from orbits.machines.page.machine import Machine
 
         machine = page_machine(said)
         assert isinstance(machine, Machine)
@@ -62,7 +67,7 @@ def _section(data: dict[str, Any], name: str) -> dict[str, Any]:
     return section if isinstance(section, dict) else {}
 
 
-def _structure(data: dict[str, Any], path: Path) -> tuple["Machine", dict[str, Any]]:
+def _structure(data: dict[str, Any], path: Path) -> tuple[Machine, dict[str, Any]]:
     """The structure of a study, and the study without its matrices and elements."""
     from orbits.machines.parameters import ParameterError
     from orbits.machines.structure import GIVEN, MATRICES, MEANT, structure
@@ -74,12 +79,8 @@ def _structure(data: dict[str, Any], path: Path) -> tuple["Machine", dict[str, A
                 f'[model] {name} is missing; for example {name} = [[2, -1], [-1, 2]], "{name}.csv" or "model.mat:{name[0].upper()}".'
             )
     spec = {name: model[name] for name in (*MATRICES, *GIVEN) if name in model}
-    within = go.get("within")
-    highest = [
-        x
-        for x in (within if isinstance(within, list) else [])
-        if isinstance(x, float | int) and go.get("parameter") == "frequency"
-    ]
+    within = go.get("within") if go.get("parameter") == "frequency" else None
+    highest = [x for x in (within if isinstance(within, list) else []) if isinstance(x, float | int)]
     said = start.get("frequency", model.get("frequency", sum(highest) / len(highest) if highest else None))
     if isinstance(said, float | int) and not isinstance(said, bool):
         spec |= {"frequency": float(said), "highest": spec.get("highest", MEANT * max([said, *highest]))}
@@ -106,18 +107,16 @@ def _values(base: type[F], known: Mapping[str, float], data: dict[str, Any]) -> 
     kinds: dict[str, Any] = {
         name: Annotated[float, text(f"a number, for example {value:g}")] for name, value in known.items()
     }
-    settings: dict[str, Any] = {
-        "name": (Annotated[str, Field(pattern="|".join([r"\.py", STRUCTURE, *PAGES]))], ...)
-    }
-    settings = {**{name: (kind | None, None) for name, kind in kinds.items()}, **settings}
+    settings: dict[str, Any] = {name: (kind | None, None) for name, kind in kinds.items()}
+    settings["name"] = (Annotated[str, Field(pattern="|".join([r"\.py", STRUCTURE, *PAGES]))], ...)
     file = validated(study_model(base, settings, kinds), data)
-    return file, {**given(model_section(file), kinds), **given(file.start, kinds)}
+    return file, values_of(file, kinds)
 
 
-def _flow(data: dict[str, Any], path: Path, flow: "FlowProblem") -> Study:
+def _flow(data: dict[str, Any], path: Path, flow: FlowProblem) -> Study:
     known = dict(flow.values.values)
     file, values = _values(FlowSections, known, data)
-    parameters = {**known, **{name: float(value) for name, value in values.items()}}
+    parameters = {**known, **values}
     wrong = wrong_intervals(file, parameters[file.continue_.parameter], lambda name, value: "")
     state, box, size = file.start.state, file.start.box, len(flow.x0)
     if state is not None and len(state) != size:
@@ -128,13 +127,12 @@ def _flow(data: dict[str, Any], path: Path, flow: "FlowProblem") -> Study:
     elif box is not None and not all(low < high for low, high in box):
         wrong.append(f"[start] box = {box!r}: each pair is (low, high), low < high.")
     refuse(wrong)
-    flow.box = (
-        None if box is None else [(low, high) for low, high in box]
-    )  # of charts, and of the look after a diagram, as well
+    # of charts, and of the look after a diagram, as well
+    flow.box = None if box is None else [(low, high) for low, high in box]
     return Study.of(path, Sort.FLOW, str(data["model"]["name"]), parameters, file, flow=flow)
 
 
-def _counted(data: dict[str, Any], machine: "Machine") -> dict[str, Any]:
+def _counted(data: dict[str, Any], machine: Machine) -> dict[str, Any]:
     """A study of a machine with units in which quantities, as `"15 mm"`, are numbers in these units.
 
     Raises
@@ -160,20 +158,20 @@ def _counted(data: dict[str, Any], machine: "Machine") -> dict[str, Any]:
             return [number(name, one, where) for one in said]
         if isinstance(said, dict):  # of [survey] vary
             return {key: number(name, one, where) for key, one in said.items()}
-        if not isinstance(said, str) or name not in units:
+        if not (isinstance(said, str) and isinstance(name, str) and name in units):
             return said
         try:
-            return counted(str(name), said, units[str(name)])
+            return counted(name, said, units[name])
         except QuantityError as error:
             raise StudyError(f"{where}{error}.") from None
 
-    found = dict(data)
-    if found.get("units") == "si":
-        del found["units"]
+    def numbers(section: dict[str, Any], where: str) -> dict[str, Any]:
+        return {name: number(name, said, where) for name, said in section.items()}
+
+    found = {name: value for name, value in data.items() if name != "units"}
     for section in ("model", "start"):
         if section in found:
-            own = _section(data, section)
-            found[section] = {name: number(name, said, f"[{section}] ") for name, said in own.items()}
+            found[section] = numbers(_section(data, section), f"[{section}] ")
     for section in ("continue", "chart"):
         own = _section(data, section)
         if "within" in own:
@@ -181,12 +179,11 @@ def _counted(data: dict[str, Any], machine: "Machine") -> dict[str, Any]:
             found[section] = {**own, "within": within}
     survey = _section(data, "survey")
     if isinstance(survey.get("vary"), dict):
-        vary = {name: number(name, said, "[survey] vary.") for name, said in survey["vary"].items()}
-        found["survey"] = {**survey, "vary": vary}
+        found["survey"] = {**survey, "vary": numbers(survey["vary"], "[survey] vary.")}
     return found
 
 
-def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
+def _page(data: dict[str, Any], path: Path, machine: Machine) -> Study:
     data = _counted(data, machine)
     file, values = _values(PageSections, machine.parameters, data)
 
@@ -197,7 +194,7 @@ def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
             return f": {error}."
         return ""
 
-    parameters = {**machine.parameters, **{key: float(value) for key, value in values.items()}}
+    parameters = {**machine.parameters, **values}
     over, (low, high) = file.continue_.parameter, file.continue_.within
     if over not in values and not low <= parameters[over] <= high:
         parameters[over] = 0.5 * (low + high)
@@ -205,9 +202,11 @@ def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
         refuse([f"[model]{alone.removeprefix(':')}"])
     wrong = wrong_intervals(file, parameters[over], refusal)
     known = (*machine.states, "phase")
-    for key in file.start.state or {}:
-        if key not in known:
-            wrong.append(f"[start] state has {key!r}; it may have {', '.join(known)}.")
+    wrong += [
+        f"[start] state has {key!r}; it may have {', '.join(known)}."
+        for key in file.start.state or {}
+        if key not in known
+    ]
     if not wrong:
         try:
             machine.word(file.start.word or "", machine.vector(parameters))
@@ -217,3 +216,68 @@ def _page(data: dict[str, Any], path: Path, machine: "Machine") -> Study:
     return Study.of(
         path, Sort.PAGE, str(data["model"]["name"]), parameters, file, model=machine, loose=parameters
     )
+
+
+# ---------------------------------------------------------------------- Python files
+def own_code(study: Path, file: str, place: str) -> Path:
+    """A Python file that a study names, in the study's folder or in a folder inside it.
+
+    Parameters
+    ----------
+    study : Path
+        Of the study.
+    file : str
+        As the study names it.
+    place : str
+        The field of the study with its value, for the refusal.
+
+    Raises
+    ------
+    ValueError
+        If the name leads out of the study's folder. (A link in the folder may lead out: somebody has put it there.)
+    """
+    name = Path(file)
+    if name.is_absolute() or ".." in name.parts:
+        raise ValueError(
+            f"{place}: a study runs Python files of its own folder (or of folders in it) only; put {name.name}, or a link to it, "
+            f'beside {study.name}; for example "{name.name}"'
+        )
+    return study.parent / name
+
+
+def load_kinds(study: Path, said: str) -> tuple[Sequence[Any], str]:
+    """The built-in kinds with those of a file beside the study, and a digest of the file; the file is run.
+
+    Parameters
+    ----------
+    study : Path
+    said : str
+        File and name, ``kinds = "file.py:name"`` in [continue]; the name is that of a :class:`contvines.Kind`, or of a list of them.
+
+    Raises
+    ------
+    ValueError
+        If there is no such file beside the study, it does not run, or has no kinds of that name.
+    """
+    from ..bifurcation.kind import Kind
+    from ..bifurcation.kinds import KINDS, checked
+
+    place = f"[continue] kinds = {said!r}"
+    file, _, name = said.rpartition(":")
+    path = own_code(study, file, place)
+    if not (file and name and path.is_file()):
+        raise ValueError(
+            f'{place}: name a file beside the study and a kind in it, for example kinds = "saddles.py:neutral"'
+        )
+    with refused(place):
+        module = module_of(path)
+    found = getattr(module, name, None)
+    own = [found] if isinstance(found, Kind) else list(found) if isinstance(found, list | tuple) else []
+    if not own:
+        known = ", ".join(names_of(module, Kind)) or "none"
+        raise ValueError(f"{place}: {path} has no kind {name!r}; it has {known}")
+    try:
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+        return checked([*(kind for kind in KINDS if kind not in own), *own]), digest
+    except ValueError as error:
+        raise ValueError(f"[continue] {error}") from None

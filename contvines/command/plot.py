@@ -1,15 +1,22 @@
-"""`contvines plot`: pictures of a stored graph."""
+"""`contvines plot`: pictures of a stored graph, and lines to compare a response with: the bare oscillator, a tuned absorber of the same mass, a friction damper."""
+
+from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 import typer
 
-from contvines.command.compare import check_compared, compared
-from contvines.command.frame import beside, say_state
-from contvines.command.options import (
+from orbits.design.references import NAMES, reference
+from orbits.machines.base import Model
+
+from ..shared.number_text import figures
+from .frame import beside, say_state
+from .options import (
     CompareOption,
     FileArgument,
     SizeOption,
@@ -21,6 +28,14 @@ from contvines.command.options import (
     picture,
 )
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from orbits.machines.varying import Varying
+
+    from ..graph.graph import Graph
+
 
 class Picture(StrEnum):
     """What `plot` draws."""
@@ -31,6 +46,11 @@ class Picture(StrEnum):
 
 
 GENERAL = ("--output", "--size", "--style", "--trust")  # options for every picture
+DRAWS = {
+    Picture.diagram: "draws all branches",
+    Picture.multipliers: "draws over the parameter",
+    Picture.network: "draws boxes and arrows",
+}
 
 
 class Colors(StrEnum):
@@ -79,11 +99,18 @@ def plot(
     trust: TrustOption = False,
 ) -> None:
     """Draw a result: the diagram, the multipliers of a branch, or the network of branches."""
-    from contvines.plots.figures import check_style, save_figure
+    from ..loci.chart import Chart
+    from ..plots.figures import check_style, save_figure
+    from ..store import load
 
-    check_compared(compare, True)
-    asked = given(context)
-    _refuse_ignored(kind, asked)
+    asked = {name: line for name, line in given(context).items() if name not in GENERAL}
+    for name, line in asked.items():
+        other = Picture.multipliers if name == "--branch" else Picture.diagram
+        if kind is not other and name != "--kind":
+            raise ValueError(
+                f"{line}: --kind {kind.value} {DRAWS[kind]} and has no use for it; leave {name} out, "
+                f"or choose --kind {other.value}."
+            )
     target = output or beside(file, ".png")
     picture(target)
     check_style(style)
@@ -92,68 +119,145 @@ def plot(
             raise ValueError(
                 f"{name} {pair[0]:g} {pair[1]:g}: give the lower number first, then the higher one."
             )
-    from contvines.loci.chart import Chart
-    from contvines.store import load
-
     graph = load(file, trust=trust)
+    look: dict[str, Any] = {"figsize": size, "style": style}
     if isinstance(graph, Chart):
-        from contvines.plots.chart import plot_chart
+        from ..plots.chart import plot_chart
 
-        ignored = next((line for name, line in asked.items() if name not in (*GENERAL, "--no-legend")), None)
-        if ignored is not None:
-            raise ValueError(
-                f"{ignored}: {file} holds a chart, whose picture has no use for it; leave {ignored.split()[0]} out."
-            )
-        save_figure(plot_chart(graph, figsize=size, style=style, legend=legend), target)
-        typer.echo(str(target))
-        return
-    say_state(graph, file)
-    if not graph.branches:
-        raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
-    if kind is Picture.diagram:
-        figure = compared(
-            graph,
-            compare,
-            x,
-            y,
-            words=words,
-            color=(color or Colors.branch).value,
-            marks=True if marks is None else [] if marks == "none" else marks.split(","),
-            legend=legend,
-            xlim=xlim,
-            ylim=ylim,
-            inset=True if inset is None else inset,
-            figsize=size,
-            style=style,
-        )
-    elif kind is Picture.network:
-        from contvines.plots.network import plot_network
-
-        figure = plot_network(graph, figsize=size, style=style)
+        for name, line in asked.items():
+            if name != "--no-legend":
+                raise ValueError(
+                    f"{line}: {file} holds a chart, whose picture has no use for it; leave {name} out."
+                )
+        figure = plot_chart(graph, legend=legend, **look)
     else:
-        from contvines.plots.multipliers import plot_multipliers
-
+        say_state(graph, file)
+        if not graph.branches:
+            raise ValueError(f"{file} has no finished branch yet; run the command that made it again.")
         label = branch or next(iter(graph.branches))
         if label not in graph.branches:
             raise ValueError(
                 f"--branch {label}: there is no such branch in {file}; it has {', '.join(graph.branches)}."
             )
-        figure = plot_multipliers(graph.branches[label], figsize=size, style=style)
+        if kind is Picture.diagram:
+            look |= {"words": words, "color": (color or Colors.branch).value, "legend": legend}
+            look |= {"xlim": xlim, "ylim": ylim, "inset": inset is not False}
+            look["marks"] = True if marks is None else [] if marks == "none" else marks.split(",")
+            figure = compared(graph, compare, x, y, **look)
+        elif kind is Picture.network:
+            from ..plots.network import plot_network
+
+            figure = plot_network(graph, **look)
+        else:
+            from ..plots.multipliers import plot_multipliers
+
+            figure = plot_multipliers(graph.branches[label], **look)
     save_figure(figure, target)
     typer.echo(str(target))
 
 
-def _refuse_ignored(kind: Picture, asked: dict[str, str]) -> None:
-    """Options that this kind of picture would ignore are refused."""
-    why = {
-        Picture.diagram: "draws all branches",
-        Picture.multipliers: "draws over the parameter",
-        Picture.network: "draws boxes and arrows",
-    }
-    for name, line in asked.items():
-        other = Picture.multipliers if name == "--branch" else Picture.diagram
-        if kind is not other and name not in (*GENERAL, "--kind"):
-            raise ValueError(
-                f"{line}: --kind {kind.value} {why[kind]} and has no use for it; leave {name} out, "
-                f"or choose --kind {other.value}."
-            )
+# ---------------------------------------------------------------------- what a response is compared with
+LOOKS = {
+    "bare": ("0.35", (0, (1, 1.2))),
+    "tuned": ("#a6611a", (0, (6, 1.5, 1, 1.5))),
+    "friction": ("#7b3294", (0, (3, 1.2))),
+}
+SHOWN = ("max_abs_q1", "amplitude")
+POINTS = 600
+
+
+def compared(
+    graph: Graph, kinds: Sequence[str] | None, x: str | None = None, y: str | None = None, **options: Any
+) -> Figure:
+    """The picture of a graph with the lines to compare it with; options as for `contvines.plots.diagram.plot_diagram`."""
+    from ..plots.diagram import draw_diagram, plot_diagram
+    from ..plots.figures import new_axes, styled
+
+    if not kinds:
+        return plot_diagram(graph, x, y, **options)
+    with styled(options.pop("style", None)):
+        figure, axes = new_axes(None, figsize=options.pop("figsize", None))
+        draw_compared(axes, graph, kinds, x, y)
+        limits = options.pop("xlim", None), options.pop("ylim", None)
+        draw_diagram(axes, graph, x, y, own=True, limits=limits, **options)
+        return figure
+
+
+def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None, y: str | None) -> None:
+    """Draw the lines on axes on which the graph is drawn next.
+
+    Raises
+    ------
+    ValueError
+        If the graph shows no response of an oscillator over its parameter.
+    """
+    from orbits.problem import OrbitProblem
+
+    from ..graph.measures import default_measure
+
+    shown, over = y or default_measure(graph), x or graph.parameter
+    problem = next((branch.problem for branch in graph.branches.values() if branch.problem is not None), None)
+    if (
+        not isinstance(problem, OrbitProblem)
+        or not isinstance(problem.model, Model)
+        or "damping" not in problem.model.parameter_names
+        or shown not in SHOWN
+        or over != graph.parameter
+    ):
+        raise ValueError(
+            f"--compare {kinds[0]}: this goes with the displacement of an oscillator ({' or '.join(SHOWN)}) over the parameter; "
+            f"here {shown} is drawn over {over}."
+        )
+    values = np.linspace(*graph.within, POINTS)
+    params = np.atleast_2d(problem.values(values))
+    for kind in kinds:
+        color, dashes = LOOKS[kind]
+        response = response_of(kind, problem.model, params)
+        axes.plot(
+            values, response, color=color, linestyle=dashes, linewidth=1.4, zorder=1.7, label=NAMES[kind]
+        )
+
+
+def response_of(kind: str, model: Model, params: np.ndarray) -> np.ndarray:
+    """The response of a kind at some parameters (m, P), in the machine's unit, shape (m,)."""
+    return reference(kind, model, params) * model.gauge("length", params)
+
+
+def peaks_compared(
+    model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]
+) -> dict[str, tuple[float, float]]:
+    """The largest response of each kind over an interval of a parameter, and where, in the machine's units.
+
+    Raises
+    ------
+    ValueError
+        If the machine is declared: it has no closed forms.
+    """
+
+    if not isinstance(model, Model):
+        raise ValueError(f"the machine {model.name!r} has no closed forms to compare with")
+
+    def grid(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+        values = np.linspace(low, high, POINTS)
+        return values, np.array([model.vector_at(over, float(value)) for value in values])
+
+    found, whole = {}, grid(*within)
+    for kind in kinds:
+        values, params = whole
+        for narrower in (True, True, False):  # between the neighbours of the largest
+            response = response_of(kind, model, params)
+            place = int(response.argmax())
+            found[kind] = float(response[place]), float(values[place])
+            if narrower:
+                values, params = grid(values[max(place - 1, 0)], values[min(place + 1, POINTS - 1)])
+    return found
+
+
+def compared_text(model: Varying, over: str, within: tuple[float, float], kinds: Sequence[str]) -> str:
+    """The largest responses to compare with, as a sentence."""
+    unit, place = model.units.get(SHOWN[0], ""), model.units.get(over, "")
+    said = [
+        f"{NAMES[kind]} {figures(peak)} {unit} at {over} = {figures(at)} {place}".replace("  ", " ").rstrip()
+        for kind, (peak, at) in peaks_compared(model, over, within, kinds).items()
+    ]
+    return f"to compare with, at most: {'; '.join(said)}"

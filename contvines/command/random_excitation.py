@@ -9,19 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from contvines.command.frame import draw, say, tell
-from contvines.command.measured import Scales, Series
-from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option
-from contvines.command.study_data import Sort, Study
-from contvines.command.transient_table import written
-from contvines.continuation.settings import Settings
-from contvines.shared.number_text import figures
-from contvines.text_table import Table, titled
+from ..continuation.settings import Settings
+from ..shared.number_text import figures
+from ..text_table import Table, titled
+from .frame import present
+from .measured import Scales, Series, written
+from .options import JsonOption, PlotOption, SizeOption, argument, option
+from .study_data import Sort, Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from orbits.design.random_excitation import RandomResponse
 
 WORDS = {
     "oscillator": "displacement of the oscillator from its base",
@@ -61,33 +59,36 @@ def random(
     [random] psd = [[2, 0.1], [20, 0.1]] are frequencies [Hz] and densities of the base's acceleration [(m/s^2)^2/Hz], linear between; of a study without units
     frequencies in omega_0 and densities per omega_0. Of a declared machine name the parameter that is random, too. The same seed gives the same numbers.
     """
-    from contvines.command.compose import machine
-    from contvines.command.study import read_study
-    from contvines.export import check_target
+    from ..export import check_target
+    from .compose import machine
+    from .study import read_study
 
     if output is not None:
         check_target(output, "csv")
     read = read_study(study)
     machine(read)
     found = _computed(read, seed)
-    tell(found, found.as_json() if json_ else None)
-    if output is not None:
-        written(output, found.series)
-        say(f"kept in {output}", json_)
-    draw(plot, lambda: found.draw(size), json_)
+    written(output, found.series, json_)
+    present(found, json_, plot, size)
 
 
 @dataclass
 class Found:
-    """A random response in the study's units."""
+    """A random response in the study's units.
+
+    Attributes
+    ----------
+    title : str
+    rows : list of (name, value, standard error, unit, words)
+    series : list of (name, unit, float array)
+        Frequencies, and the densities of the responses.
+    """
 
     title: str
     rows: list[tuple[str, float, float, str, str]]
-    frequencies: np.ndarray
-    unit: str
-    densities: dict[str, tuple[np.ndarray, str]]
+    series: Series
 
-    def as_json(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Values and standard errors by name, and their units."""
         return {
             **{name: {"value": value, "error": error} for name, value, error, _, _ in self.rows},
@@ -96,20 +97,15 @@ class Found:
 
     def __str__(self) -> str:
         rows = [(name, *_rounded(value, error), unit, words) for name, value, error, unit, words in self.rows]
-        table = Table(("figure", "value", "+-", "unit", "what it is"), rows)
-        return titled(self.title, table)
+        return titled(self.title, Table(("figure", "value", "+-", "unit", "what it is"), rows))
 
-    @property
-    def series(self) -> Series:
+    def plot(self, figsize: tuple[float, float] | None = None) -> Figure:
         """The densities over the frequency."""
-        columns = [(name, unit, values) for name, (values, unit) in self.densities.items()]
-        return [("frequency", self.unit, self.frequencies), *columns]
+        from ..plots.measured import plot_densities
 
-    def draw(self, size: tuple[float, float] | None) -> Figure:
-        """The densities over the frequency."""
-        from contvines.plots.measured import plot_densities
-
-        return plot_densities(self.frequencies, self.unit, self.densities, figsize=size)
+        (_, hertz, frequencies), *densities = self.series
+        shown = {name: (values, unit) for name, unit, values in densities}
+        return plot_densities(frequencies, hertz, shown, figsize=figsize)
 
 
 def _rounded(value: float, error: float) -> tuple[str, str]:
@@ -141,48 +137,38 @@ def _computed(study: Study, seed: int | None) -> Found:
         "records": said.records,
         "seed": said.seed if seed is None else seed,
     }
-    hertz = bool(model.units)
-    turn = 2.0 * math.pi if hertz else 1.0
+    shown, scales = model.units, Scales(model, params)
+    turn = 2.0 * math.pi if shown else 1.0  # densities are counted per hertz where there are units
+    rate = 1.0 if page else 1.0 / scales.factor("time")
     try:
         if said.parameter is not None:
             psd = Density(frequencies * turn, values / turn)
             response = random_page(model, params, said.parameter, psd, start=study.named_state, **options)
         else:
-            scales = Scales(model, params)
-            rate = 1.0 / scales.factor("time")
             acceleration = scales.metre * rate**2
             psd = Density(frequencies * turn / rate, values * rate / turn / acceleration**2)
             response = random_base(model, params, psd, **options)
     except (ValueError, KeyError) as error:
         raise ValueError(f"{study.path}: [random] {str(error).rstrip('.')}.") from None
-    return _in_units(study, params, response, hertz)
 
+    def length(name: str) -> tuple[float, str]:
+        """One unit of a response, and that unit's name."""
+        return (1.0, shown.get(name, "")) if page else (scales.factor("length"), scales.unit("length"))
 
-def _in_units(study: Study, params: np.ndarray, response: RandomResponse, hertz: bool) -> Found:
-    model, page = study.model, study.sort is Sort.PAGE
-    shown, turn, scales = model.units, 2.0 * math.pi if hertz else 1.0, Scales(model, params)
     rows = []
     for name, (value, error) in response.numbers.items():
         sort, _, what = name.partition("_")
         if name in OWN:
-            kind = "" if page else KINDS_OF_OWN[name]
+            kind, words = "" if page else KINDS_OF_OWN[name], OWN[name]
             factor, unit = scales.factor(kind), scales.unit(kind) or ("Hz" if page and shown else "")
-            words = OWN[name]
-        elif page:
-            factor, unit, words = 1.0, shown.get(what, ""), f"{KINDS[sort]} of {what}"
         else:
-            factor, unit, words = (
-                scales.factor("length"),
-                scales.unit("length"),
-                f"{KINDS[sort]}: {WORDS[what]}",
-            )
+            factor, unit = length(what)
+            words = f"{KINDS[sort]} of {what}" if page else f"{KINDS[sort]}: {WORDS[what]}"
         rows.append((name, factor * value, factor * error, unit, words))
-    rate = 1.0 if page else 1.0 / scales.factor("time")
-    densities = {}
+    series: Series = [("frequency", "Hz" if shown else "", response.omega * rate / turn)]
     for name, values in response.densities.items():
-        factor = 1.0 if page else scales.factor("length")
-        unit = shown.get(name, "") if page else scales.unit("length")
-        densities[name] = (values * factor**2 * turn / rate, f"{unit}^2/Hz" if unit else "")
-    seconds = response.duration / rate
-    title = f"{study.path.name} under random excitation: {response.records} records of {figures(seconds)} {'s' if hertz else 'units of time'}"
-    return Found(title, rows, response.omega * rate / turn, "Hz" if hertz else "", densities)
+        factor, unit = length(name)
+        series.append((name, f"{unit}^2/Hz" if unit else "", values * factor**2 * turn / rate))
+    seconds = f"{figures(response.duration / rate)} {'s' if shown else 'units of time'}"
+    title = f"{study.path.name} under random excitation: {response.records} records of {seconds}"
+    return Found(title, rows, series)

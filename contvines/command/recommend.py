@@ -1,13 +1,14 @@
-"""`contvines recommend STUDY.toml`: a clearance, how tolerant it is, what it brings and costs."""
+"""`contvines recommend STUDY.toml`: a clearance, how tolerant it is, what it brings and costs, and its picture."""
 
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from contvines.command.frame import beside, draw, held, interruptible, refuse_source, say, tell
-from contvines.command.options import (
+from .frame import draw, held, interruptible, place_of, say, tell
+from .options import (
     FreshOption,
     JsonOption,
     PlotOption,
@@ -16,9 +17,12 @@ from contvines.command.options import (
     argument,
     option,
 )
-from contvines.command.recommendation import Recommendation
+from .recommendation import Recommendation
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from .study_data import Study
 
 
@@ -58,28 +62,25 @@ def recommend(
     if there is none). Its best value has the lowest worst response over all
     coexisting motions and all samples of the uncertain parameters.
     """
-    from contvines.command.study import read_study
+    from .study import read_study
 
     read = read_study(study)
-    place = output or beside(study, "-recommend.json")
-    refuse_source(place, study)
+    place = place_of(output, study, "-recommend.json")
     goal = None if target is None else _target(target, read)
     with held(place, quiet, fresh):
         found = recommended(read, place, cost / 100.0, goal, workers, quiet)
     if json_ or not quiet:
         tell(found, found.to_dict() if json_ else None)
-    if plot is not None:
-        from contvines.command.recommend_picture import choice_picture
-
-        draw(plot, lambda: choice_picture(found, size), quiet)
+    draw(plot, lambda: choice_picture(found, size), quiet)
 
 
 def recommended(
     read: Study, place: Path, cost: float, target: float | None, workers: int | None, quiet: bool
 ) -> Recommendation:
     """The recommendation for a study: from its file if that is finished, else computed; rows of an unfinished one are kept beside it."""
-    from contvines.command.recommending import digest
-    from contvines.command.recommending import recommend as run
+    from ..export import json_text
+    from .recommending import digest
+    from .recommending import recommend as run
 
     own = digest(read, cost, target)
     if place.exists():
@@ -99,16 +100,8 @@ def recommended(
 
     with interruptible("all finished machines are kept; the same command goes on from there"):
         found = run(
-            read,
-            cost=cost,
-            target=target,
-            workers=workers,
-            journal=journal,
-            tell=lambda text: say(text, quiet),
-            progress=not quiet,
-        )
-    from contvines.export import json_text
-
+            read, cost=cost, target=target, workers=workers, journal=journal, tell=lambda text: say(text, quiet), progress=not quiet
+        )  # fmt: skip
     place.write_text(json_text({"digest": own, "recommendation": found.to_dict()}), encoding="utf-8")
     for path in journals:
         path.unlink(missing_ok=True)
@@ -134,11 +127,137 @@ def kept(place: Path) -> dict[str, Any]:
 
 
 def _target(text: str, study: Study) -> float:
-    from contvines.command.amounts import amount
     from orbits.flows.catalogue import flow_of
+
+    from .options import amount
 
     model = study.model
     value = amount("--target", text, flow_of(model).default_measure(model), model.units)
     if value <= 0.0:
         raise ValueError(f"--target {text}: give a response above 0.")
     return value
+
+
+BLUE, RED, GREY = "#0b3c6f", "#b5121b", "0.45"
+SIZE, REPORT = (10.0, 4.0), (9.0, 3.4)  # inches
+PART = 0.6  # of the height for the start-up
+ROOM = 1.3  # of the vertical axis beside the largest number: for the legend
+
+
+def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:
+    """Both panels, one above the other in a narrow picture; where nothing was chosen the first alone."""
+    from ..plots.figures import new_figure, settle, styled, thin_ticks
+    from ..plots.legends import NARROW
+
+    with styled():
+        figure = new_figure(figsize=size or SIZE)
+        count = 2 if found.curves else 1
+        across = 1 if figure.get_figwidth() < NARROW else count
+        panels = figure.subplots(count // across, across, squeeze=False).ravel()
+        draw_places(panels[0], found)
+        if found.curves:
+            draw_responses(panels[1], found)
+        settle(figure)
+        thin_ticks(*panels)
+    return figure
+
+
+def _label(found: Recommendation, name: str, text: str) -> str:
+    unit = found.units.get(name, "")
+    return f"{text} [{unit}]" if unit else text
+
+
+def draw_places(axes: Axes, found: Recommendation) -> None:
+    """The worst response over the value that is chosen."""
+    from .plot import LOOKS
+
+    first = [p for p in found.places if p.samples < found.most or found.most == 1]
+    later = [p for p in found.places if p.samples == found.most > 1]
+    for places, mark, label in (
+        (first, "o", "the study's machine"),
+        ([p for p in later if not p.left], "D", f"worst of {found.most} samples"),
+        ([p for p in later if p.left], "^", "at least: one sample"),
+    ):
+        known = [(p.value, p.worst) for p in places if math.isfinite(p.worst)]
+        if known:
+            axes.plot(
+                *zip(*known),
+                mark,
+                color=BLUE,
+                markersize=4,
+                mfc=BLUE if mark == "D" else "white",
+                label=label,
+            )
+    hidden = [p.value for p in found.places if p.unknown]
+    if hidden:
+        axes.plot(hidden, [0.0] * len(hidden), "x", color=GREY, label="not known")
+    for kind, (value, _) in found.compared.items():
+        color, dashes = LOOKS[kind]
+        axes.axhline(value, color=color, linestyle=dashes, linewidth=1.2, label=kind)
+    if found.value is not None and found.chosen is not None:
+        axes.axvspan(
+            *found.tolerance, color=RED, alpha=0.1, lw=0, label=f"costs less than {100 * found.cost:g} %"
+        )
+        axes.plot(
+            found.value, found.chosen.worst, "*", color=RED, markersize=13, mec="white", label="recommended"
+        )
+    if found.own is not None:
+        axes.axvline(found.own, color=GREY, lw=0.9, ls=(0, (3, 3)), label="in the study")
+    axes.set(
+        xlabel=_label(found, found.name, found.name.replace("_", "-")),
+        ylabel=_label(found, "peak", "largest response"),
+        ylim=(0.0, None),
+    )
+    axes.margins(y=0.1)
+    axes.legend(loc="best", fontsize="x-small")
+
+
+def draw_responses(axes: Axes, found: Recommendation) -> None:
+    """The responses at the choice beside those to compare with."""
+    from orbits.design.references import NAMES
+
+    from .plot import LOOKS
+
+    for curve in found.curves:
+        if curve.name in LOOKS:
+            color, dashes = LOOKS[curve.name]
+            axes.plot(curve.x, curve.y, color=color, linestyle=dashes, linewidth=1.2, label=NAMES[curve.name])
+    for name, style in (
+        ("simulated", {"marker": ".", "ls": "", "ms": 2.5, "color": "0.35"}),
+        ("stable", {"color": BLUE, "lw": 1.8}),
+    ):
+        said = {"simulated": "simulation up and down", "stable": "recommended: stable motions"}[name]
+        for curve in (c for c in found.curves if c.name == name):
+            axes.plot(curve.x, curve.y, label=said, **style)
+            said = "_"
+    axes.set(
+        xlabel=_label(found, found.parameter, found.parameter.replace("_", " ")),
+        ylabel=_label(found, "peak", "largest displacement"),
+        ylim=(0.0, ROOM * max(max(curve.y) for curve in found.curves)),
+        xlim=found.within,
+    )
+    columns = min(2, max(1, len(axes.get_legend_handles_labels()[0]) // 2))
+    axes.legend(loc="upper center", ncols=columns, fontsize="x-small", handlelength=2.1, columnspacing=0.5)
+
+
+def report_pictures(found: Recommendation) -> list[tuple[Figure, str]]:
+    """The pictures of the report with their captions."""
+    import numpy as np
+
+    from ..plots.measured import plot_transient
+
+    pictures = [
+        (
+            choice_picture(found, REPORT),
+            "Left: the largest response over the value that is chosen. Right: responses at the choice; where two solid lines run side by side, the machine's past decides.",
+        )
+    ]
+    if found.start_up is not None and found.start_up.series:
+        names = {"time": "time", "oscillator": "peak", "bare": "peak"}
+        series = [
+            (name, found.units.get(names[name], ""), np.array(values))
+            for name, values in found.start_up.series.items()
+        ]
+        figure = plot_transient(series, figsize=(REPORT[0], REPORT[1] * PART))
+        pictures.append((figure, f"Start-up from rest; {found.start_up_at}."))
+    return pictures

@@ -1,4 +1,4 @@
-"""What `contvines recommend` found: numbers, the sentences that tell them, a picture."""
+"""What `contvines recommend` found: numbers, and the sentences and tables that tell them."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, TypeAdapter
 
-from contvines.shared.motions import BAND
-from contvines.shared.number_text import figures
-from contvines.text_table import Table, fitted, terminal_width
+from ..shared.motions import BAND
+from ..shared.number_text import figures
+from ..text_table import Table, fitted, terminal_width
 
 AGREES = 0.01  # of the largest response by diagrams: simulations that exceed it by more are told
 MOST = 4  # sentences about what is not known

@@ -3,108 +3,39 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from time import monotonic
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from contvines.command.recommendation import AGREES, LOADS, MET, Curve, Jump, Place, Recommendation, Start
-from contvines.command.study_data import Sort, Study
-from contvines.command.survey_study import asked_of, options_of
-from contvines.shared.files import digest_of
-from contvines.shared.motions import BAND, modulation_of
-from contvines.shared.number_text import figures
-from contvines.survey.outcomes import stretches
-from contvines.survey.plan import Plan
 from orbits.design.references import KINDS
 from orbits.flows.catalogue import flow_of
 
-if TYPE_CHECKING:
-    from contvines.survey import Survey
-    from contvines.survey.completion import Unbranched
-    from contvines.survey.outcomes import Findings
-    from orbits.design.references import FirstClearance
-    from orbits.machines.varying import Varying
+from ..shared.files import digest_of
+from ..shared.motions import BAND
+from ..shared.number_text import figures
+from ..survey.plan import Plan
+from .choosing import PLACES, SWEPT, Machines, largest, loads, met
+from .choosing import tidy as _tidy
+from .recommendation import AGREES, LOADS, MET, Jump, Place, Recommendation
+from .study_data import Study
+from .survey_study import asked_of
 
-PLACES = 13  # values of the first look
-CLEARANCES = ("clearance", "gap", "width", "distance")  # in names of what is usually chosen
-RESPONSES = ("peak", "lower_peak")  # what is asked of every machine
+if TYPE_CHECKING:
+    from ..survey import Survey
+
 UNSEEN = "not looked at"  # a note
-LATER = (7, 5)  # of the later ones, between the neighbours of the best
-SAMPLES = 16  # where the study does not say
+LATER = (7, 5)  # values of the later looks, between the neighbours of the best
 QUIETED = 0.9  # of the bare machine's response: a machine that is quieted less does not work
 VALUES, STARTS = 9, 6  # of the parameter, and at each, from which it is told what is met at the choice
 FEW = 2  # starts where flights are integrated
-REPLAYED, LONGEST = (
-    400,
-    24,
-)  # forcing periods of a motion simulated from itself, and of the longest that may recur
-CHECK = 61  # values of the simulation up and down
-SWEPT = 25  # values at which a machine whose flights are integrated is simulated in place of a diagram
 TRIED = 5  # choices of such machines that are looked at by diagrams, until one is the best of all
-SPREAD = (0.1, 1.25)  # of the first clearance's widest: where it is looked at if the study gives no range
-ABOUT, FINE = 8, 321  # steps to either side of the largest response where it looks closer, at so many values
-ROUGH = 33  # the same where flights are integrated
 STEEP = 0.05  # of the value that is chosen: a rise within it counts as a jump
 MARGIN = 0.02  # of the value that is chosen: nearer to a jump of the response another value is taken, if it costs no more than the tolerance
-JUMP, HALVED = (
-    0.2,
-    4,
-)  # of the response: such a rise beside the tolerance is looked at, and how often the distance is halved
-DRAWN = 4000  # instants of the start-up that are kept
-
-
-def loads(found: Findings) -> dict[str, float]:
-    """The largest of each load over the stable motions; the speed of impacts over simulated ones, too."""
-    largest: dict[str, float] = {}
-    parts = stretches(found.graph)
-    for name in LOADS:
-        known = [float(met.measures.get(name, math.nan)) for met in found.unbranched]
-        for part in parts:
-            if name in part.branch.measure_names:
-                known += np.asarray(part.branch.measure(name), dtype=float)[
-                    part.first : part.last + 1
-                ].tolist()
-        largest[name] = max((x for x in known if math.isfinite(x)), default=math.nan)
-    return largest
-
-
-def met(found: Findings) -> dict[str, float]:
-    """Shares of the simulated motions by what they are (with impacts and a period, modulated or chaotic, without impacts, stuck), and the
-    largest response of each, that of the branches included."""
-    from contvines.graph.measures import default_measure
-
-    name = default_measure(found.graph)
-    kinds = [_kind(measures, text) for _, measures, text in found.simulated]
-    seen = [(kind, measures.get(name, math.nan)) for kind, (_, measures, _) in zip(kinds, found.simulated)]
-    seen += [(_kind(one.measures, one.kind), one.measures.get(name, math.nan)) for one in found.unbranched]
-    seen += [
-        ("impacts" if part.branch.description.get("impacts") else "calm", float(np.nanmax(part.response, initial=-np.inf)))
-        for part in stretches(found.graph)
-    ]  # fmt: skip
-    shares = {f"met_{kind}": kinds.count(kind) / len(kinds) if kinds else math.nan for kind in MET}
-    return shares | {
-        f"{kind}_peak": _largest(np.array([top for one, top in seen if one == kind])) for kind in MET
-    }
-
-
-def _kind(measures: Mapping[str, float], text: str) -> str:
-    """What a simulated motion is, one of `MET`."""
-    if text == "stuck":
-        return "stuck"
-    if text in MODULATED or modulation_of(measures):
-        return "modulated"
-    if measures.get("impacts_per_period", math.nan) == 0.0:
-        return "calm"
-    return "impacts"
-
-
-MODULATED = ("chaotic", "quasi-periodic", "slow")
+JUMP = 0.2  # of the response: such a rise beside the tolerance is looked at
+HALVED = 4  # how often the distance to it is halved
 
 
 def recommend(
@@ -150,7 +81,7 @@ def recommend(
     ValueError
         If nothing can be chosen; the sentence names the field and a way out.
     """
-    from contvines.command.study import read_study
+    from .study import read_study
 
     if not isinstance(study, Study):
         study = read_study(study)
@@ -166,102 +97,15 @@ def recommend(
     return work.recommendation(best, rows, jumps, target)
 
 
-@dataclass
-class _Work:
-    """The machines of a recommendation, and what is asked of them."""
-
-    study: Study
-    cost: float
-    workers: int | None
-    journal: Callable[[int], Path | None]
-    tell: Callable[[str], None]
-    progress: bool
+class _Work(Machines):
+    """The search for the best of the machines."""
 
     def __post_init__(self) -> None:
-        from contvines.coexistence.population import population_of
-        from contvines.command.compose import check_shaken, machine
-        from contvines.command.survey_study import machines_of, plan_and_machine, units_of
-
-        study = self.study
-        if study.sort is Sort.FLOW:
-            raise ValueError(
-                f"{study.path}: contvines recommend is for machines; contvines survey --best chooses of flows."
-            )
-        if "samples" not in study.survey.model_fields_set:
-            survey = study.survey.model_copy(update={"samples": SAMPLES})
-            self.study = study = dataclasses.replace(study, survey=survey)
-        check_shaken(study, study.survey.vary)
-        self.assumed: list[str] = []
+        super().__post_init__()
         self.missed: list[str] = []  # what is not known as simulations missed it
-        if study.survey.vary:
-            self.plan, model = plan_and_machine(study)
-        else:
-            self.plan, model = Plan({}, {}), machine(study)
-            self.assumed.append(
-                "nothing is uncertain, as [survey] vary names nothing: the choice is for the study's own numbers"
-            )
-        axes = self.plan.axes
-        if len(axes) > 1:
-            raise ValueError(
-                f"{study.path}: [survey] vary has {' and '.join(axes)} on a grid: contvines recommend chooses one; "
-                "make the others uncertain (uniform = [from, to]), or leave them out. contvines survey --best chooses two."
-            )
-        self.name = next(iter(axes), "half_width")
-        names = list(model.amount_names)
-        if not axes:
-            if study.sort is not Sort.PHYSICAL or self.name not in names:
-                raise ValueError(_what(study, names))
-            model = model.given_by(self.name)
-        self.model, self.family, self.units = model, machines_of(study, model), units_of(study, model)
-        self.drawn = self.plan.samples
-        self.samples = self.plan.shape[-1] if self.drawn else 1
-        self.theory = self._theory()
-        self.integrated = population_of(model, study.parameter, **study.loose).price > 1.0
-        if self.integrated:
-            self.assumed.append(
-                f"responses elsewhere than at the choice are those of simulations up and down at {SWEPT} values and from drawn starts: "
-                "a motion to which few starts lead is not among them"
-            )
-        self.pace: float | None = None  # seconds a machine
-        self.round = self.surveys = 0
+        self.round = 0
         self.rows: dict[float, _Looked] = {}  # by value, of all samples
         self.places: dict[float, Place] = {}  # ascending
-
-    def _theory(self) -> FirstClearance | None:
-        from orbits.design.references import first_clearance
-
-        if self.name != "half_width" or "damping" not in self.model.parameter_names:
-            return None
-        return first_clearance(self.model, self.model.vector(self.study.loose))
-
-    def own(self) -> float | None:
-        """The study's own value of what is chosen."""
-        known = getattr(self.model, "quantities", None) or self.study.parameters
-        return float(known[self.name]) if self.name in known else None
-
-    def range(self) -> list[float]:
-        """The values of the first look, the study's own among them where it lies in the range."""
-        if self.plan.axes:
-            given = self.plan.axes[self.name]
-            low, high = float(given.min()), float(given.max())
-            values = given.tolist() if len(given) >= LATER[1] else np.linspace(low, high, PLACES).tolist()
-        else:
-            if self.theory is None:
-                raise ValueError(
-                    f"{self.study.path}: [survey] gives no range of {self.name}, and theory none for this machine; for example "
-                    f'vary.{self.name} = {{ within = ["5 mm", "50 mm"], count = {PLACES} }}.'
-                )
-            low, high = (share * self.theory.widest for share in SPREAD)
-            values = np.geomspace(low, high, PLACES).tolist()
-            unit = self.units.get(self.name, "")
-            self.assumed.append(
-                f"[survey] gives no range of {self.name.replace('_', ' ')}: looked at from {low:.3g} to {high:.3g} {unit}".rstrip()
-                + f", {SPREAD[0]:g} to {SPREAD[1]:g} times the widest by theory"
-            )
-        own = self.own()
-        if own is not None and self.plan.axes and not low <= own <= high:
-            own = None
-        return sorted({*map(_tidy, values), *([] if own is None else [own])})
 
     def best(self) -> Place | None:
         """The place with the lowest worst response of all samples; None where none is known."""
@@ -343,30 +187,13 @@ class _Work:
 
     def _looked(self, plan: Plan) -> _Looked:
         """Responses by diagrams, or by simulation where flights are integrated."""
-        return _looked(self.surveyed(plan, RESPONSES, swept=SWEPT if self.integrated else 0))
+        return _looked(self.surveyed(plan, ("peak", "lower_peak"), swept=SWEPT if self.integrated else 0))
 
     def _tell_round(self, machines: int, at_most: str = "") -> None:
         self.round += 1
         rest = "" if self.pace is None else f", about {_duration(self.pace * machines)}"
         said = f"{machines} {'machine' if machines == 1 else 'machines'}"
         self.tell(f"round {self.round} of {max(self.round, len(LATER) + 2)}: {at_most}{said}{rest}")
-
-    def surveyed(self, plan: Plan, outcomes: Sequence[Any], **ways: Any) -> Survey:
-        """The rows of a plan, kept in the journal of the round."""
-        from contvines.command.surveying import without_main
-        from contvines.survey.survey import survey
-
-        self.surveys += 1
-        begun = monotonic()
-        options = {**options_of(self.study), "depth": 0}  # what leaves a branch is met by simulation, too
-        with without_main():
-            found = survey(
-                self.family, plan, over=self.study.parameter, within=self.study.within, outcomes=outcomes, workers=self.workers,
-                journal=self.journal(self.surveys), units=self.units, about={"recommend": self.surveys, "ways": list(ways), **asked_of(self.study)},
-                progress=self.progress, gaps=self.study.survey.gaps, **ways, **options,
-            )  # fmt: skip
-        self.pace = (monotonic() - begun) / len(plan)
-        return found
 
     # ------------------------------------------------------------------ at the choice
     def away_from_jumps(self, best: Place) -> tuple[Place, list[Jump]]:
@@ -469,7 +296,7 @@ class _Work:
         self, best: Place | None, rows: Survey | None, jumps: list[Jump], target: float | None
     ) -> Recommendation:
         """All that is printed of the choice."""
-        from contvines.command.compare import peaks_compared
+        from .plot import peaks_compared
 
         study = self.study
         unknown = [
@@ -480,7 +307,7 @@ class _Work:
             if place.unknown
         ]
         unknown += self.missed
-        has_bare = self.model.in_cavity and "damping" in self.model.parameter_names
+        has_bare = self.model.in_cavity and self.damped
         model, loose = self.family.machine_at({} if best is None else {self.name: best.value})
         compared = peaks_compared(model, study.parameter, study.within, KINDS) if has_bare else {}
         if not has_bare:
@@ -492,8 +319,8 @@ class _Work:
         given = {
             "study": str(study.path), "title": study.path.stem, "name": self.name, "parameter": study.parameter,
             "within": study.within, "units": {**self.units, "time": "s" if self.model.units else ""},
-            "own": self.own(), "cost": self.cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
-            "machine": self._machine(), "places": list(self.places.values()), "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
+            "own": self.known.get(self.name), "cost": self.cost, "theory": {} if self.theory is None else dataclasses.asdict(self.theory),
+            "machine": self.described(), "places": list(self.places.values()), "compared": compared, "target": goal, "assumed": self.assumed, "unknown": unknown,
             "absorber": self.model.in_cavity,
         }  # fmt: skip
         if best is None or rows is None:
@@ -504,18 +331,18 @@ class _Work:
         works = float(np.mean(peaks <= goal)) if math.isfinite(goal) else math.nan
         shares = {name: float(np.nanmean(rows[f"met_{name}"])) for name in MET}
         tops = {
-            name: _largest(rows[name])
+            name: largest(rows[name])
             for name in (*(f"{kind}_peak" for kind in MET), *BAND, "modulated_strong")
         }
         shares |= {name: top for name, top in tops.items() if math.isfinite(top)}
         has = flow_of(self.model).measure_names(self.model)
-        most = {name: _largest(rows[name]) for name in LOADS if name in has}
+        most = {name: largest(rows[name]) for name in LOADS if name in has}
         if not most:
             unknown.append("loads: a declared machine has them for walls, with energy=")
         unknown += [
             f"{name}: no motion that was met has it" for name, value in most.items() if math.isnan(value)
         ]
-        checked, curves = self._checked(best.value, model, loose)
+        checked, curves = self.checked(best.value, model, loose)
         if checked is not None and abs(checked[1] - checked[0]) > AGREES * checked[0]:
             unknown.insert(
                 0, f"the largest response at the choice: {figures(checked[0])} by the diagram, {figures(checked[1])} by simulation"
@@ -523,130 +350,8 @@ class _Work:
         return Recommendation(
             **given, value=best.value, tolerance=self.tolerance(best), works=works, met=shares,
             loads={k: v for k, v in most.items() if math.isfinite(v)}, checked=checked, jumps=jumps,
-            start_up=self._start_up(model, compared["bare"][1]) if has_bare else None, curves=curves + (self._lines(model) if has_bare else []),
+            start_up=self.start_up(model, compared["bare"][1]) if has_bare else None, curves=curves + (self.compared(model) if has_bare else []),
         )  # fmt: skip
-
-    def _machine(self) -> dict[str, str]:
-        """The study's numbers as text, with what is uncertain."""
-        known = getattr(self.model, "quantities", None) or self.study.parameters
-        found = {
-            name: f"{figures(value)} {self.model.units.get(name, '')}".rstrip()
-            for name, value in known.items()
-        }
-        found.pop(self.study.parameter, None)
-        for name, values in self.drawn.items():
-            unit = self.model.units.get(name, "")
-            found[name] = (
-                f"{figures(values.min())} to {figures(values.max())} {unit}".rstrip()
-                + f" in {len(values)} samples"
-            )
-        if self.name in found:
-            found[self.name] = f"chosen; {found[self.name]} in the study"
-        return found
-
-    def _checked(
-        self, value: float, model: Varying, own: dict[str, float]
-    ) -> tuple[tuple[float, float] | None, list[Curve]]:
-        """The largest response of the study's own machine at the choice, by its diagram and by simulation from that motion (at a value where it
-        is next to the largest); of simulations up and down, if these meet more. The responses."""
-        from contvines.graph.stretches import highest, inside, stretches
-        from contvines.survey.outcomes import peak
-        from contvines.survey.work import Job, work
-        from orbits.attractors.search import beginning_with
-        from orbits.attractors.sweeping import sweep
-        from orbits.orbit import Orbit
-
-        over, (low, high) = self.study.parameter, self.study.within
-        seen: list[Curve] = []
-        compared: list[tuple[float, float]] = []
-        measure = flow_of(model).default_measure(model)
-        loose: dict[str, Any] = {k: v for k, v in own.items() if k != over}
-
-        def response_of(one: Unbranched) -> float:
-            value = one.measures.get(measure, math.nan)
-            return value if math.isfinite(value) else -math.inf
-
-        def keep(found: Findings) -> dict[str, float]:
-            parts = stretches(found.graph)
-            seen.extend(Curve("stable", part.values.tolist(), part.response.tolist()) for part in parts)
-            top = highest(parts)
-            if top is not None:  # from itself: other starts may miss a motion that few of them lead to
-                u, p, response = inside(top, 0.5 * AGREES)
-                orbit = top.stretch.branch.attached.orbit(u, p)
-                assert isinstance(orbit, Orbit)
-                met = beginning_with(orbit, REPLAYED, LONGEST)
-                compared.append((response, met.get(measure, -math.inf)))
-            free = max(found.unbranched, key=response_of, default=None)
-            if (
-                free is not None
-                and free.state is not None
-                and response_of(free) > (top.response if top else -math.inf)
-            ):
-                begin: dict[str, Any] = {
-                    "start": free.state,
-                    "transient": REPLAYED,
-                    "nudge": 0.0,
-                    "exponents": False,
-                }
-                (longer,) = sweep(model, over, [free.value], **begin, **loose)
-                compared[:] = [(response_of(free), longer.measures[measure])]
-            return peak(found)
-
-        job = Job(self.family, over, (low, high), (keep,), options={**options_of(self.study), "depth": 0})
-        row = work(job, 0, {self.name: value})
-        if not row.columns:
-            return None, seen
-        step, top = (high - low) / (CHECK - 1), row.columns["peak_at"]
-        near = np.linspace(
-            max(low, top - ABOUT * step), min(high, top + ABOUT * step), ROUGH if self.integrated else FINE
-        )
-        grid = np.union1d(np.linspace(low, high, CHECK), near)
-        for run in (grid, grid[::-1]):
-            rows = sweep(model, over, run, nudge=0.0, **loose)
-            seen.append(Curve("simulated", [r.value for r in rows], [r.measures[measure] for r in rows]))
-        most = max(*seen[-2].y, *seen[-1].y)
-        largest = row.columns["peak"]  # of motions without a branch, too
-        if not compared or compared[0][0] < (1.0 - AGREES) * largest or most > (1.0 + AGREES) * largest:
-            return (largest, most), seen
-        return compared[0], seen
-
-    def _lines(self, model: Varying) -> list[Curve]:
-        """Responses of the machines to compare with; declared machines have none."""
-        from contvines.command.compare import POINTS, response_of
-        from orbits.machines.base import Model
-
-        if not isinstance(model, Model):
-            return []
-        values = np.linspace(*self.study.within, POINTS)
-        params = np.array([model.vector_at(self.study.parameter, float(x), self.study.loose) for x in values])
-        return [Curve(kind, values.tolist(), response_of(kind, model, params).tolist()) for kind in KINDS]
-
-    def _start_up(self, model: Varying, at: float) -> Start:
-        from contvines.command.measured import Scales
-        from orbits.design.transients import start_up
-
-        params = model.vector_at(self.study.parameter, at, self.study.loose)
-        scales = Scales(model, params)
-        length, seconds = scales.factor("length"), scales.factor("time")
-        seen = start_up(model, params)
-        self.assumed.append(
-            f"start-up from rest at {self.study.parameter} = {figures(at)} {self.units.get(self.study.parameter, '')}".rstrip()
-            + ", where the bare machine moves most"
-        )
-        thin = slice(None, None, max(1, len(seen.times) // DRAWN))
-        return Start(
-            peak=float(np.abs(seen.oscillator).max()) * length,
-            bare_peak=float(np.abs(seen.bare).max()) * length,
-            settled=seen.settled * seconds,
-            bare_settled=seen.bare_settled * seconds,
-            fastest_impact=float(seen.impact_speeds.max(initial=0.0)) * scales.factor("velocity"),
-            worst_relative=float(np.abs(seen.relative).max()) * length,
-            series={
-                "time": (seen.times[thin] * seconds).tolist(),
-                "oscillator": (seen.oscillator[thin] * length).tolist(),
-                "bare": (seen.bare[thin] * length).tolist(),
-            },
-        )
 
 
 class _Looked(NamedTuple):
@@ -655,24 +360,6 @@ class _Looked(NamedTuple):
     known: np.ndarray
     engaged: np.ndarray
     notes: np.ndarray
-
-
-def _what(study: Study, names: Sequence[str]) -> str:
-    """What to write where nothing is to be chosen: a range without ``count`` only says that a value is uncertain."""
-    said = {
-        name: value["within"]
-        for name, value in study.survey.vary.items()
-        if isinstance(value, dict) and "within" in value
-    }
-    usual = next((name for name in names if any(word in name for word in CLEARANCES)), names[0])
-    name = next(iter(said), usual)
-    within = json.dumps(said[name]) if said else "[from, to]"
-    why = (
-        f"vary.{name} without count is uncertain"
-        if said
-        else "[survey] vary needs one parameter with a range"
-    )
-    return f"{study.path}: what is to be chosen? {why}; for example vary.{name} = {{ within = {within}, count = {PLACES} }}."
 
 
 def _looked(found: Survey) -> _Looked:
@@ -692,16 +379,6 @@ def _best(places: Iterable[Place]) -> Place | None:
     """The place with the lowest worst response; None where none is known."""
     known = (place for place in places if math.isfinite(place.worst))
     return min(known, key=lambda place: place.worst, default=None)
-
-
-def _tidy(value: float) -> float:
-    """A value of four digits: nobody builds more."""
-    return float(f"{value:.4g}")
-
-
-def _largest(values: np.ndarray) -> float:
-    known = values[np.isfinite(values)]
-    return float(known.max()) if known.size else math.nan
 
 
 def _duration(seconds: float) -> str:

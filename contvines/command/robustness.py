@@ -1,16 +1,20 @@
-"""`contvines robustness`: how far a stable motion is from being lost."""
+"""`contvines robustness` and `basins`: how far a stable motion is from being lost, and which start reaches which motion."""
 
+from __future__ import annotations
+
+from pathlib import Path
 from typing import Annotated
 
-from contvines.command.amounts import inside
-from contvines.command.frame import draw, load_file, tell
-from contvines.command.options import (
+from .frame import load_file, point_of, present
+from .options import (
     FileArgument,
     JsonOption,
     PlotOption,
     SizeOption,
+    StudyArgument,
     TrustOption,
     argument,
+    inside,
     option,
 )
 
@@ -48,31 +52,60 @@ def robustness(
     With a branch alone, both against its parameter: an erosion curve.
     """
     import contvines
-    from contvines.problems.registry import without_problem
+
+    from ..problems.registry import without_problem
 
     graph = load_file(file, trust)
-    name, _, place = label.partition(":")
-    branches = graph.branches
-    if name not in branches:
-        raise ValueError(f"{file}: {name} is no branch of it; it has {', '.join(branches) or 'none'}.")
-    branch = branches[name]
+    name = label.partition(":")[0]
+    if name not in graph.branches:
+        raise ValueError(f"{file}: {name} is no branch of it; it has {', '.join(graph.branches) or 'none'}.")
+    branch, place = point_of(graph, label)
     if branch.problem is None:
         raise ValueError(without_problem(name, branch.description))
-    value: float | None = None
+    value = None if place is None else float(branch.values[place])
     if at is not None:
-        value = inside("--at", at, graph.parameter, graph.within, graph.units, f"the interval of {file}")
-    if place:
-        if not place.isdigit() or int(place) >= len(branch):
-            raise ValueError(f"{label}: the points of {name} are numbered from 0 to {len(branch) - 1}.")
-        value = float(branch.values[int(place)])
+        there = inside("--at", at, graph.parameter, graph.within, graph.units, f"the interval of {file}")
+        value = there if value is None else value
     if plot is not None and value is not None:
         raise ValueError("--plot draws the erosion curve of a whole branch: leave out --at and the point.")
-    if value is not None:
+    if value is None:
+        if vary:
+            raise ValueError("--vary needs one motion: give a point (B1:12), or --at VALUE.")
+        present(contvines.erosion(branch, values, starts=starts, seed=seed), json, plot, size)
+    else:
         found = contvines.robustness(branch, value, starts=starts, seed=seed, vary=tuple(vary or ()))
-        tell(found, found.to_dict() if json else None)
-        return
-    if vary:
-        raise ValueError("--vary needs one motion: give a point (B1:12), or --at VALUE.")
-    curve = contvines.erosion(branch, values, starts=starts, seed=seed)
-    tell(curve, curve.to_dict() if json else None)
-    draw(plot, lambda: curve.plot(figsize=size), json)
+        present(found, json, None, None)
+
+
+def basins(
+    study: StudyArgument,
+    at: Annotated[str, option("--at VALUE", "Value of the study's parameter.")],
+    plane: Annotated[
+        tuple[str, str] | None,
+        option("--plane X Y", "Two states that vary; by default the first position and its rate."),
+    ] = None,
+    points: Annotated[
+        int | None,
+        option("--points", "Starts per axis; by default 200, for declared machines 60."),
+    ] = None,
+    saddles: Annotated[
+        Path | None,
+        option("--saddles FILE.vines", "Also draw the stable manifolds of this graph's unstable motions."),
+    ] = None,
+    plot: PlotOption = None,
+    size: SizeOption = None,
+    json: JsonOption = False,
+) -> None:
+    """Basins of attraction in a plane of starts: shares, uncertainty exponent of the boundary."""
+    import contvines
+
+    from .compose import population
+    from .study import read_study
+
+    asked = read_study(study)
+    starts = population(asked)
+    units = getattr(starts, "units", {})
+    value = inside("--at", at, asked.parameter, asked.within, units, f"{study}: [continue] within")
+    graph = None if saddles is None else load_file(saddles)
+    found = contvines.basins(starts, at=value, plane=plane, points=points, saddles=graph)
+    present(found, json, plot, size)

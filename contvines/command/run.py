@@ -1,25 +1,29 @@
 """`contvines diagram`, `trace`, `atlas` and `switch`: the commands that continue."""
 
+from __future__ import annotations
+
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.frame import (
+from .frame import (
     check_special,
     draw,
     finished_of,
     held,
     interruptible,
     load_file,
+    made,
     place_of,
     refuse_unfinished,
     say,
     tell_result,
     working,
 )
-from contvines.command.options import (
+from .options import (
     CompareOption,
     DetailsOption,
     FileArgument,
@@ -39,7 +43,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..graph.graph import Graph
-    from ..store import Store
     from .study_data import Study
 
 SIMULATED = "#2f6f3e"
@@ -122,7 +125,7 @@ def switch(
     trust: TrustOption = False,
 ) -> None:
     """Follow the branch that leaves a special point, and add it to the file."""
-    from contvines.graph.schedule_branches import why_nothing_leaves
+    from ..graph.schedule_branches import why_nothing_leaves
 
     with held(file, quiet):
         graph, new = _switched(file, label, quiet, trust)
@@ -138,9 +141,9 @@ def switch(
 
 def _switched(file: Path, label: str, quiet: bool, trust: bool) -> tuple[Any, list[Any]]:
     """The graph of a file with what leaves a special point, and the branches that are new."""
-    from contvines.continuation.settings import Settings
-    from contvines.graph.automatic import switch as leave
-    from contvines.store import Store
+    from ..continuation.settings import Settings
+    from ..graph.automatic import switch as leave
+    from ..store import Store
 
     graph = load_file(file, trust)
     refuse_unfinished(graph, file)
@@ -168,27 +171,24 @@ def _run(
     quiet: bool,
     x: str | None,
     y: str | None,
-    compare: list[str] | None = None,
+    compare: Sequence[str] | None = None,
     look: bool = False,
     details: bool = False,
     budget: int | None = None,
 ) -> None:
-    from contvines.command.compose import check_shaken
-    from contvines.command.study import read_study
+    from .compose import check_axes, check_bounds, check_shaken
+    from .study import read_study
 
     study = read_study(path)
     if budget is not None:
-        study = study.with_budget(budget)
-    if x or y or study.bounds:
-        from contvines.command.asked_measures import check_axes, check_bounds
-
-        check_axes(study, {"-x": x, "-y": y}, plot)
-        check_bounds(study, command)
+        study = study.having("atlas", budget=budget)
+    check_axes(study, {"-x": x, "-y": y}, plot)
+    check_bounds(study, command)
     check_shaken(study)
-    if compare:
-        from contvines.command.compare import check_compared
-
-        check_compared(compare, plot is not None)
+    if compare and plot is None:
+        raise ValueError(
+            f"--compare {compare[0]}: there is no picture to show it in; give --plot FILE.png, too."
+        )
     target = place_of(output, path, ".vines" if command == "diagram" else f"-{command}.vines")
     with held(target, quiet, fresh):
         problems = plot is not None or (command == "diagram" and not quiet)  # measures need them
@@ -199,25 +199,22 @@ def _run(
         more = 2 * graph.settings["budget"]
         say(f"contvines atlas {path} --budget {more} goes on from what is kept in {target}", quiet)
     if compare and not quiet:
-        from contvines.command.compare import compared_text
-        from contvines.text_table import fitted
+        from ..text_table import fitted
+        from .plot import compared_text
 
         typer.echo("\n" + fitted(compared_text(study.model, study.parameter, study.within, compare)))
     if command == "diagram" and graph.missing:
-        from contvines.coexistence.missing import missing_text
+        from ..coexistence.missing import missing_text
 
         say(missing_text(graph, str(path)), quiet)
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 
-def graph_of(
-    study: "Study", command: str, target: Path, quiet: bool, *, problems: bool, look: bool
-) -> "Graph":
+def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Graph:
     """The graph of a study: from its file if that is finished, computed else."""
-    from contvines.coexistence.effort import BUDGET
-    from contvines.command.compose import first_orbit, population, run_atlas, run_diagram
-    from contvines.graph.graph import Graph
-    from contvines.store import Store
+    from ..coexistence.effort import BUDGET
+    from ..graph.graph import Graph
+    from .compose import first_orbit, population, run_atlas, run_diagram
 
     fingerprint = study.fingerprint(command)
     graph = finished_of(Graph, target, fingerprint, quiet, problems=problems)
@@ -230,61 +227,60 @@ def graph_of(
         graph = None
     if graph is None:
         alone = {"depth": 0, "settings": {**study.settings, "max_branches": 1}} if command == "trace" else {}
-        run = run_atlas if command == "atlas" else run_diagram
-        seed = population(study) if command == "atlas" else first_orbit(study)
-        note = f"all finished points are kept in {target}; the same command goes on from there"
-        with Store.attach(target, fingerprint, study.kept(command, target)) as store:
-            with working(note, quiet) as progress:
-                graph = run(study, seed, journal=store, progress=progress, **alone)
-            say(f"kept in {target}", quiet)
-            if look:
-                graph = _look(study, store)
-            store.tidy()
+        run, start = (run_atlas, population) if command == "atlas" else (run_diagram, first_orbit)
+        seed = start(study)
+        graph = made(
+            target,
+            fingerprint,
+            study.kept(command, target),
+            quiet,
+            lambda **to: run(study, seed, **to, **alone),
+        )
+        say(f"kept in {target}", quiet)
     elif not look or graph.looked:
         say(f"{target} holds the finished result of this study; nothing to compute.", quiet)
-    else:
-        with Store.open(target, write=True) as store:
-            graph = _look(study, store)
-            store.tidy()
-    return graph
+    return _looked(study, target) if look and not graph.looked else graph
 
 
-def _look(study: "Study", store: "Store") -> "Graph":
-    """A few simulated starts after a diagram; what they reach beside it is kept in the file.
+def _looked(study: Study, target: Path) -> Graph:
+    """The graph with what a few simulated starts after a diagram reach beside it, which is kept in the file, too.
 
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
     """
-    from contvines.coexistence.missing import look
-    from contvines.command.compose import population
-    from contvines.graph.graph import Graph
+    from ..coexistence.missing import look
+    from ..graph.graph import Graph
+    from ..store import Store
+    from .compose import population
 
-    graph = store.graph()
-    assert isinstance(graph, Graph)
-    with interruptible(
-        f"the diagram is kept in {store.path}; the same command looks again for what it does not have"
-    ):
-        try:
-            look(graph, population(study))
-        except ValueError as error:  # no start lies between the walls: the diagram is whole all the same
-            say(f"what else may settle was not simulated: {error}", quiet=False)
-    store.checkpoint(graph)
+    with Store.open(target, write=True) as store:
+        graph = store.graph()
+        assert isinstance(graph, Graph)
+        with interruptible(
+            f"the diagram is kept in {target}; the same command looks again for what it does not have"
+        ):
+            try:
+                look(graph, population(study))
+            except ValueError as error:  # no start lies between the walls: the diagram is whole all the same
+                say(f"what else may settle was not simulated: {error}", quiet=False)
+        store.checkpoint(graph)
+        store.tidy()
     return graph
 
 
 def _picture(
-    graph: "Graph", x: str | None, y: str | None, compare: list[str] | None, study: "Study"
-) -> "Figure":
+    graph: Graph, x: str | None, y: str | None, compare: Sequence[str] | None, study: Study
+) -> Figure:
     if graph.attractors:
-        from contvines.plots.atlas import plot_atlas
+        from ..plots.atlas import plot_atlas
 
         return plot_atlas(graph, x, y)
     if compare:
-        from contvines.command.compare import compared
+        from .plot import compared
 
         # beside other machines it is the responses that matter, not how branches hang together
         figure = compared(graph, compare, x, y, marks=[], labels=False, color="stability")
     else:
-        from contvines.plots.diagram import plot_diagram
+        from ..plots.diagram import plot_diagram
 
         figure = plot_diagram(graph, x, y)
     if study.flow is None and graph.looked and x in (None, graph.parameter) and _shows_response(graph, y):
@@ -292,23 +288,23 @@ def _picture(
     return figure
 
 
-def _shows_response(graph: "Graph", y: str | None) -> bool:
+def _shows_response(graph: Graph, y: str | None) -> bool:
     """Whether the picture shows how far something goes, of which simulations tell the band."""
-    from contvines.graph.measures import default_measure
+    from ..graph.measures import default_measure
 
     shown = default_measure(graph)
     return shown.startswith("max_") and y in (None, shown)
 
 
-def _add_simulated(axes: "Axes", graph: "Graph", study: "Study") -> None:
+def _add_simulated(axes: Axes, graph: Graph, study: Study) -> None:
     """Dots where no branch is stable; bars from the lowest to the highest displacement per period of what does not recur."""
     import numpy as np
 
-    from contvines.command.compose import population
-    from contvines.plots.figures import styled
-    from contvines.plots.legends import Key, draw_legend
-    from contvines.plots.sweep import draw_bands
-    from contvines.survey.simulated import simulated
+    from ..plots.figures import styled
+    from ..plots.legends import Key, draw_legend
+    from ..plots.sweep import draw_bands
+    from ..survey.simulated import simulated
+    from .compose import population
 
     met = simulated(graph, population(study))
     plain = [(value, high) for value, low, _, high in met if low == high]

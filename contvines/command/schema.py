@@ -1,7 +1,7 @@
 """Sections and fields of a TOML study with the values that they expect, and models of whole studies made from tables of parameters."""
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, Literal, TypedDict, TypeVar, Unpack
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import (
     BaseModel,
@@ -22,18 +22,8 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class Limits(TypedDict, total=False):
-    """Of a value, and of the length of a text or list, as pydantic knows them."""
-
-    gt: float
-    ge: float
-    le: float
-    min_length: int
-    max_length: int
-
-
-def text(expected: str, **limits: Unpack[Limits]) -> FieldInfo:
-    """A field with limits and a way out, for refusals and for editors."""
+def text(expected: str, **limits: Any) -> Any:
+    """A field with limits, as pydantic's `Field` names them, and a way out, for refusals and for editors."""
     return Field(description=expected, **limits)
 
 
@@ -280,52 +270,41 @@ def study_model(
     """
     chosen = Annotated[Literal[tuple(parameters)], text(PARAMETER)]  # type: ignore[valid-type]
     kinds: dict[str, Any] = {name: kind_of(field) for name, field in base.model_fields.items()}
-    loose = {name: (kind | None, None) for name, kind in parameters.items()}
-    start = _section(kinds["start"], {k: v for k, v in loose.items() if k not in kinds["start"].model_fields})
-    go = _section(kinds["continue_"], {"parameter": (chosen, ...)})
+    own = kinds["start"].model_fields
+    start = _section(
+        kinds["start"], {k: (kind | None, None) for k, kind in parameters.items() if k not in own}
+    )
+    go, chart = (_section(kinds[name], {"parameter": (chosen, ...)}) for name in ("continue_", "chart"))
     sections: dict[str, Any] = {
         "model": (_section(Section, settings), ...),
         "start": (start, start()),
         "continue_": (Annotated[go, Field(alias="continue")], ...),
+        "chart": (chart | None, None),
     }
-    if "chart" in kinds:
-        sections["chart"] = (_section(kinds["chart"], {"parameter": (chosen, ...)}) | None, None)
     return create_model(base.__name__, __base__=base, **sections)
 
 
-def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> type[Section]:
+def _section(base: type[Section], fields: Mapping[str, tuple[Any, Any]]) -> Any:
     """A section with further fields; they go by aliases, as their names may be those of a method of pydantic."""
-    own = {
-        name if name in base.model_fields else f"field_{place}": (
-            Annotated[kind, Field(alias=name)],
-            default,
-        )
+    own: dict[str, Any] = {
+        name if name in base.model_fields else f"field_{place}": (Annotated[kind, Field(alias=name)], default)
         for place, (name, (kind, default)) in enumerate(fields.items())
     }
-    made = create_model(base.__name__, __base__=base, **own)  # type: ignore[call-overload]
-    made.__doc__ = base.__doc__
-    return made
+    return create_model(base.__name__, __base__=base, __doc__=base.__doc__, **own)
 
 
 def kind_of(field: FieldInfo) -> type[Section]:
     """The section's model that a field of a study holds."""
-    from typing import get_args
-
     kinds: Iterable[Any] = (field.annotation, *get_args(field.annotation))
     return next(kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Section))
 
 
-def model_section(file: Section) -> Section:
-    """`[model]` of a study, whose fields are those of its machine."""
-    found = getattr(file, "model", None)
-    assert isinstance(found, Section)
-    return found
-
-
-def given(section: Section, names: Iterable[str]) -> dict[str, Any]:
-    """The values of a section that stand in the study or have a default, among these names."""
-    values = section.model_dump(by_alias=True, exclude_none=True)
-    return {name: values[name] for name in names if name in values}
+def values_of(file: Any, names: Iterable[str]) -> dict[str, Any]:
+    """What `[model]`, and in its place `[start]`, of a study that is an instance of a `study_model` say of some names, or have as a default."""
+    said = {}
+    for section in (file.model, file.start):
+        said |= section.model_dump(by_alias=True, exclude_none=True)
+    return {name: said[name] for name in names if name in said}
 
 
 def catalogue_model(name: str) -> type[StudySections]:
@@ -333,15 +312,15 @@ def catalogue_model(name: str) -> type[StudySections]:
     from orbits.machines.names import model_class
 
     machine = model_class(name)
-    defaults = machine.defaults()
     settings: dict[str, Any] = {"name": (Literal[name], ...)}  # type: ignore[valid-type]
+    defaults = machine.defaults()
     for entry in machine.settable:
-        if entry.name in defaults:
-            default, kind = defaults[entry.name], number(entry)
-            left = default is None or default is ...
-            settings[entry.name] = (
-                kind | None if default is None else kind,
-                default if left else entry.number(default),
-            )
+        if entry.name not in defaults:
+            continue
+        default, kind = defaults[entry.name], number(entry)
+        if default is None:
+            settings[entry.name] = (kind | None, None)
+        else:
+            settings[entry.name] = (kind, default if default is ... else entry.number(default))
     settings[CONTACT_TIME.name] = (number(CONTACT_TIME) | None, None)
     return study_model(StudySections, settings, {entry.name: number(entry) for entry in machine.settable})

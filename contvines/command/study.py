@@ -1,21 +1,27 @@
 """A TOML study, read and checked before any work starts.
 
 Every value that cannot be used is refused with a sentence that names the field, the value and a way out;
-all such sentences of one study are reported together.
+all such sentences of one study are reported together. Parameters may depend on a condition:
+`restitution = { temperature = [[20, 0.7], [80, 0.6]] }` and `[conditions] temperature = 45`.
 """
 
+from __future__ import annotations
+
+import math
 import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from contvines.command.conditions import check_varied, without_tables
-from contvines.command.study_data import Study
-from contvines.command.study_errors import StudyError as StudyError
-from contvines.command.toml_text import TomlError, toml_data
-from contvines.file_names import is_database
-from contvines.shared.near_names import did_you_mean
 from orbits.machines.names import PAGES, STRUCTURE
+from orbits.machines.parameters import ParameterError, Table
+
+from ..file_names import is_database
+from ..shared.near_names import did_you_mean
+from .study_data import Study
+from .study_data import StudyError as StudyError
 
 QUANTITY = re.compile(r"\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[a-zA-Z%].*")  # "3.2 kg"
 
@@ -45,11 +51,11 @@ def read_study(path: str | Path) -> Study:
         why = f"cannot be read ({error.strerror})."
     except UnicodeDecodeError:
         hint = (
-            " It is a database: commands that take a study want the .toml file."
+            "It is a database: commands that take a study want the .toml file."
             if is_database(path)
-            else " Save it as UTF-8."
+            else "Save it as UTF-8."
         )
-        why = f"this is not a TOML file (it is no text in UTF-8).{hint}"
+        why = f"this is not a TOML file (it is no text in UTF-8). {hint}"
     raise StudyError(f"{path}: {why}")
 
 
@@ -62,8 +68,6 @@ def study_of(text: str, path: Path) -> Study:
     """
     try:
         return replace(check_study(toml_data(text), path), text=text)
-    except TomlError as error:
-        raise StudyError(f"{path}: {error}.") from error
     except StudyError as error:
         raise StudyError(f"{path}: {error}") from error
 
@@ -72,34 +76,244 @@ def check_study(data: dict[str, Any], path: str | Path = "study") -> Study:
     """Check a study given as nested dicts; see `read_study`."""
     path, model = Path(path), data.get("model")
     about = model if isinstance(model, dict) else {}
+    said = str(about.get("name", ""))
     try:
         data, conditions, tables = without_tables(data)
-        check_varied(data, tables)
-        said = str(about.get("name", ""))
         if ".py" in said or said in (*PAGES, STRUCTURE):
-            from contvines.command.own_study import read_own
-
-            study = read_own(data, path)
+            from .own_study import read_own as read
         elif "units" in data or "units" in about:
-            from contvines.command.physical_study import read_physical
-
-            study = read_physical(data, path)
+            from .physical_study import read_physical as read
         else:
-            from contvines.command.catalogue_study import read_catalogue
+            from .catalogue_study import read_catalogue as read
 
             for key, value in about.items():
                 if isinstance(value, str) and QUANTITY.fullmatch(value):
                     raise StudyError(
                         f'[model] {key} = {value!r}: quantities want units = "si" on the first line of the study.'
                     )
-            study = read_catalogue(data, path)
-        study = replace(study, conditions=conditions, tables=tables)
+        study = replace(read(data, path), conditions=conditions, tables=tables)
         if study.kinds is not None:
-            from contvines.command.own_code import load_kinds
+            from .own_study import load_kinds
 
-            load_kinds(path, study.kinds)
+            kinds, digest = load_kinds(path, study.kinds)
+            study = replace(study, all_kinds=kinds, kinds_digest=digest)
     except StudyError:
         raise
     except (ValueError, OSError) as error:
         raise StudyError(str(error)) from error
     return study
+
+
+# ---------------------------------------------------------------------- studies that result files keep
+def kept_study(file: Path, source: object, trust: bool) -> tuple[Study, dict[str, Any]]:
+    """The study that a file keeps, read as if it stood where it stood.
+
+    Raises
+    ------
+    ValueError
+        If the file keeps none, or one that names Python files while it is not trusted.
+    """
+    if not isinstance(source, dict) or not source.get("text"):
+        raise ValueError(
+            f"{file}: this file keeps no study to run again: it was saved by a version that kept none, or from something else than a study; "
+            f"contvines diagram STUDY.toml -o {file.stem}-again.vines computes the study anew."
+        )
+    data, place = toml_data(source["text"]), (file.absolute().parent / str(source["study"])).resolve()
+    named = [str(data.get(part, {}).get(key, "")) for part, key in (("model", "name"), ("continue", "kinds"))]
+    code = next((name for name in named if ".py" in name), None)
+    if code is not None and not trust:
+        raise ValueError(
+            f"{file}: its study runs the code of {code!r} beside {place}; --trust allows it, for a file whose maker you trust."
+        )
+    return study_of(source["text"], place), source
+
+
+def kept_kinds(file: Path, trust: bool) -> Sequence[Any] | None:
+    """The kinds that the study of a file looks for; None if it keeps no study that names kinds of its own.
+
+    Raises
+    ------
+    ValueError
+        As `kept_study` does.
+    """
+    source = source_of(file)
+    return kept_study(file, source, trust)[0].all_kinds if source else None
+
+
+def source_of(file: Path) -> dict[str, Any] | None:
+    """What a file keeps of the study that made it; see `Study.kept`."""
+    from ..store import Store
+
+    with Store.open(file) as store:
+        return (store.study or {}).get("source")
+
+
+# ---------------------------------------------------------------------- TOML
+LARGEST = 1_000_000  # bytes of a study; those of people have a few hundred
+DEEPEST = 8  # sections in sections; a study has one level of them, and lists of lists
+_LINE = re.compile(r"^\s*(?P<key>[\w.\-\"']+)\s*=\s*(?P<value>[^#]*?)\s*(#.*)?$")
+_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+_WORD = re.compile(r"[^\W\d][\w.+ -]*")
+_TRUE, _FALSE = ("yes", "on", "True", "TRUE"), ("no", "off", "False", "FALSE")
+
+
+def toml_data(text: str) -> dict[str, Any]:
+    """The nested dicts of a TOML text.
+
+    Raises
+    ------
+    StudyError
+        If it is not TOML, too large, or nested too deeply.
+    """
+    if len(text) > LARGEST:
+        raise StudyError(f"this is too long for a study ({len(text)} characters; at most {LARGEST}).")
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise StudyError(f"this is not valid TOML: {_hint(text) or error}.") from None
+    except ValueError:  # of Python, which reads no numbers so long
+        raise StudyError("this is not valid TOML: a number has thousands of digits.") from None
+    except RecursionError:
+        raise StudyError(
+            "its values are nested too deeply; a study has sections of keys, one level deep."
+        ) from None
+    level: list[object] = [data]  # without recursion, which sections may exhaust
+    for _ in range(DEEPEST + 1):
+        level = [
+            part
+            for value in level
+            if isinstance(value, dict | list)
+            for part in (value.values() if isinstance(value, dict) else value)
+        ]
+    if any(isinstance(value, dict | list) for value in level):
+        raise StudyError("its sections are nested too deeply; a study has sections of keys, one level deep.")
+    return data
+
+
+def _hint(text: str) -> str:
+    """What is wrong with the first line that is no TOML, and a way out; empty where it is not one of people's habits."""
+    lines = text.splitlines()
+    for number, line in enumerate(lines, start=1):
+        found = _LINE.match(line[:1000])
+        if found and (what := _habit(found["value"])):
+            try:
+                tomllib.loads("\n".join(lines[: number - 1]))
+            except (ValueError, RecursionError):
+                return ""
+            return f"{found['key'][:60]} = {found['value'][:60]} (line {number}): {what}"
+    return ""
+
+
+def _habit(value: str) -> str:
+    if _COMMA.fullmatch(value):
+        return f"decimals are written with a point: write {value.replace(',', '.')}"
+    if value in (*_TRUE, *_FALSE):
+        return f"write {'true' if value in _TRUE else 'false'}"
+    if _WORD.fullmatch(value) and value not in ("true", "false", "inf", "nan"):
+        return f'text stands in quotes: write "{value[:60]}"'
+    return "" if value else "the value is missing"
+
+
+# ---------------------------------------------------------------------- conditions
+EXAMPLE = "{ temperature = [[20, 0.7], [80, 0.6]] }"
+
+
+def without_tables(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, float], tuple[Table, ...]]:
+    """A study's data with numbers, or texts, in place of tables over a condition, its conditions, and the tables.
+
+    Raises
+    ------
+    StudyError
+        If a table, or a condition, cannot be, or a study runs along a parameter that depends on one; the sentence names section and field.
+    """
+    conditions = _conditions(data.get("conditions", {}))
+    plain, tables = {key: value for key, value in data.items() if key != "conditions"}, []
+    for section in ("model", "start"):
+        values = plain.get(section)
+        if not isinstance(values, dict):
+            continue
+        plain[section] = dict(values)
+        for name, said in values.items():
+            if not isinstance(said, dict) or (section == "start" and name == "state"):
+                continue
+            table, unit = _table(f"[{section}] {name}", name, said)
+            if table.condition not in conditions:
+                raise StudyError(
+                    f"[{section}] {name} depends on {table.condition}, which has no value{did_you_mean(table.condition, conditions)}: "
+                    f"for example [conditions] {table.condition} = {table.places[0]:g}."
+                )
+            try:
+                value = table(conditions[table.condition])
+            except ParameterError as error:
+                raise StudyError(f"[conditions] {error}.") from None
+            plain[section][name] = f"{value!r} {unit}" if unit else value
+            tables.append(table)
+    known = {table.condition for table in tables}
+    for name in conditions:
+        if name not in known:
+            raise StudyError(
+                f"[conditions] {name} = {conditions[name]:g}: nothing depends on it{did_you_mean(name, known)}; a parameter would by a table, "
+                f"for example restitution = {EXAMPLE.replace('temperature', name)}."
+            )
+    for section in ("continue", "chart"):
+        said = data.get(section)
+        for table in tables:
+            if isinstance(said, dict) and said.get("parameter") == table.parameter:
+                raise StudyError(
+                    f"[{section}] parameter = {table.parameter!r} depends on {table.condition}: give it one number in [model], or another parameter."
+                )
+    return plain, conditions, tuple(tables)
+
+
+def _conditions(given: object) -> dict[str, float]:
+    if not isinstance(given, dict):
+        raise StudyError(
+            f"conditions = {given!r} is not a section; write [conditions] on a line of its own, temperature = 45 below."
+        )
+    for name, value in given.items():
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            raise StudyError(f"[conditions] {name} = {value!r} is no finite number; for example {name} = 45.")
+    return {name: float(value) for name, value in given.items()}
+
+
+def _table(place: str, name: str, said: Mapping[str, Any]) -> tuple[Table, str]:
+    """The table, its values counted in the unit of the first one, and that unit."""
+    rows = next(iter(said.values()), None)
+    pairs = isinstance(rows, list) and all(isinstance(row, list) and len(row) == 2 for row in rows)
+    if len(said) != 1 or not pairs:
+        raise StudyError(
+            f"{place} = {said!r}: expected a number, or a table over one condition, {name} = {EXAMPLE}."
+        )
+    from orbits.machines.physical.quantities import QuantityError
+    from orbits.machines.physical.units import counted, number_and_unit
+
+    condition, unit = next(iter(said)), ""
+    places, values = [], []
+    for where, value in rows:  # type: ignore[union-attr]
+        try:
+            if isinstance(value, str):
+                unit = unit or number_and_unit(value)[1]
+                value = counted(name, value, unit)
+            places.append(float(where))
+            values.append(float(value))
+        except (QuantityError, TypeError, ValueError) as error:
+            raise StudyError(f"{place}, the row [{where!r}, {value!r}]: {str(error).rstrip('.')}.") from None
+    try:
+        return Table(name, condition, tuple(places), tuple(values)), unit
+    except ParameterError as error:
+        raise StudyError(f"{place}: {error}.") from None
+
+
+def check_range(tables: Iterable[Table], name: str, values: Iterable[float], place: str) -> None:
+    """Refuse values of a condition that lie outside of a table.
+
+    Raises
+    ------
+    ValueError
+    """
+    for table in tables:
+        for value in values if table.condition == name else ():
+            try:
+                table(value)
+            except ParameterError as error:
+                raise ValueError(f"{place}: {error}.") from None

@@ -1,12 +1,16 @@
 """`contvines survey STUDY.toml`: a diagram of each of many machines, and what comes out of them."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from contvines.command.frame import beside, draw, refuse_source, tell
-from contvines.command.options import (
+from .frame import draw, held, interruptible, place_of, say, tell
+from .options import (
     FreshOption,
     JsonOption,
     PlotOption,
@@ -17,7 +21,8 @@ from contvines.command.options import (
 )
 
 if TYPE_CHECKING:
-    from contvines.survey import Survey
+    from ..survey import Survey
+    from .study_data import Study
 
 
 def survey(
@@ -62,39 +67,37 @@ def survey(
     quiet: QuietOption = False,
 ) -> None:
     """Diagrams of many machines: grids, tolerances, samples; an interrupted run goes on."""
-    from contvines.command.compose import check_shaken
-    from contvines.command.study import read_study
-    from contvines.command.surveying import surveyed
-    from contvines.export import check_target
-    from contvines.survey.outcomes import KNOWN
+    from ..export import check_target
+    from .compose import check_shaken
+    from .study import read_study
 
-    read = read_study(study)
+    read, wish = read_study(study), None
     check_shaken(read, read.survey.vary)
-    target = output or beside(study, "-survey.nc")
-    refuse_source(target, study)
-    check_target(target, "nc")
+    target = place_of(output, study, "-survey.nc")
     check_target(target.with_suffix(".csv"), "csv")
     refuse_alone(context, over="--best", covered="--best")
     if workers is not None and cluster is not None:
         raise ValueError(
             f"--workers {workers} and --cluster {cluster} exclude each other; leave one of them out."
         )
-    if best is None:
-        found = surveyed(read, target, workers, cluster, fresh, quiet)
+    if best is not None:
+        from .best import asking, check_over, read_wish
+
+        wish = read_wish(best)
+        check_over(read, over or [])
+        read = asking(read, wish.outcome)
+    found = surveyed(read, target, workers, cluster, fresh, quiet)
+    if wish is not None:
+        from .best import tell_choice
+
+        tell_choice(read, str(best), covered, found, json_, quiet, plot)
+    else:
         if json_ or not quiet:
             tell(found, as_json(found) if json_ else None)
         draw(plot, lambda: found.plot(outcome), quiet)
-        return
-    from contvines.command.best import asking, check_over, read_wish, tell_choice
-
-    wish = read_wish(best)
-    check_over(read, over or [])
-    read = asking(read, wish.outcome)
-    found = surveyed(read, target, workers, cluster, fresh, quiet)
-    tell_choice(read, best, KNOWN if covered is None else covered, found, json_, quiet, plot)
 
 
-def as_json(found: "Survey") -> dict[str, Any]:
+def as_json(found: Survey) -> dict[str, Any]:
     """A survey as one JSON object: a row per machine."""
     rows = [
         {
@@ -106,3 +109,73 @@ def as_json(found: "Survey") -> dict[str, Any]:
     ]
     said: dict[str, Any] = {"units": found.units} if found.units else {}
     return {"parameters": list(found.plan.names), "outcomes": list(found.columns), **said, "rows": rows}
+
+
+def surveyed(
+    study: Study, target: Path, workers: int | None, cluster: str | None, fresh: bool, quiet: bool
+) -> Survey:
+    """The survey of a study: from its file if that is finished, else computed, machine by machine.
+
+    Raises
+    ------
+    ValueError
+        If the file holds another survey, or the study cannot be surveyed.
+    """
+    from ..survey import load_survey
+    from ..survey.survey import digest_of
+    from ..survey.survey import survey as run
+    from .study_data import refused
+    from .survey_study import (
+        asked_of,
+        family_of,
+        outcomes_of,
+        plan_and_machine,
+        units_of,
+        ways_of,
+    )
+    from .sweep_rows import journal_of, refuse_another
+
+    (plan, model), outcomes, about = plan_and_machine(study), outcomes_of(study), asked_of(study)
+    over, within, journal = study.parameter, study.within, journal_of(target)
+    digest = digest_of(plan, over, within, about)
+    with held(target, quiet, fresh, (target.with_suffix(".csv"), journal)):
+        refuse_another(target, {"contvines": "unfinished survey", "of": digest})
+        if target.exists():
+            found = load_survey(target)
+            if found.about.get("digest") != digest:
+                raise ValueError(
+                    f"{target}: this file holds another survey (or this one before it was edited); --fresh sets it aside, "
+                    "-o gives another name."
+                )
+            if not journal.exists():
+                say(f"{target} holds the finished result of this survey; nothing to compute.", quiet)
+                return found
+        note = f"all finished machines are kept in {journal}; the same command goes on from there"
+        with without_main(), interruptible(note), refused(str(study.path)):
+            found = run(
+                family_of(study, model), plan, over=over, within=within, outcomes=outcomes, workers=workers, cluster=cluster, journal=journal,
+                units=units_of(study, model), about=about, progress=not quiet, **ways_of(study), **study.options,
+            )  # fmt: skip
+        try:
+            found.save(target)
+        except OSError as error:
+            raise ValueError(f"{target}: cannot be written ({error.strerror}).") from None
+        journal.unlink(missing_ok=True)
+        say(f"kept in {target} and {target.with_suffix('.csv')}", quiet)
+        return found
+
+
+@contextmanager
+def without_main() -> Iterator[None]:
+    """Worker processes do not run the script that started this command: nothing of it is needed there."""
+    import sys
+
+    main = sys.modules["__main__"]
+    kept = {name: getattr(main, name, None) for name in ("__file__", "__spec__")}
+    for name in kept:
+        setattr(main, name, None)
+    try:
+        yield
+    finally:
+        for name, value in kept.items():
+            setattr(main, name, value)

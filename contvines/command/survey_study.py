@@ -4,25 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contvines.command.conditions import check_range
-from contvines.command.own_code import own_code
-from contvines.command.sentences import refused
-from contvines.command.study_data import Sort, Study
-from contvines.flows.files import FlowFamily
-from contvines.flows.problem import FlowProblem
-from contvines.shared.files import module_of
-from contvines.shared.near_names import did_you_mean
+import numpy as np
+
 from orbits.design import Family
 from orbits.machines.varying import Varying
+from orbits.orbit import Orbit
 from orbits.words import Word
 
+from ..flows.files import FlowFamily
+from ..flows.problem import FlowProblem
+from ..shared.files import module_of
+from ..shared.near_names import did_you_mean
+from .own_study import own_code
+from .study import check_range
+from .study_data import Sort, Study, refused
+
 if TYPE_CHECKING:
-    from contvines.survey.outcomes import Findings, Outcome
-    from contvines.survey.plan import Plan
     from orbits.machines.physical.machine import Physical
+
+    from ..survey.outcomes import Findings, Outcome
+    from ..survey.plan import Plan
+
 
 WRITTEN = (Sort.PAGE, Sort.FLOW)  # equations in a Python file
 TEXTS = ("within", "values", "normal", "uniform")
@@ -36,9 +40,10 @@ def plan_and_machine(study: Study) -> tuple[Plan, Any]:
     ValueError
         If the plan cannot be; the sentence names the field, the value and a way out.
     """
-    from contvines.command.compose import machine
-    from contvines.survey import planned
     from orbits.machines.physical.quantities import near_quantity
+
+    from ..survey import planned
+    from .compose import machine
 
     said = dict(study.survey.vary)
     model = study.flow if study.sort is Sort.FLOW else machine(study)
@@ -75,21 +80,18 @@ def plan_and_machine(study: Study) -> tuple[Plan, Any]:
 
 def names_of(study: Study) -> Iterable[str]:
     """Names of all that may vary in the machine of a study."""
-    if study.sort is Sort.FLOW:
-        return study.parameters
-    if study.sort is Sort.PAGE:
-        return study.model.parameters
-    if study.sort is Sort.PHYSICAL:
-        return study.model.tables.quantities
-    return [entry.name for entry in study.model.settable]
+    if study.sort is Sort.CATALOGUE:
+        return [entry.name for entry in study.model.settable]
+    return study.model.tables.quantities if study.sort is Sort.PHYSICAL else study.parameters
 
 
 def family_of(study: Study, model: Varying | FlowProblem) -> Family | FlowFamily:
     """The machines, or flows, of a study's survey."""
     if study.sort is Sort.FLOW:
         assert isinstance(model, FlowProblem) and model.origin is not None
+        assert not isinstance(study.state, dict)
         file, name, _ = model.origin
-        return FlowFamily(file, name, study.parameter, study.parameters, study.listed_state, model.box)
+        return FlowFamily(file, name, study.parameter, study.parameters, study.state, model.box)
     assert isinstance(model, Varying)
     return machines_of(study, model)
 
@@ -114,10 +116,10 @@ def outcomes_of(study: Study) -> list[Outcome]:
 
 
 def _outcome(study: Study, said: str) -> Outcome:
-    from contvines.command.asked_measures import measures_of
-    from contvines.command.machine_outcomes import OWN
-    from contvines.survey.survey import outcome_named
     from orbits.machines.measures import way_out
+
+    from ..survey.survey import outcome_named
+    from .compose import measures_of
 
     place, known = f"[survey] outcomes: {said!r}", measures_of(study)
     file, _, function = said.rpartition(":")
@@ -134,7 +136,13 @@ def _outcome(study: Study, said: str) -> Outcome:
                 f"choose one of {', '.join(known)}"
             )
         if file.endswith(".py"):
-            return UserOutcome.of(own_code(study.path, file, place), function)
+            path = own_code(study.path, file, place)
+            if not path.is_file():
+                raise ValueError(f"[survey] outcomes: there is no file {path}")
+            own = UserOutcome(str(path.resolve()), function)
+            if not callable(own.loaded):
+                raise ValueError(f"[survey] outcomes: {path} has no function {function!r}")
+            return own
         if study.sort in WRITTEN and said in OWN and not (said == "dissipation" and "impact_loss" in known):
             raise ValueError(
                 f"{place} is known for the built-in machines (dissipation also by a declared machine with energy=); for equations of "
@@ -183,22 +191,14 @@ def ways_of(study: Study) -> dict[str, Any]:
     return {**said, "atlas": study.atlas.model_dump() if study.survey.atlas else None}
 
 
-def options_of(study: Study) -> dict[str, Any]:
-    """Options of each machine's diagram or atlas."""
-    return {"depth": study.depth, "virtual": study.virtual, "settings": study.settings}
-
-
 def units_of(study: Study, model: Varying | FlowProblem) -> dict[str, str]:
     """Units of parameters and outcomes."""
-    from contvines.command.machine_outcomes import UNITS
     from orbits.flows.catalogue import flow_of
 
     if not isinstance(model, Varying) or not model.units:
         return {}
-    over, shown = (
-        model.units.get(study.parameter, ""),
-        model.units.get(flow_of(model).default_measure(model), ""),
-    )
+    over = model.units.get(study.parameter, "")
+    shown = model.units.get(flow_of(model).default_measure(model), "")
     responses = "peak", "lower_peak", "modulated_low", "modulated_mean", "modulated_high"
     places = "peak_at", "lower_peak_at", "activation_from_below", "activation_from_above"
     units = model.units | dict.fromkeys(responses, shown) | UNITS | dict.fromkeys(places, over)
@@ -220,22 +220,6 @@ class UserOutcome:
     path: str
     function: str
 
-    @classmethod
-    def of(cls, path: Path, function: str) -> UserOutcome:
-        """The function, if the file has it.
-
-        Raises
-        ------
-        ValueError
-            If it has not.
-        """
-        if not path.is_file():
-            raise ValueError(f"[survey] outcomes: there is no file {path}")
-        found = cls(str(path.resolve()), function)
-        if not callable(found.loaded):
-            raise ValueError(f"[survey] outcomes: {path} has no function {function!r}")
-        return found
-
     @property
     def loaded(self) -> Callable[[Findings], Mapping[str, float] | float] | None:
         """The function itself."""
@@ -250,17 +234,12 @@ class UserOutcome:
 
 def _numbers(model: Physical, name: str, said: object, place: str) -> object:
     """Quantities as numbers counted in the machine's unit."""
-    from contvines.command.physical_study import number_of
+    from .physical_study import number_of
 
     def read(values: object, where: str, spread: int | None = None) -> object:
         if not isinstance(values, list):
             return values
-        pairs = [
-            number_of(model, name, value, f"{where}[{i}]", i == spread) for i, value in enumerate(values)
-        ]
-        if refusal := next((refusal for _, refusal in pairs if refusal), None):
-            raise ValueError(refusal)
-        return [number for number, _ in pairs]
+        return [number_of(model, name, value, f"{where}[{i}]", i == spread) for i, value in enumerate(values)]
 
     if not isinstance(said, dict):
         return read(said, place)
@@ -268,3 +247,45 @@ def _numbers(model: Physical, name: str, said: object, place: str) -> object:
         key: read(value, f"{place}.{key}", 1 if key == "normal" else None) if key in TEXTS else value
         for key, value in said.items()
     }
+
+
+def dissipation(found: Findings) -> dict[str, float]:
+    """Power that impacts and friction dissipate where the stable response of the diagram is largest; nan of a declared machine without ``energy=``."""
+    from ..survey.outcomes import highest, stretches
+
+    top = highest(stretches(found.graph))
+    if top is None or "impact_loss" not in top.stretch.branch.measure_names:
+        return {"impact_power": np.nan, "friction_power": np.nan}
+    orbit = top.stretch.branch.orbit(top.place)
+    assert isinstance(orbit, Orbit)
+    seconds = orbit.period * float(orbit.model.gauge("time", orbit.params))
+    share = seconds * (0.001 if orbit.model.units.get("impact_loss") == "J" else 1.0)  # shown in mW
+    return {f"{name}_power": orbit.measure(f"{name}_loss") / share for name in ("impact", "friction")}
+
+
+def pumping(found: Findings) -> dict[str, float]:
+    """How long a free decay takes to lose nine tenths of its energy, and the absorber's share of what is lost.
+
+    It starts from the displacement that is the largest of the stable responses of the diagram, the absorber at rest in the middle.
+    """
+    from orbits.design.transients import free_decay
+    from orbits.machines.base import Model
+
+    from ..survey.outcomes import peak
+
+    seed = found.seed
+    assert isinstance(seed, Orbit)
+    model = seed.model
+    assert isinstance(model, Model)
+    height = peak(found)["peak"] / float(model.gauge("length", seed.params))
+    if not np.isfinite(height):
+        return {"pumping_time": np.nan, "pumped_share": np.nan}
+    decay = free_decay(model, seed.params, height)
+    return {
+        "pumping_time": decay.pumping_time * float(model.gauge("time", seed.params)),
+        "pumped_share": decay.absorber_share,
+    }
+
+
+OWN: dict[str, Outcome] = {"dissipation": dissipation, "pumping": pumping}
+UNITS = {"impact_power": "mW", "friction_power": "mW", "pumping_time": "s"}

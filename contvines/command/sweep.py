@@ -1,11 +1,17 @@
-"""`contvines sweep`: brute-force simulation over the continuation parameter."""
+"""`contvines sweep`: brute-force simulation over the continuation parameter, and its picture, alone or over the branches of a graph."""
 
+from __future__ import annotations
+
+import math
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from contvines.command.frame import Interrupted, beside, draw, held, refuse_source, say, tell
-from contvines.command.options import (
+from ..shared.motions import BAND
+from ..shared.number_text import figures
+from ..text_table import Table, fitted, terminal_width
+from .frame import Interrupted, draw, held, load_file, place_of, say, tell
+from .options import (
     FreshOption,
     JsonOption,
     PlotOption,
@@ -14,15 +20,14 @@ from contvines.command.options import (
     argument,
     option,
 )
-from contvines.shared.motions import BAND
-from contvines.shared.number_text import figures
-from contvines.text_table import Table, fitted, terminal_width
 
 if TYPE_CHECKING:
-    from contvines.graph.graph import Graph
+    from matplotlib.figure import Figure
+
     from orbits.attractors.sweeping import SweepRow
 
-    from .study import Study
+    from ..graph.graph import Graph
+    from .study_data import Study
     from .sweep_rows import Kept
 
 
@@ -44,20 +49,15 @@ def sweep(
     quiet: QuietOption = False,
 ) -> None:
     """Simulate over the parameter, each value from the last state; an interrupted run goes on."""
-    from contvines.command.compose import check_shaken
-    from contvines.command.study import read_study
-    from contvines.command.sweep_rows import header_of, journal_of, refuse_another, rows_as_json
-    from contvines.export import check_target
+    from .compose import check_shaken
+    from .study import read_study
+    from .sweep_rows import header_of, journal_of, refuse_another, rows_as_json
 
     read = read_study(study)
     check_shaken(read)
-    target = output or beside(study, "-sweep.csv")
-    refuse_source(target, study)
-    check_target(target, "csv")
+    target = place_of(output, study, "-sweep.csv")
     graph: Graph | None = None
     if over is not None:
-        from contvines.command.sweep_picture import graph_beneath
-
         graph = graph_beneath(over, read)
         if plot is None:
             raise ValueError(f"--over {over}: there is nothing to draw over; give --plot FILE.png, too.")
@@ -67,35 +67,33 @@ def sweep(
     say(f"kept in {target}", quiet)
     if json_ or not quiet:
         tell(_summary(rows, read), rows_as_json(rows, read) if json_ else None)
-    from contvines.command.sweep_picture import picture
 
     draw(plot, lambda: picture(rows, read, graph, size), quiet)
 
 
-def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Kept]":
+def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]:
     """All rows, each written to the file as soon as it is there; those of an unfinished run are not repeated."""
     import numpy as np
 
-    from contvines.command.compose import machine
-    from contvines.command.sweep_rows import Rows, kept, measured_names
-    from contvines.progress import counted
     from orbits.attractors.sweeping import sweep as simulate
+
+    from ..progress import counted
+    from .compose import machine
+    from .sweep_rows import Rows, kept
 
     model = machine(study)
     low, high = study.sweep.within or study.within
     values = np.linspace(low, high, study.sweep.count)[:: -1 if down else 1]
     others: dict[str, Any] = {k: v for k, v in study.loose.items() if k != study.parameter}
-    names = measured_names(study)
     with (
-        Rows(target, study, down, names) as file,
-        counted(len(values), "values", not quiet, done=len(file.rows)) as count,
+        Rows(target, study, down) as file,
+        counted(len(values), "values", not quiet, done=(done := len(file.found))) as count,
     ):
-        done = len(file.rows)
         if done:
             say(f"{target} is unfinished: going on after {done} of {len(values)} values.", quiet)
 
-        def keep(row: "SweepRow") -> None:
-            file.keep(kept(row, "down" if down else "up", names))
+        def keep(row: SweepRow) -> None:
+            file.keep(kept(row, "down" if down else "up", file.names))
             if count is not None:
                 count(row)
 
@@ -106,7 +104,7 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
                     model,
                     study.parameter,
                     values[done:],
-                    start=np.array(file.rows[-1].state) if done else None,
+                    start=np.array(file.found[-1].state) if done else None,
                     transient=study.sweep.transient,
                     max_period=study.sweep.max_period,
                     progress=keep,
@@ -114,16 +112,16 @@ def _simulate(study: "Study", down: bool, target: Path, quiet: bool) -> "list[Ke
                 )
         except KeyboardInterrupt:
             raise Interrupted(
-                f"{len(file.rows)} of {len(values)} values are kept in {target}; {then}"
+                f"{len(file.found)} of {len(values)} values are kept in {target}; {then}"
             ) from None
-    return file.rows
+    return file.found
 
 
-def _summary(rows: "list[Kept]", study: "Study") -> str:
+def _summary(rows: list[Kept], study: Study) -> str:
     """Runs of equal attractors, one line each, and what is modulated."""
     from itertools import groupby
 
-    from contvines.graph.shortening import short_word
+    from ..graph.shortening import short_word
 
     runs, step = [], abs(rows[-1].value - rows[0].value) / max(len(rows) - 1, 1)
     for _, equal in groupby(rows, lambda row: (row.attractor, row.word, row.periods)):
@@ -142,3 +140,151 @@ def _summary(rows: "list[Kept]", study: "Study") -> str:
             f"in a forcing period from {figures(low)} to {figures(high)} {unit}".rstrip()
         )
     return "\n".join(map(fitted, lines))
+
+
+def graph_beneath(path: Path, study: Study) -> Graph:
+    """The graph of a file, if it is one of the study's machine in the study's parameter.
+
+    Raises
+    ------
+    ValueError
+        With a sentence that names the fields that differ and their values.
+    """
+    graph = load_file(path)
+    if graph.parameter != study.parameter:
+        raise ValueError(f"{path} continues in {graph.parameter}, the study sweeps over {study.parameter}.")
+    theirs, ours = _graph_machine(graph), _study_machine(study)
+    differing = [
+        f"{name} = {_shown(theirs[name])} there and {_shown(own)} in the study"
+        for name, own in ours.items()
+        if name != study.parameter and name in theirs and not _same(theirs[name], own)
+    ]
+    if differing:
+        raise ValueError(
+            f"--over {path}: this is the graph of another machine: {'; '.join(differing)}; "
+            f"make the graph of this one first: contvines diagram {study.path}."
+        )
+    return graph
+
+
+def _graph_machine(graph: Graph) -> dict[str, Any]:
+    """Name and parameters of a graph's machine; the excitation is known to its branches alone."""
+    from orbits.machines.catalogue import build
+    from orbits.machines.names import NAMES
+
+    known = dict(graph.model)
+    if "page" in known or known.get("name") not in NAMES:
+        return known
+    every = (branch.description.get("params") for branch in graph.branches.values())
+    params = next((params for params in every if params is not None), None)
+    if params is None:
+        return known
+    return {"name": known["name"], **dict(zip(build(known).parameter_names, params))}
+
+
+def _study_machine(study: Study) -> dict[str, Any]:
+    from .study_data import Sort
+
+    model = study.model
+    if study.sort is Sort.PHYSICAL:
+        return {"name": study.name, **model.named(model.vector())}
+    vector = model.vector({**study.loose, study.parameter: study.parameters[study.parameter]})
+    return {"name": model.name, **model.named(vector)}
+
+
+def _same(a: float | str, b: float | str) -> bool:
+    from ..continuation.settings import Settings
+    from ..shared.floating_point import TINY
+
+    if isinstance(a, str) or isinstance(b, str):
+        return a == b
+    return math.isclose(a, b, rel_tol=Settings.rounding, abs_tol=TINY)
+
+
+def _shown(value: object) -> str:
+    return repr(value) if isinstance(value, str) else f"{value:.15g}"
+
+
+def picture(
+    rows: list[Kept], study: Study, graph: Graph | None, size: tuple[float, float] | None = None
+) -> Figure:
+    """The attractors of a sweep as dots, over a graph if there is one."""
+    from orbits.flows.catalogue import flow_of
+
+    from ..plots.sweep import plot_sweep
+
+    model = study.model
+    look: dict[str, Any] = {
+        "units": model.units,
+        "notation": model.notation,
+        "figsize": size,
+    }
+    wandering = [(row.value, dot) for row in rows if not row.recurrent for dot in row.dots]
+    steady = [row for row in rows if row.recurrent]
+    measure = flow_of(model).default_measure(model)
+    if measure != "B":  # one number for the whole motion
+        points = [(row.value, dot) for row in steady for dot in row.dots]
+        # bands are of displacements
+        bands: list[Any] = [(row.value, *row.band) for row in rows if row.band and measure.startswith("max_")]
+        return plot_sweep(points, study.parameter, graph, measure, wandering=wandering, bands=bands, **look)
+    first: list[tuple[float, float]] = []
+    others: list[tuple[float, float]] = []
+    lines = _lines(graph) if graph is not None else []
+    for row in steady:
+        place = _drawn_impact(row, lines) if graph is not None else None
+        for i, dot in enumerate(row.dots):
+            (first if graph is None or i == place else others).append((row.value, dot))
+    return plot_sweep(first, study.parameter, graph, "B", others=others, wandering=wandering, **look)
+
+
+def _lines(graph: Graph) -> list[tuple[Any, Any, Any]]:
+    """Word, parameter values and B at the word's first impact of every branch that has one."""
+    from orbits.words import Word
+
+    from ..graph.measures import measured
+
+    found = []
+    for branch in graph.branches.values():
+        about = branch.description
+        if about.get("events") and len(branch) > 1:
+            word = Word.described(about)
+            if word.impacts:
+                found.append((word, branch.values, measured(branch, "B")))
+    return found
+
+
+def _drawn_impact(row: Kept, lines: list[tuple[Any, Any, Any]]) -> int | None:
+    """Which of a motion's impacts is the first one of its branch's word, whose B the branch's line shows.
+
+    Where a rotation or the mirror image of the word is the word again, several impacts may be: the mirror
+    image of an asymmetric orbit is the same orbit, and the line shows the nearest. None if no branch has the word.
+    """
+    import numpy as np
+
+    from orbits.words import Word, WordError
+
+    candidates: list[tuple[float, int]] = []
+    for word, values, heights in lines:
+        try:
+            own = Word.parse(row.word, word.frictionless)
+        except WordError:
+            continue
+        if len(own.events) != len(word.events):
+            continue
+        inside = np.flatnonzero((values[:-1] - row.value) * (values[1:] - row.value) <= 0.0)
+        if not len(inside):
+            continue
+        width = values[inside + 1] - values[inside]
+        share = np.divide(
+            row.value - values[inside], width, out=np.zeros_like(width), where=np.abs(width) > 0.0
+        )
+        there = heights[inside] + share * (heights[inside + 1] - heights[inside])
+        lead = next(i for i, letter in enumerate(word.events) if letter in "LR")
+        places = [i for i, letter in enumerate(own.events) if letter in "LR"]
+        for shift in range(len(own.events)):
+            turned = own.rotate(shift)
+            if word in (turned, turned.mirror()):
+                place = places.index((shift + lead) % len(own.events))
+                if place < len(row.dots):
+                    candidates.append((float(np.abs(there - row.dots[place]).min()), place))
+    return min(candidates)[1] if candidates else None

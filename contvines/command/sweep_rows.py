@@ -1,5 +1,7 @@
 """The rows of a sweep: the CSV, and beside it the journal from which an unfinished sweep goes on."""
 
+from __future__ import annotations
+
 import csv
 import json
 import math
@@ -8,12 +10,12 @@ from pathlib import Path
 from tempfile import gettempdir
 from typing import TYPE_CHECKING, Any
 
-from contvines.command.compose import machine
-from contvines.command.study_data import Study
-from contvines.graph.table import with_unit
-from contvines.shared import row_journal
-from contvines.shared.files import digest_of
-from contvines.shared.motions import BAND, SILENT
+from ..graph.table import with_unit
+from ..shared import row_journal
+from ..shared.files import digest_of
+from ..shared.motions import BAND, SILENT
+from .compose import machine
+from .study_data import Study
 
 if TYPE_CHECKING:
     from orbits.attractors.sweeping import SweepRow
@@ -58,18 +60,16 @@ class Kept:
         return int(self.cells[4])
 
 
-def kept(row: "SweepRow", direction: str, names: list[str]) -> Kept:
+def kept(row: SweepRow, direction: str, names: list[str]) -> Kept:
     """A row of `orbits.attractors.sweep` as it is kept; `names` are the measures in the CSV's order."""
     found, guess = row.detail, row.detail.guess
     kind = "periodic" if row.attractor == "sliding" else row.attractor
     cells = [repr(row.value), direction, kind, row.word, str(row.periods), str(row.impacts)]
-    measured = (float(row.measures[n]) for n in names)
-    cells += [
-        repr(x) if math.isfinite(x) or name not in (*BAND, SILENT) else "" for name, x in zip(names, measured)
-    ]
-    cells.append(row.modulation)
-    cells.append(str(int(found.symmetric)) if found.recurrent else "")
-    cells.append("" if guess is None else json.dumps([[float(x) for x in node] for node in guess]))
+    for name in names:
+        x = float(row.measures[name])
+        cells.append(repr(x) if math.isfinite(x) or name not in (*BAND, SILENT) else "")
+    nodes = "" if guess is None else json.dumps([[float(x) for x in node] for node in guess])
+    cells += [row.modulation, str(int(found.symmetric)) if found.recurrent else "", nodes]
     band = [float(row.measures[name]) for name in BAND] if row.modulation else []
     return Kept(
         cells, row.attractor, found.recurrent, row.dots, [float(x) for x in found.state], row.modulation, band
@@ -128,57 +128,49 @@ def refuse_another(target: Path, header: dict[str, str]) -> None:
         )
 
 
-class Rows:
+class Rows(row_journal.Rows[Kept]):
     """The rows of a sweep on disk, each kept as soon as it is there.
 
     The CSV is for the user. The journal beside it (`FILE.csv.unfinished`) also has the states, and goes when the sweep is finished.
     """
 
-    def __init__(self, target: Path, study: Study, down: bool, names: list[str]) -> None:
-        self.target = target
-        units = {"value": machine(study).units.get(study.parameter), **machine(study).units}
-        self.heads = [with_unit(name, units.get(name)) for name in (*FIRST, *names, *LAST)]
+    def __init__(self, target: Path, study: Study, down: bool) -> None:
+        self.target, self.names = target, measured_names(study)
+        units = machine(study).units
+        units = {"value": units.get(study.parameter), **units}
+        self.heads = [with_unit(name, units.get(name)) for name in (*FIRST, *self.names, *LAST)]
         self.lasting = target.is_file() or not target.exists()  # a pipe or a terminal has no journal
-        if self.lasting and not target.exists():
+        if not target.exists():
             journal_of(target).unlink(missing_ok=True)
-        self.journal = row_journal.Rows(
-            journal_of(target) if self.lasting else None, header_of(study, down), Kept
-        )
+        super().__init__(journal_of(target) if self.lasting else None, header_of(study, down), Kept)
 
-    @property
-    def rows(self) -> list[Kept]:
-        """All that are there."""
-        return self.journal.found
-
-    def __enter__(self) -> "Rows":
+    def __enter__(self) -> Rows:
         try:
-            self.journal.__enter__()
+            super().__enter__()
             self.table = self.target.open("w", newline="", encoding="utf-8")
         except OSError as error:
-            self.journal.__exit__()
+            super().__exit__()
             raise ValueError(
                 f"{self.target}: cannot be written there ({error.strerror}); "
                 f"choose another place with -o, for example -o {Path(gettempdir()) / self.target.name}."
             ) from None
-        self.writer = csv.writer(self.table)
-        self._write(self.heads, *(row.cells for row in self.rows))
+        self._write(self.heads, *(row.cells for row in self.found))
         return self
 
     def keep(self, row: Kept) -> None:
         """Write one more row."""
         self._write(row.cells)
-        self.journal.keep(row)
+        super().keep(row)
 
     def _write(self, *lines: list[str]) -> None:
-        self.writer.writerows(lines)
+        csv.writer(self.table).writerows(lines)
         self.table.flush()
 
-    def __exit__(self, kind: object, *_: object) -> None:
+    def __exit__(self, kind: object = None, *_: object) -> None:
         self.table.close()
-        if kind is None:
-            self.journal.finish()
-        else:
-            self.journal.__exit__()
+        super().__exit__()
+        if kind is None and self.path is not None:
+            self.path.unlink(missing_ok=True)
 
 
 def header_of(study: Study, down: bool) -> dict[str, str]:

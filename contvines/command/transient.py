@@ -1,4 +1,4 @@
-"""`contvines transient STUDY.toml`: a free decay, or the answer to a recorded motion of the base, with the absorber and without."""
+"""`contvines transient STUDY.toml`: a start-up, a free decay, or the answer to a recorded motion of the base, with the absorber and without; the same of declared machines."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 
-from contvines.command.frame import draw, say, tell
-from contvines.command.measured import Column, Rows, Scales, Series, measured
-from contvines.command.options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
-from contvines.command.page_transient import frequency_on_line, of_page, time_on_line
-from contvines.command.sentences import refused
-from contvines.command.study_data import Sort, Study
-from contvines.command.transient_table import Told, loads_rows, written
 from orbits.machines.physical.units import counted
+
+from ..shared.number_text import figures
+from .frame import present
+from .measured import Rows, Scales, Series, Told, loads_rows, measured, written
+from .options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone
+from .study_data import Sort, Study, refused
 
 if TYPE_CHECKING:
     from orbits.design.record import Response
     from orbits.design.transients import StartUp
+
 
 FARTHEST = 10.0  # metres that an oscillator is pulled aside
 HARDEST = 100_000.0  # m/s^2 that a base is accelerated by
@@ -81,9 +81,9 @@ def transient(
 
     The record is a CSV of time and acceleration; its column heads may name units (time [ms], acceleration [g]).
     """
-    from contvines.command.compose import machine
-    from contvines.command.study import read_study
-    from contvines.export import check_target
+    from ..export import check_target
+    from .compose import machine
+    from .study import read_study
 
     if [release is not None, record is not None, start_up].count(True) != 1:
         given = "none is" if release is None and record is None and not start_up else "more than one is"
@@ -106,17 +106,16 @@ def transient(
                 f"{study}: --record: the base is part of the equations of a declared machine; use --start-up or --release."
             )
         found = of_page(read, release, begin, over, time)
-    elif start_up:
-        if time is not None:
-            raise ValueError(f"--time {time}: this goes with --release.")
-        found = _started(read, begin, over)
+    elif release is not None:
+        found = _released(read, release, time)
+    elif record is not None:
+        found = _recorded(read, record, tail)
+    elif time is not None:
+        raise ValueError(f"--time {time}: this goes with --release.")
     else:
-        found = _released(read, release, time) if release is not None else _recorded(read, record, tail)  # type: ignore[arg-type]
-    tell(found, found.as_json() if json_ else None)
-    if output is not None:
-        written(output, found.series)
-        say(f"kept in {output}", json_)
-    draw(plot, lambda: found.draw(size), json_)
+        found = _started(read, begin, over)
+    written(output, found.series, json_)
+    present(found, json_, plot, size)
 
 
 def _released(study: Study, text: str, within: str | None) -> Told:
@@ -124,7 +123,7 @@ def _released(study: Study, text: str, within: str | None) -> Told:
 
     model, params = study.model, study.model.vector(study.loose)
     scales = Scales(model, params)
-    displacement = counted("--release", text, scales.unit("length")) / scales.factor("length")
+    displacement = scales.number("--release", text, "length")
     if scales.unit("length") and abs(displacement * scales.metre) > FARTHEST and not model.unusual:
         raise ValueError(
             f"--release {text} is implausible for an oscillator: expected at most {FARTHEST:g} m; if it is meant, say unusual = true in "
@@ -132,13 +131,6 @@ def _released(study: Study, text: str, within: str | None) -> Told:
         )
     with refused(f"{study.path}: --release {text}"):
         decay = free_decay(model, params, displacement)
-    more: Rows = []
-    if within is not None:
-        lasts = counted("--time", within, scales.unit("time")) / scales.factor("time")
-        with refused(f"{study.path}: --time {within}"):
-            share = taken_share(model, params, displacement, lasts)
-        words = f"of the initial energy: taken by impacts and friction in {within}"
-        more = [("taken_share", share, "", words)]
     lost = decay.impacts + decay.friction + decay.damping
     rows: Rows = [
         ("pumping_time", decay.pumping_time, "time", "until nine tenths of the energy are gone"),
@@ -146,8 +138,13 @@ def _released(study: Study, text: str, within: str | None) -> Told:
         ("impact_share", decay.impacts / lost, "", "of what was dissipated: by impacts"),
         ("friction_share", decay.friction / lost, "", "by friction"),
         ("damping_share", decay.damping / lost, "", "by the oscillator's own damping"),
-        *more,
     ]
+    if within is not None:
+        lasts = scales.number("--time", within, "time")
+        with refused(f"{study.path}: --time {within}"):
+            share = taken_share(model, params, displacement, lasts)
+        words = f"of the initial energy: taken by impacts and friction in {within}"
+        rows.append(("taken_share", share, "", words))
     series: Series = [
         ("time", "time", decay.times),
         ("energy", "", decay.energy),
@@ -162,10 +159,9 @@ def _started(study: Study, begin: str | None, over: str | None) -> Told:
     model, params = study.model, study.model.vector(study.loose)
     scales = Scales(model, params)
     run_up, rising = None, ""
-    if begin is not None and over is not None:
-        own = frequency_on_line(study, begin) / model.amount("frequency", params)
-        lasts = time_on_line(over, scales.unit("time")) / scales.factor("time")
-        run_up = own * float(model.phase_speed(params)), lasts
+    if said := _run_up(study, begin, over, scales.unit("time")):
+        own = said[0] / model.amount("frequency", params) * float(model.phase_speed(params))
+        run_up = own, said[1] / scales.factor("time")
         rising = f", its frequency running up from {begin} in {over}"
     with refused(f"{study.path}: --start-up"):
         seen = start_up(model, params, run_up=run_up)
@@ -196,8 +192,8 @@ def _recorded(study: Study, path: Path, tail: str | None) -> Told:
     scales = Scales(model, params)
     second, seconds = scales.unit("time"), scales.factor("time")
     rate = "m/s^2" if scales.unit("length") else ""
-    times, acceleration = measured(path, (Column("time", second), Column("acceleration", rate)))
-    after = 0.0 if tail is None else counted("--tail", tail, second) / seconds
+    times, acceleration = measured(path, {"time": second, "acceleration": rate})
+    after = 0.0 if tail is None else scales.number("--tail", tail, "time")
     if after < 0.0:
         raise ValueError(f"--tail {tail}: give a time of 0 or above.")
     if after > LONGEST:
@@ -248,3 +244,88 @@ def _motion(title: str, scales: Scales, rows: Rows, seen: StartUp | Response) ->
         ("bare_oscillator", "length", seen.bare),
     ]
     return Told(title, rows, scales.columns(series), seen.impact_times * scales.factor("time"))
+
+
+def _run_up(study: Study, begin: str | None, over: str | None, second: str) -> tuple[float, float] | None:
+    """`--from`, counted as the study counts its frequency, and `--over`, in its unit of time."""
+    if begin is None or over is None:
+        return None
+    name = study.model.default_parameter if study.sort is not Sort.PAGE else study.model.phase_rate
+    if name is None:
+        raise ValueError(
+            f"{study.path}: --from {begin}: the machine is self-excited, it has no frequency that could run up."
+        )
+    frequency = counted("--from", begin, study.model.units.get(name, ""))
+    if frequency < 0.0:
+        raise ValueError(f"--from {begin}: give a frequency of 0 or above.")
+    time = counted("--over", over, second)
+    if not time > 0.0:
+        raise ValueError(f"--over {over}: give a time above 0.")
+    return frequency, time
+
+
+def of_page(
+    study: Study, release: str | None, begin: str | None, over: str | None, within: str | None
+) -> Told:
+    """A transient of a declared machine: its states, its impacts and what these and friction take."""
+    from orbits.design.page_transients import page_transient
+    from orbits.machines.page.si import CONTACT
+
+    machine = study.model
+    params, shown = machine.vector(study.loose), machine.units
+    second = shown.get("time", "")
+    start = dict(study.named_state or {}) if release is None else _states(study, release)
+    run_up = _run_up(study, begin, over, second)
+    rising = dict(zip(("run_up_from", "run_up_time"), run_up or ()))
+    with refused(str(study.path)):
+        lasts = None if within is None else counted("--time", within, second)
+        seen = page_transient(machine, params, start, time=lasts, **rising)
+    rows: Rows = []
+    for name in seen.states:
+        unit = shown.get(name, "")
+        rows.append((f"largest_{name}", seen.largest[name], unit, f"largest size of {name}"))
+        if release is None:
+            words = "time to settle to 5 % (no number: it does not)"
+            rows.append((f"settled_{name}", seen.settled[name], second, words))
+    count = seen.impact_times.size
+    speed = shown.get("approach_speed", "")
+    rows += [("impacts", float(count), "", "how many")] if machine.equations.gap else []
+    if count:
+        rows.append(("fastest_impact", float(seen.impact_speeds.max()), speed, "largest impact speed"))
+    if seen.energy is not None:
+        held = study.parameters.get(CONTACT)
+        if held is not None:
+            held *= machine.equations.factors.get(CONTACT, 1.0)
+        loads = {**shown, "contact_time": second} if shown else {}
+        rows += loads_rows(float(seen.impulses.max(initial=0.0)), count, held, loads)
+        joule = shown.get("impact_loss", "")
+        rows.append(("impact_energy", float(seen.impacts[-1]), joule, "taken by impacts"))
+        rows.append(("friction_energy", float(seen.friction[-1]), joule, "by friction"))
+        if release is not None:
+            end = float(seen.times[-1])
+            words = f"of the initial energy: taken by both in {figures(end)} {second}".rstrip()
+            rows.append(("taken_share", seen.share(end), "", words))
+    series = [("time", second, seen.times)]
+    series += [(name, shown.get(name, ""), values) for name, values in seen.states.items()]
+    series += [] if seen.energy is None else [("energy", shown.get("impact_loss", ""), seen.energy)]
+    what = f"from {release}" if release else "from its start" if start else "from rest"
+    return Told(f"Transient of {study.path.name} {what}", rows, series, seen.impact_times, drawn=2)
+
+
+def _states(study: Study, text: str) -> dict[str, float]:
+    """`--release` of a declared machine: states by name."""
+    from ..shared.near_names import did_you_mean
+
+    machine, found = study.model, {}
+    example = f"{machine.states[0]} = 1 {machine.units.get(machine.states[0], '')}".rstrip()
+    for part in text.split(","):
+        name, _, value = (side.strip() for side in part.partition("="))
+        if name not in machine.states or not value:
+            known = ", ".join(machine.states)
+            raise ValueError(
+                f"--release {text!r}: {name!r} is no state with a value{did_you_mean(name, machine.states)}; of a declared machine it is a list such as "
+                f'"{example}", and the states are {known}.'
+            )
+        with refused(f"--release {text!r}"):
+            found[name] = counted(name, value, machine.units.get(name, ""))
+    return found

@@ -1,4 +1,4 @@
-"""An answer as one page that reads on paper: a headline, sentences, pictures, tables, lists."""
+"""An answer as one page that reads on paper (a headline, sentences, pictures, tables, lists), printed by a browser, or set by matplotlib where none is."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from matplotlib.backends.backend_pdf import PdfPages
     from matplotlib.figure import Figure
+
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 PATIENCE = 120.0  # seconds for a browser to print a page
@@ -119,3 +121,145 @@ def print_page(page: str | Path, target: str | Path) -> str:
                 f"{target}: {browser} could not print the page ({type(error).__name__}); open {page} and print it there."
             ) from None
     return Path(browser).name
+
+
+WIDE, HIGH = 595.0, 842.0  # points: A4
+MARGIN = 42.0
+ROOM = WIDE - 2.0 * MARGIN
+LEADING = 1.32  # of a font's size, from line to line
+BODY, SMALL, HEAD, TITLE = 9.0, 8.0, 10.5, 14.0  # points
+COLUMNS = (0.0, 0.31, 0.5)  # of the room: where a table's columns begin
+BLUE, GREY = "#0b3c6f", "0.35"
+SHARP = 220  # dots per inch of pictures
+
+
+def set_answer(answer: Answer, target: str | Path) -> None:
+    """Write an answer as PDF: headline, sentences and pictures on the first sheet, tables and lists on the next.
+
+    Parameters
+    ----------
+    answer : Answer
+    target : str or Path
+    """
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    with PdfPages(target, metadata={"Title": answer.title}) as pages:
+        sheet = _Sheet(pages)
+        sheet.text(answer.title, TITLE, weight="bold")
+        sheet.text(answer.headline, HEAD + 1.0, weight="bold", color=BLUE)
+        for sentence in answer.sentences:
+            sheet.text(sentence)
+        for figure, caption in answer.pictures:
+            sheet.picture(figure)
+            sheet.text(caption, SMALL, color=GREY)
+        for title, rows in answer.tables:
+            sheet.head(title, len(rows))
+            for row in rows:
+                sheet.row(row)
+        for title, sentences in answer.lists:
+            sheet.head(title, 1)
+            for sentence in sentences:
+                sheet.text(f"\N{BULLET} {sentence}", SMALL)
+        sheet.gap(BODY)
+        sheet.text(answer.footer, SMALL, color=GREY)
+        sheet.close()
+
+
+class _Sheet:
+    """Sheets that are filled from top to bottom."""
+
+    def __init__(self, pages: PdfPages) -> None:
+        from matplotlib.textpath import TextToPath
+
+        self.pages, self.measuring = pages, TextToPath()
+        self._begin()
+
+    def _begin(self) -> None:
+        from contvines.plots.figures import new_figure
+
+        self.figure = new_figure(figsize=(WIDE / 72.0, HIGH / 72.0))
+        self.below = HIGH - MARGIN  # where the free part of the sheet begins
+
+    def close(self) -> None:
+        """The sheet is done."""
+        self.pages.savefig(self.figure)
+
+    def turn(self) -> None:
+        """The next sheet."""
+        self.close()
+        self._begin()
+
+    def gap(self, height: float) -> None:
+        """Room, on the next sheet where this one has none left."""
+        if self.below - height < MARGIN:
+            self.turn()
+        self.below -= height
+
+    def _wrapped(self, text: str, size: float, room: float, weight: str) -> list[str]:
+        """Lines that are no wider than the room."""
+        from matplotlib.font_manager import FontProperties
+
+        font, lines = FontProperties(size=size, weight=weight), [""]
+        for word in text.split():
+            longer = f"{lines[-1]} {word}".strip()
+            if lines[-1] and self.measuring.get_text_width_height_descent(longer, font, False)[0] > room:
+                lines.append(word)
+            else:
+                lines[-1] = longer
+        return lines
+
+    def _line(
+        self, text: str, left: float, size: float, weight: str = "normal", color: str = "black"
+    ) -> None:
+        self.figure.text(
+            (MARGIN + left) / WIDE, self.below / HIGH, text, size=size, weight=weight, color=color, parse_math=False
+        )  # fmt: skip
+
+    def text(self, text: str, size: float = BODY, weight: str = "normal", color: str = "black") -> None:
+        """A paragraph."""
+        for line in self._wrapped(text, size, ROOM, weight):
+            self.gap(LEADING * size)
+            self._line(line, 0.0, size, weight, color)
+        self.below -= 0.35 * size
+
+    def head(self, title: str, rows: int) -> None:
+        """A title over so many rows, on the same sheet as they are if they fit one; with a line below."""
+        from matplotlib.lines import Line2D
+
+        needed = HEAD * 2.4 + rows * SMALL * 1.6
+        if needed > self.below - MARGIN and needed < HIGH - 2.0 * MARGIN:
+            self.turn()
+        self.gap(HEAD * 1.9)
+        self._line(title, 0.0, HEAD, "bold")
+        self.below -= 0.4 * HEAD
+        ends, height = (MARGIN / WIDE, 1.0 - MARGIN / WIDE), self.below / HIGH
+        self.figure.add_artist(Line2D(ends, (height, height), color="0.6", lw=0.6))
+
+    def row(self, cells: Sequence[str]) -> None:
+        """A row of a table, its last column broken where it is long."""
+        starts = [ROOM * part for part in COLUMNS[: len(cells)]]
+        ends = [*starts[1:], ROOM]
+        broken = [
+            self._wrapped(cell, SMALL, end - start - SMALL, "normal") for cell, start, end in zip(cells, starts, ends)
+        ]  # fmt: skip
+        for k in range(max(map(len, broken))):
+            self.gap(LEADING * SMALL)
+            for lines, start in zip(broken, starts):
+                if k < len(lines):
+                    self._line(lines[k], start, SMALL)
+        self.below -= 0.25 * SMALL
+
+    def picture(self, figure: Figure) -> None:
+        """A picture as wide as the sheet."""
+        import numpy as np
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+        figure.set_dpi(SHARP)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        dots = np.asarray(canvas.buffer_rgba())
+        height = ROOM * dots.shape[0] / dots.shape[1]
+        self.gap(height + BODY)
+        axes = self.figure.add_axes((MARGIN / WIDE, self.below / HIGH, ROOM / WIDE, height / HIGH))
+        axes.imshow(dots, aspect="auto")
+        axes.axis("off")

@@ -1,7 +1,9 @@
-"""What a report shows of a graph, as data for its page: curves, special points, orbits and how to get them again."""
+"""What a report shows of a graph, a chart or a survey, as data for its page: few digits, no infinities, no markup."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,15 +13,24 @@ from ..continuation.settings import Settings
 from ..graph.measures import default_measure
 from ..graph.proving import mark, proof_text
 from ..graph.shortening import motion_name, short_word
-from ..plots.style import mark_of
+from ..plots.chart import COLORS
+from ..plots.style import mark_of, mark_of_locus
+from ..plots.survey import label_of
+from ..problems.abilities import Animated
 from ..shared.stability import attracts, onto_axis, onto_circle
-from .numbers import heading, scene, shortened
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from ..branches.branch import Branch
     from ..branches.special_point import SpecialPoint
     from ..graph.attractor import Attractor
     from ..graph.graph import Graph
+    from ..loci.chart import Chart
+    from ..loci.locus import Locus, PlanePoint
+    from ..loci.regions import Region
+    from ..survey.results import Survey
+
 
 NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
 SAMPLES = (48, 160)  # points of an orbit's curves, fewest and most
@@ -45,7 +56,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
     return {
         **heading(graph, source, _measures(graph, y)),
         "parameter": graph.parameter,
-        "within": [float(v) for v in graph.within],
+        "within": list(graph.within),
         "axes": {"x": graph.parameter, "y": y},
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
         "special": [_point(graph, point, mark(graph, point.label)) for point in graph.special.values()],
@@ -76,7 +87,7 @@ def _branch(graph: Graph, branch: Branch, y: str) -> dict[str, Any]:
         "what": "" if word is None else motion_name(branch.description),
         "stable_points": None if branch.stable is None else branch.stable.astype(int).tolist(),
         "measures": measures,
-        "marks": [[int(i), label] for i, label in branch.marks],
+        "marks": [[i, label] for i, label in branch.marks],
         "proof": proof_text(graph, branch.label),
         "multipliers": [_pairs(row[:8]) for row in branch.multipliers],
         "margin": shortened(branch.margin),
@@ -89,7 +100,7 @@ def _point(graph: Graph, point: SpecialPoint, proof: str) -> dict[str, Any]:
         "name": look.name,
         "marker": look.marker,
         "proof": proof,
-        "index": int(point.index),
+        "index": point.index,
         "marginal": _marginal(point),
     }
 
@@ -109,12 +120,8 @@ def _marginal(point: SpecialPoint) -> bool:
 def _attractor(about: Attractor) -> dict[str, Any]:
     name = short_word(about.name)
     return {
-        "value": float(about.value),
+        **{key: getattr(about, key) for key in ("value", "kind", "branch", "share", "starts")},
         "name": name if about.periods <= 1 else f"{name} k={about.periods}",
-        "kind": about.kind,
-        "branch": about.branch,
-        "share": float(about.share),
-        "starts": int(about.starts),
     }
 
 
@@ -130,18 +137,214 @@ def _orbits(graph: Graph) -> dict[str, Any]:
     found = {}
     for branch in kept:
         marked = {i for i, _ in branch.marks}
-        scenes = {}
-        for i in range(len(branch)):
-            if i % step and i not in marked:
-                continue
-            shown = scene(branch.orbit(i), samples)
-            if shown is None:
-                break  # a problem whose solutions have no motion
-            scenes[str(i)] = shown
+        scenes = _scenes(branch, (i for i in range(len(branch)) if i % step == 0 or i in marked), samples)
         if scenes:
             found[branch.label] = scenes
     return found
 
 
+def _scenes(curve: Branch | Locus, places: Iterable[int], samples: int) -> dict[str, Any]:
+    """The motions at some points of a branch or locus; empty of a problem whose solutions have none."""
+    found = {}
+    for i in places:
+        shown = scene(curve.orbit(i), samples)
+        if shown is None:
+            break
+        found[str(i)] = shown
+    return found
+
+
 def _pairs(values: np.ndarray) -> list[list[float]]:
     return [[float(f"{v.real:.8g}"), float(f"{v.imag:.8g}")] for v in values if np.isfinite(v)]
+
+
+RASTER = 180  # cells of the picture of the regions each way, at most
+MOTIONS = 24  # of each locus
+DENSE = 90  # points of a motion's curves
+
+
+def chart_contents(chart: Chart, source: str) -> dict[str, Any]:
+    """The data of a chart's page.
+
+    Parameters
+    ----------
+    chart : Chart
+        With its problems attached, or loci come without motions.
+    source : str
+        Name of the file, as the Python lines on the page shall write it.
+
+    Returns
+    -------
+    dict
+        Plain numbers, text and lists.
+    """
+    return {
+        **heading(chart, source, chart.parameters),
+        "parameters": list(chart.parameters),
+        "within": [list(interval) for interval in chart.within],
+        "loci": [_locus(locus) for locus in chart.loci.values()],
+        "points": [_plane_point(point) for point in chart.points.values()],
+        "regions": [_region(region, chart.parameters) for region in chart.regions],
+        **_raster(chart),
+        "orbits": {locus.label: _motions(locus) for locus in chart.loci.values()},
+    }
+
+
+def _locus(locus: Locus) -> dict[str, Any]:
+    word = locus.branch.description.get("word")
+    return {
+        "label": locus.label,
+        "name": mark_of_locus(locus).name,
+        "marker": mark_of_locus(locus).marker,
+        "border": locus.kind not in COLORS,
+        "word": None if word is None else short_word(str(word)),
+        "p": shortened(locus.values[:, 0], 12),
+        "q": shortened(locus.values[:, 1], 12),
+        "real": locus.real,
+        "ended": list(locus.ended),
+        "seed": locus.seed,
+    }
+
+
+def _plane_point(point: PlanePoint) -> dict[str, Any]:
+    return point.to_dict() | {
+        "name": point.kind.replace("-", " "),
+        "multipliers": [],
+        "scene": None if point.problem is None else scene(point.orbit, DENSE),
+    }
+
+
+def _region(region: Region, parameters: tuple[str, str]) -> dict[str, Any]:
+    name = ", ".join(region.words) or "nothing was simulated here"
+    short = "<br>".join(short_word(word, 16) for word in region.words[:4])
+    told = region.to_dict(parameters)
+    if region.others:
+        apart = dict.fromkeys(", ".join(words) or "nothing" for _, words in region.others)
+        name, short = f"{name}; elsewhere in it {', or '.join(apart)}", f"{short}<br>(in part)"
+    return {"at": told["at"], "share": told["share"], "name": name, "short": short}
+
+
+def _raster(chart: Chart) -> dict[str, Any]:
+    """Which region each cell of the plane belongs to (-1: none), and where the cells lie."""
+    cells = [region.cells for region in chart.regions if region.cells.size]
+    if not cells:
+        return {"raster": [], "corner": [0, 0], "cell": [1, 1]}
+    rows, columns = cells[0].shape
+    index = np.full((rows, columns), -1)
+    for k, region in enumerate(chart.regions):
+        if region.cells.size:
+            index[region.cells] = k
+    step = max(1, int(np.ceil(max(rows, columns) / RASTER)))
+    index = index[step // 2 :: step, step // 2 :: step]
+    size = [(high - low) / n for (low, high), n in zip(chart.within, (rows, columns))]
+    return {
+        "raster": index.tolist(),
+        "corner": [float(low + (step // 2 + 0.5) * width) for (low, _), width in zip(chart.within, size)],
+        "cell": [float(step * width) for width in size],
+    }
+
+
+def _motions(locus: Locus) -> dict[str, Any]:
+    if locus.problem is None or not len(locus):
+        return {}
+    places = np.linspace(0, len(locus) - 1, min(MOTIONS, len(locus))).round().astype(int)
+    return _scenes(locus, np.unique(places).tolist(), DENSE)
+
+
+def survey_contents(survey: Survey, source: str) -> dict[str, Any]:
+    """The data of a survey's page.
+
+    Parameters
+    ----------
+    survey : Survey
+    source : str
+        Name of the file.
+
+    Returns
+    -------
+    dict
+        Plain numbers, text and lists; machines in the order of the plan.
+    """
+    from .. import __version__
+
+    systems = list(survey.plan.systems())
+    return {
+        "version": __version__,
+        "source": source,
+        "axes": {name: shortened(values, 12) for name, values in survey.plan.axes.items()},
+        "samples": list(survey.plan.samples),
+        "parameters": {
+            name: shortened([system[name] for system in systems], 12) for name in survey.plan.names
+        },
+        "columns": {name: shortened(np.ravel(values), 12) for name, values in survey.columns.items()},
+        "failed": survey.failed,
+        "notes": [str(note) for note in survey.notes.ravel()],
+        "units": dict(survey.units),
+        "names": {
+            name: plain_label(label_of(survey, name)) for name in (*survey.plan.names, *survey.columns)
+        },
+        "about": {str(k): _as_text(v) for k, v in survey.about.items()},
+    }
+
+
+def _as_text(value: object) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{k}: {_as_text(v)}" for k, v in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(_as_text(v) for v in value)
+    return str(value)
+
+
+def shortened(values: ArrayLike, digits: int = 9) -> list[float | None]:
+    """Numbers with so many digits; None for what is no finite number."""
+    return [float(f"{v:.{digits}g}") if np.isfinite(v) else None for v in np.asarray(values, dtype=float)]
+
+
+def rounded(value: object) -> object:
+    """Arrays and numbers within dicts and lists with five digits."""
+    if isinstance(value, np.ndarray):
+        return shortened(value, 5)
+    if isinstance(value, dict):
+        return {k: rounded(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [rounded(v) for v in value]
+    return float(f"{value:.5g}") if isinstance(value, float) else value
+
+
+def heading(result: Graph | Chart, source: str, names: Iterable[str]) -> dict[str, Any]:
+    """What every page of a graph or chart says: versions, model, settings, state, and these names as labels of axes."""
+    from .. import __version__
+    from ..plots.style import axis_label
+
+    model = {str(k): v for k, v in result.model.items() if not isinstance(v, dict | list)}
+    if "page" in model:  # not where it lay
+        model["page"] = PurePath(model["page"]).name
+    return {
+        "version": __version__,
+        "source": source,
+        "model": model,
+        "settings": result.settings,
+        "finished": result.finished,
+        "message": result.message,
+        "names": {
+            name: plain_label(axis_label(name, unit=result.units.get(name), notation=result.notation))
+            for name in names
+        },
+    }
+
+
+def scene(orbit: object, samples: int) -> dict[str, Any] | None:
+    """Curves of a motion for the page; None of a solution that has none."""
+    if not isinstance(orbit, Animated):
+        return None
+    return {name: rounded(part) for name, part in orbit.scene(samples).items()}
+
+
+def plain_label(label: str) -> str:
+    """A matplotlib label as plain text: no dollars and commands."""
+    for old, new in (
+        ("$^{-1}$", "⁻¹"), ("$", ""), (r"\Omega", "Ω"), (r"\mu", "μ"), (r"\tilde g", "g"), (r"\varepsilon", "ε"), (r"\lambda", "λ"),
+        ("^{2}", "²"), ("^{-2}", "⁻²"), ("^{3}", "³"), ("^+", "⁺"), ("^-", "⁻"), ("^2", "²"), ("_1", "₁"), ("_-", "₋"), (r"\,", " "),
+    ):  # fmt: skip
+        label = label.replace(old, new)
+    return label

@@ -72,10 +72,10 @@ def content_of(result: Graph | Chart | Survey, source: str) -> tuple[str, dict[s
 
         return "graph", contents(result, source)
     if isinstance(result, Chart):
-        from .chart_contents import chart_contents
+        from .contents import chart_contents
 
         return "chart", chart_contents(result, source)
-    from .survey_contents import survey_contents
+    from .contents import survey_contents
 
     return "survey", survey_contents(result, source)
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.command.compare import draw_compared, peaks_compared
 from contvines.command.compose import first_orbit, machine
+from contvines.command.plot import draw_compared, peaks_compared
 from contvines.command.study import read_study
 
 STUDY = """

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from contvines.command.editor_schema import study_schema
+from contvines.command.begin import study_schema
 from contvines.command.study import StudyError, check_study
 
 jsonschema = pytest.importorskip("jsonschema")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from contvines.command.commands import COMMANDS
+from contvines.command.cli import COMMANDS
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 

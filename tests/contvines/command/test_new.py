@@ -6,8 +6,8 @@ import platform
 import numpy
 import pytest
 
+from contvines.command.begin import Kind
 from contvines.command.compose import first_orbit
-from contvines.command.new import Kind
 from contvines.command.study import read_study
 from contvines.store import Store
 

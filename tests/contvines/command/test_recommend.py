@@ -200,7 +200,7 @@ def test_a_page_is_printed_on_paper(tmp_path):
 
 def test_without_a_browser_the_answer_is_set_on_two_sheets(tmp_path):
     from contvines.plots.figures import new_figure
-    from contvines.report.paper import set_answer
+    from contvines.report.answer import set_answer
 
     figure = new_figure(figsize=(9.0, 3.4))
     rows = [

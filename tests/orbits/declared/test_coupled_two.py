@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 
 import contvines as cv
 from contvines.command.compose import first_orbit
-from contvines.command.machine_outcomes import dissipation
 from contvines.command.study import check_study
+from contvines.command.survey_study import dissipation
 from contvines.survey.outcomes import Findings
 from orbits import Coupled, Machine, coupled_two
 from orbits.attractors.sweeping import sweep
