@@ -74,7 +74,7 @@ __getattr__ = on_demand(
         "StepRule": "contvines.continuation.settings",
         "Switch": "contvines.graph.graph",
         "Symmetry": "contvines.problems.protocol",
-        "Attractor": "contvines.graph.attractor",
+        "Attractor": "contvines.graph.contents",
         "atlas": "contvines.coexistence.build",
         "basins": "contvines.coexistence.basins",
         "erosion": "contvines.coexistence.erosion",
@@ -111,8 +111,8 @@ if TYPE_CHECKING:
     from .continuation.settings import Settings, StepRule
     from .continuation.trace import trace
     from .flows import FlowProblem
-    from .graph.attractor import Attractor as Attractor
     from .graph.automatic import diagram, switch
+    from .graph.contents import Attractor as Attractor
     from .graph.graph import Graph, Switch
     from .interrupts import Interrupted
     from .journal import MemoryJournal, NullJournal

@@ -22,7 +22,7 @@ from scipy.integrate import solve_ivp
 
 import contvines as cv
 from contvines import Settings
-from contvines.bifurcation.segment import Segment
+from contvines.bifurcation.locate import Segment
 from contvines.branches.solutions import solutions_at
 from contvines.continuation.engine import Engine, Solved
 

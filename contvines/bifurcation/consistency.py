@@ -9,20 +9,28 @@ Along one branch
 Neighbouring branches have opposite signs of the determinant, so a step from one branch to another shows, too: it is traced again with
 shorter ones (:mod:`contvines.branches.tracing`). Any other segment that does not agree is halved until its parts do, or are as short as
 `Settings.resolution`; then the graph says that it is unresolved.
+
+det [[F_u, F_p], [t]] = det(F_u) t.t / t_p for the tangent t: with its sign, which comes with every point, that of det(F_u) is
+known. It has the accuracy of an elimination with pivots; eigenvalues may have less, where the others are very much larger.
+
+A matrix is regular, and its determinant has one sign, for all errors of its entries up to E where the spectral radius of |M^-1| E is
+below one (Rump, Linear Multilinear Algebra 47 (2000) 1, theorem 1.1; with E a multiple of |M| the radius is the componentwise condition
+number of Bauer and Skeel, which scales of rows and columns do not change). Elsewhere the sign may be that of rounding, and says nothing.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from ..continuation.engine import Engine, Solved
-from .determinant import certain, turned
-from .located import Located, Role
+from ..problems.abilities import Doubtful
+from ..shared.floating_point import EPSILON
+from .locate import Located, Role, Root, Segment
 from .location_error import rounding_of_parameter, singular_within
-from .multiplier_counts import pairs_past
-from .segment import Segment
+from .scan import pairs_past
 from .settings import LOCATING
 
 #: sort of multipliers -> kinds at which one of them passes the circle
@@ -31,6 +39,7 @@ PASSED_AT = (
     ("period-doubling", "symmetry-breaking"),
     ("neimark-sacker", "hopf"),
 )
+ROUNDING = 32.0 * EPSILON  # of entries
 KNOWN = 10.0  # times the distance of a multiplier from the circle where it should be on it: how well the others are known
 
 
@@ -51,8 +60,10 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     side = turned(segment.a, segment.b)
     if engine.scaled and engine.signed and abs(plus) == 1 and side is False:
         plus = 0  # a count that the determinant contradicts is that of rounding
-    if plus and engine.adaptive and segment.a.sign == segment.b.sign and _at_one_value(segment):
-        plus = 0  # folds that are nearer than rounding
+    if plus and engine.adaptive and segment.a.sign == segment.b.sign:
+        rounded = max(rounding_of_parameter(engine, end) for end in (segment.a, segment.b))
+        if abs(segment.b.p - segment.a.p) <= 2.0 * rounded:
+            plus = 0  # folds that are nearer than rounding
     if max(abs(end.tangent[-1]) for end in (segment.a, segment.b)) <= engine.upright(segment.a.p):
         plus = 0  # det(F_u) vanishes with the parameter's part of the tangent, all along an upright branch
     if not engine.scaled and engine.detection == "map" and side is not None and plus % 2 != side:
@@ -65,20 +76,9 @@ def unaccounted(segment: Segment, found: Sequence[Located]) -> bool:
     if not (missing and (plus + minus + 2 * pairs != 0 or plus % 2 == 1)):
         return False
     # two that have come past +1 may meet, and be past -1 at the end
-    odd = [change % 2 == number % 2 for change, number in zip((plus, minus), known)]
-    return not (engine.adaptive and all(odd) and _explained(segment, found))
-
-
-def _at_one_value(segment: Segment) -> bool:
-    """Whether the parameter values of both ends cannot be told apart, for rounding."""
-    rounded = max(rounding_of_parameter(segment.engine, end) for end in (segment.a, segment.b))
-    return abs(segment.b.p - segment.a.p) <= 2.0 * rounded
-
-
-def _explained(segment: Segment, found: Sequence[Located]) -> bool:
-    """Whether folds, flips and pairs that are found take as many multipliers across the circle as lie outside at one end and not at the other."""
-    known = bool(found) and all(_others_outside(segment.engine, event) is not None for event in found)
-    return known and not _unseen_between(segment, found)
+    odd = all(change % 2 == number % 2 for change, number in zip((plus, minus), known))
+    told = bool(found) and all(_others_outside(engine, event) is not None for event in found)
+    return not (engine.adaptive and odd and told and not _unseen_between(segment, found))
 
 
 def _unseen_between(segment: Segment, found: Sequence[Located]) -> bool:
@@ -140,7 +140,8 @@ def at_one(engine: Engine, event: Located) -> bool:
 def unresolved(segment: Segment, middle: Solved) -> Located:
     """A mark in the middle of a segment that is not halved any more, though its ends say more than what is found on it."""
     ends = (segment.a.p, segment.b.p)
-    return Located(0.5, "", 0, middle, ends, 0.5 * abs(ends[1] - ends[0]), Role.UNRESOLVED)
+    error = 0.5 * abs(ends[1] - ends[0])
+    return Located(0.5, middle, role=Role.UNRESOLVED, error=error, bracket=ends)
 
 
 def leap(segment: Segment, found: list[Located]) -> Located | None:
@@ -154,14 +155,13 @@ def leap(segment: Segment, found: list[Located]) -> Located | None:
     """
     stop = next((i for i, e in enumerate(found) if e.ends_branch), len(found))
     short = segment.length <= segment.engine.settings.resolution
-    changed = _unaccounted(segment, found, stop)
+    changed = _sign_unaccounted(segment, found, stop)
     if not changed and (short or not any(inexact(segment, e) for e in found[: stop + 1])):
         return None
-    ends = (segment.a.p, segment.b.p)
     if short:
         middle = segment.at(0.5)
         return None if middle is None else unresolved(segment, middle)
-    return Located(0.0, "", 0, segment.a, ends, 0.0, Role.LEAP)
+    return Located(0.0, segment.a, role=Role.LEAP)
 
 
 def inexact(segment: Segment, event: Located) -> bool:
@@ -183,7 +183,7 @@ def inexact(segment: Segment, event: Located) -> bool:
     return residual > solved and residual > solved * segment.engine.size(event.point.u)
 
 
-def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
+def _sign_unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
     """Whether the sign changes before the branch ends, and nothing was found at which it may."""
     if any(e.kind == "branch-point" or e.role is Role.MEETING for e in found[: stop + 1]):
         return False
@@ -197,3 +197,80 @@ def _unaccounted(segment: Segment, found: list[Located], stop: int) -> bool:
     if beside[0] is not None and beside[1] is not None and not beside[0].sign * beside[1].sign < 0.0:
         return False
     return certain(segment.engine, segment.a) and certain(segment.engine, last)
+
+
+# ------------------------------------------------------------------ the determinant
+@lru_cache(maxsize=64)
+def _side(n: int) -> np.ndarray:
+    """A vector without a pattern."""
+    return np.random.default_rng(7).standard_normal(n)
+
+
+def singular(engine: Engine, point: Solved) -> bool:
+    """Whether [[F_u, F_p], [tangent]] is singular: nearer to a singular matrix than segments are resolved, or the noise of the equations allows."""
+    engine.residual(point.u, point.p)
+    side = np.append(engine.row_sizes * _side(engine.n), 0.0)
+    image = engine.apply_inverse(engine.weights * point.tangent, side)
+    near = max(engine.settings.resolution, LOCATING.noisy * engine.noise)
+    return not (np.isfinite(image).all() and engine.norm(image) < 1.0 / near)
+
+
+def is_astray(segment: Segment, root: Root) -> bool:
+    """Whether the segment has led from one branch to another at a change of the sign, so that there is no branch point."""
+    engine = segment.engine
+    return not (engine.many or segment.length <= engine.settings.resolution or singular(engine, root.point))
+
+
+def alone(engine: Engine, point: Solved) -> bool:
+    """Whether the branch is alone at a point where a multiplier passes +1: the segment has led from one branch to another.
+
+    Of a branch point the tangent leaves a null vector over; here [[F_u, F_p], [tangent]] is far from singular.
+    """
+    stationary = abs(point.tangent[-1]) <= engine.settings.stationary * engine.parameter_unit(point.p)
+    return stationary and not singular(engine, point)
+
+
+def turned(a: Solved, b: Solved) -> bool | None:
+    """Whether det(F_u) has another sign at b than at a; None where it is zero at one of them, or has no sign."""
+    product = a.sign * a.tangent[-1] * b.sign * b.tangent[-1]
+    return bool(product < 0.0) if product else None
+
+
+def passes(segment: Segment, position: float, reach: float | None = None) -> bool:
+    """Whether det(F_u) changes its sign within a reach of a place on a segment, as it does where one eigenvalue vanishes."""
+    reach = segment.engine.settings.aside if reach is None else reach
+    sides = segment.several((position - reach, position + reach))
+    return sides[0] is not None and sides[1] is not None and turned(sides[0], sides[1]) is not False
+
+
+def certain(engine: Engine, point: Solved) -> bool:
+    """Whether the sign of det [[F_u, F_p], [tangent]] at a point is known in spite of the errors of F_u and F_p.
+
+    True also of problems that do not tell those errors (:class:`contvines.problems.abilities.Doubtful`), or whose matrices are sparse.
+    """
+    problem = engine.problem
+    if not isinstance(problem, Doubtful):
+        return True
+    from ..problems.dense import DenseWork
+
+    engine.residual(point.u, point.p)
+    work, doubts = engine.work, problem.doubts(engine.work, ROUNDING)
+    if not isinstance(work, DenseWork) or not isinstance(doubts, np.ndarray):
+        return True
+    matrix = np.empty((engine.n + 1, engine.n + 1))
+    matrix[:-1, :-1], matrix[:-1, -1] = work.jacobian, work.derivative
+    matrix[-1] = engine.weights * point.tangent
+    with np.errstate(all="ignore"):
+        try:
+            effect = np.abs(np.linalg.inv(matrix))[:, :-1] @ doubts
+            return bool(np.abs(np.linalg.eigvals(effect)).max() < 1.0)
+        except np.linalg.LinAlgError:
+            return False
+
+
+def passes_for_certain(segment: Segment, position: float) -> bool:
+    """Whether a change of the sign within a segment, at a place in [0, 1], is none of rounding: it is known on both sides."""
+    ends = ((segment.a, 0.0), (segment.b, 1.0))
+    return all(
+        abs(position - s) <= segment.engine.settings.aside or certain(segment.engine, end) for end, s in ends
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
+from operator import attrgetter
 
 import numpy as np
 
@@ -13,17 +14,12 @@ from ..continuation.layout import Chunk, Status
 from ..problems.abilities import Nearing
 from ..shared.floating_point import EPSILON
 from .consistency import at_one, leap
-from .evidence import evidence, filled, may_be_real, pointed, suspicious
-from .kinks import kinked, nearest
-from .locate import locate
-from .located import NOWHERE, Located, Role
+from .evidence import evidence, filled, kinked, may_be_real, nearest, pointed, suspicious
+from .locate import Located, Role, Segment, locate
 from .location_error import rounding_of_parameter
-from .multiplier_counts import counts
-from .scan import Scan, scanner
-from .segment import Segment
+from .scan import Scan, counts, scanner, turns_round
 from .segment_search import SegmentSearch
 from .settings import LOCATING
-from .symmetry_test import turns_round
 
 BESIDE = 0.02  # part of the segment next to a branch point that is left out ...
 MOST = 0.5  # ... but not more
@@ -31,6 +27,9 @@ NEARER = 0.25  # times that, where its end tells that something is on it
 NEXT = (
     0.1  # part of the distance from a symmetry's fixed space that a step which ends next to a meeting leaves
 )
+
+
+POSITION = attrgetter("position")
 
 
 class Detector(SegmentSearch):
@@ -54,81 +53,62 @@ class Detector(SegmentSearch):
         """
         if len(chunk) < 2:
             return []
-        engine = self.engine
+        engine, many = self.engine, self.engine.many
         wide = chunk.widened() if len(chunk) == 2 else chunk  # two points are too few for a parabola
         extra = len(wide) - len(chunk)
-        own = [np.asarray(own.values(wide), dtype=float) for own in self.own]
         if extra:
             scanned = self.scan(wide)
         meets, lands = self._meetings_and_landings(wide, scanned)
-        if scanned.quiet and not (own or meets.any() or lands.any()):
+        if scanned.quiet and not (self.own or meets.any() or lands.any()):
             return []
-        lengths = scanned.lengths
-        seen = evidence(
-            engine,
-            wide.rows,
-            scanned.smallest,
-            scanned.spectra,
-            wide.tangents[:, -1],
-            wide.signs,
-            engine.upright(float(wide.values[0])),
-            np.column_stack(own) if own else np.zeros((len(wide), 0)),
-        )
+        lengths, seen = scanned.lengths, evidence(engine, wide, self.own, scanned)
         sides, outside = filled(seen.sides), seen.outside
         borders = (outside[1:] != outside[:-1]) & (outside[1:] == real)
+        told = (sides[1:] != sides[:-1]).any(axis=1) | borders | meets
         columns, inside = suspicious(seen, scanned)
         smallest = seen.first_margin - 1
         inside[:, smallest] = False if real else may_be_real(seen, lengths)
         inside[borders if real else slice(None), smallest + 1 :] = False
-        apart = (scanned.reached > 0.0) & (not engine.many)
-        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths)
-        told = ((sides[1:] != sides[:-1]).any(axis=1) | borders | meets)[extra:]
-        meets, lands = meets[extra:], lands[extra:]
-        inside, apart, sharp = inside[extra:], apart[extra:] & ~meets, sharp[extra:] & ~meets
         inside[meets] = (
             False  # a branch that comes back to a symmetry is marginal there: no point to cut it at
         )
-        movable = lands if chunk.status == Status.RUNNING else lands[:-1]
+        apart = (scanned.reached > 0.0) & (not many) & ~meets
+        sharp = pointed(nearest(engine, wide.rows, scanned.spectra), sides[:, 1], lengths) & ~meets
+        open_ = told | sharp | apart | inside.any(axis=1)
+        movable = lands[extra:] if chunk.status == Status.RUNNING else lands[extra:-1]
         landed = int(movable.argmax()) if movable.any() else None
         events: list[Located] = []
-        for i in np.flatnonzero((told | sharp | apart | inside.any(axis=1))[:landed]).tolist():
-            signs = sides[i + extra : i + extra + 2, 1].tolist()
-            segment = Segment(engine, chunk.solved(i, signs[0]), chunk.solved(i + 1, signs[1]))
-            suspects = columns[inside[i]].tolist()
-            split = self.inside(segment, real, suspects) if suspects else None
-            if split is None and apart[i]:
-                split = self.halved(segment, real, _neighbours(wide, lengths, i + extra))
-            if engine.many and sharp[i]:
+        for i in np.flatnonzero(open_[extra:][:landed]).tolist():
+            k = i + extra
+            one, other = (chunk.solved(i + j, float(sides[k + j, 1])) for j in (0, 1))
+            segment = Segment(engine, one, other)
+            split = self.inside(segment, real, columns[inside[k]].tolist()) if inside[k].any() else None
+            if split is None and apart[k]:
+                split = self.halved(segment, real, _neighbours(wide, lengths, k))
+            if many and sharp[k]:
                 found = self._closely(segment, real)
             elif split is not None:
-                found = [*self.both(segment, *split, real), _plain(*split)]
-            elif told[i]:
-                found = self.search(segment, real=real)
+                found = [*self.both(segment, *split, real), Located(*split, role=Role.PLAIN)]
+            elif told[k]:
+                found = self.search(segment, real)
                 border = next((e for e in found if e.role is Role.BORDER), None)
                 split = self.before_border(segment, border) if real and border else None
                 if split is not None:
                     found = self.both(segment, *split, real)
+            elif sharp[k] and kinked(segment):
+                return [*events, Located(float(i), segment.a, role=Role.LEAP)]
             else:
-                found = []
-            if sharp[i] and not (engine.many or found) and kinked(segment):
-                return [*events, Located(float(i), "", 0, segment.a, NOWHERE, 0.0, Role.LEAP)]
-            if not (found or told[i] or split is not None or (engine.many and sharp[i])):
                 continue
-            found.sort(key=lambda e: e.position)
-            leaping = leap(segment, found)
+            if sharp[k] and not (many or found) and kinked(segment):
+                return [*events, Located(float(i), segment.a, role=Role.LEAP)]
+            found, leaping = self._certain(segment, found)
             if leaping is not None and leaping.role is Role.LEAP:
                 return [*events, replace(leaping, position=float(i))]
-            if leaping is not None:
-                found = sorted([*found, leaping], key=lambda e: e.position)
-            found = [
-                e
-                for e in found
-                if not (e.astray or (e.role is Role.SPECIAL and not e.name and self._placeless(e)))
-            ]
-            found = [replace(e, error=e.rounding) if e.rounding > e.error else e for e in found]
+            found = sorted([*found, leaping], key=POSITION) if leaping is not None else found
             found = self._within(segment, found)
             bracket = (float(chunk.values[i]), float(chunk.values[i + 1]))
-            found = [_placed(e, i + _inside(e.position), bracket) for e in found]
+            # an interpolated point may lie just outside of its segment
+            found = [_placed(e, i + min(max(e.position, 0.0), 1.0 - EPSILON), bracket) for e in found]
             stop = next((e for e in found if e.ends_branch), None)
             if stop is not None:
                 # at a vanishing stick or flight p is stationary: the fold at the border itself is the border
@@ -139,8 +119,16 @@ class Detector(SegmentSearch):
                 return events
         if landed is None:
             return events
-        bracket = (float(chunk.values[landed]), float(chunk.values[landed + 1]))
-        return [*events, Located(float(landed), "", 0, chunk.solved(landed), bracket, 0.0, Role.LANDING)]
+        return [*events, Located(float(landed), chunk.solved(landed), role=Role.LANDING)]
+
+    def _certain(self, segment: Segment, found: list[Located]) -> tuple[list[Located], Located | None]:
+        """What was found, in order, without what is no special point and what may be anywhere in the interval; and whether it tells of a leap."""
+        found = sorted(found, key=POSITION)
+        leaping, most = leap(segment, found), self.engine.upper - self.engine.lower
+        special = [
+            e for e in found if not (e.astray or (e.role is Role.SPECIAL and not e.name and e.error > most))
+        ]
+        return [replace(e, error=max(e.error, e.rounding)) for e in special], leaping
 
     def beside(self, origin: Solved, first: Solved, real: bool = True) -> list[Located]:
         """The special points between a branch point and the first point of a branch that leaves it, in order; a leap comes last.
@@ -167,27 +155,17 @@ class Detector(SegmentSearch):
         if share < beyond:
             split = (beyond - share) / (1.0 - share), seen
         found = self.search(segment, real) if split is None else self.both(segment, *split, real)
-        found.sort(key=lambda e: e.position)
-        leaping = leap(segment, found)
-        leaping = leaping if leaping is not None and leaping.role is Role.LEAP else None
+        found, leaping = self._certain(segment, found)
         # at the branch point the parameter is stationary itself: on a flat branch it seems to turn back, or to branch, where rounding has it
         flat = settings.rounding * max(self.engine.parameter_unit(origin.p), abs(origin.p))
-
-        def told(event: Located) -> bool:
-            """Whether the parameter at an event is another one than at the branch point, as far as both are known."""
-            return self._told(origin, event.point, max(flat, 10.0 * event.error))
-
         found = [
-            e
+            _placed(e, share + (1.0 - share) * e.position, (origin.p, first.p))
             for e in found
-            # what cannot be located is no special point: the segment leads on to another branch
-            if not e.astray
-            and not self._placeless(e)
-            and not (e.kind in ("fold", "branch-point") and not told(e))
+            if e.kind not in ("fold", "branch-point")
+            or self._told(origin, e.point, max(flat, 10.0 * e.error))
         ]
-        bracket = (origin.p, first.p)
-        found = [_placed(e, share + (1.0 - share) * e.position, bracket) for e in found]
-        return before_stop(found) + ([] if leaping is None else [leaping])
+        leaps = leaping is not None and leaping.role is Role.LEAP
+        return before_stop(found) + ([leaping] if leaping is not None and leaps else [])
 
     def _told(self, origin: Solved, point: Solved, error: float = 0.0) -> bool:
         """Whether the parameter of a point, known to an error and to rounding, is another one than that of a branch point."""
@@ -253,7 +231,7 @@ class Detector(SegmentSearch):
             return []
         a = a._replace(tangent=segment.a.tangent, sign=segment.a.sign)
         b = b._replace(tangent=segment.b.tangent, sign=segment.b.sign)
-        return search.search(Segment(search.engine, a, b), real=real)
+        return search.search(Segment(search.engine, a, b), real)
 
     @cached_property
     def _closer(self) -> SegmentSearch:
@@ -270,42 +248,29 @@ class Detector(SegmentSearch):
         engine = self.engine
         for k, event in enumerate(events):
             bound = min(max(event.point.p, engine.lower), engine.upper)
-            if abs(event.point.p - bound) <= max(
-                event.error, engine.settings.rounding * engine.parameter_unit(bound)
-            ):
+            known = max(event.error, engine.settings.rounding * engine.parameter_unit(bound))
+            if abs(event.point.p - bound) <= known:
                 continue
             root = locate(Segment(engine, segment.a, event.point), lambda point, bound=bound: point.p - bound)
             if root is not None:
                 found = engine.at_value(root.point.u, bound, root.point.tangent) or root.point
                 place = event.position * root.position
-                left = Located(place, "", 0, found, (segment.a.p, event.point.p), 0.0, Role.LEFT)
-                return [*(e for e in events[:k] if e.position < place), left]
+                return [*(e for e in events[:k] if e.position < place), Located(place, found, role=Role.LEFT)]
         return events
-
-    def _placeless(self, event: Located) -> bool:
-        """Whether rounding leaves open where an event is: anywhere in the interval."""
-        return bool(event.error > self.engine.upper - self.engine.lower)
 
     def _apart(self, event: Located, stop: Located) -> bool:
         """Whether an event close to where a branch ends is one of its own: bifurcations are, and folds at which a multiplier is +1."""
+        engine, settings = self.engine, self.engine.settings
         own = event.kind not in ("fold", "branch-point") or (
-            self.engine.detection == "map" and at_one(self.engine, event)
+            engine.detection == "map" and at_one(engine, event)
         )
-        settings = self.engine.settings
-        return self.engine.distance(event.point, stop.point) > (
-            settings.at_end if own else settings.one_place
-        )
+        return engine.distance(event.point, stop.point) > (settings.at_end if own else settings.one_place)
 
 
 def _neighbours(chunk: Chunk, lengths: np.ndarray, i: int) -> list[tuple[float, np.ndarray]]:
     """The points before and behind segment i of a chunk: their places on it, and their rows."""
     before = [(-lengths[i - 1] / lengths[i], chunk.rows[i - 1])] if i > 0 else []
     return before + ([(1.0 + lengths[i + 1] / lengths[i], chunk.rows[i + 2])] if i + 1 < len(lengths) else [])
-
-
-def _plain(place: float, point: Solved) -> Located:
-    """Just a point between two special points."""
-    return Located(place, "", 0, point, (np.nan, np.nan), 0.0, Role.PLAIN)
 
 
 def _placed(event: Located, position: float, bracket: tuple[float, float]) -> Located:
@@ -317,12 +282,5 @@ def _placed(event: Located, position: float, bracket: tuple[float, float]) -> Lo
 
 def before_stop(events: list[Located]) -> list[Located]:
     """The events up to the first one at which the branch ends."""
-    for i, event in enumerate(events):
-        if event.ends_branch:
-            return events[: i + 1]
-    return events
-
-
-def _inside(position: float) -> float:
-    """The position in [0, 1): an interpolated point may lie just outside of its segment."""
-    return min(max(position, 0.0), 1.0 - EPSILON)
+    stop = next((i for i, event in enumerate(events) if event.ends_branch), len(events))
+    return events[: stop + 1]

@@ -7,16 +7,18 @@ zero between the points and go back: the parabola through three of them says so,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ..continuation.engine import Engine
-from ..continuation.layout import MARGIN
-from .multiplier_counts import balance
-from .parabola import parabola_dips
-from .scan import Scan, Spectra
+from ..continuation.layout import MARGIN, Chunk
+from .kind import Own
+from .locate import Segment
+from .scan import Scan, Spectra, balance, parabola_dips, sizes_by_sort, spectra
 
+PLACES, ZOOMS = np.linspace(0.0, 1.0, 9), 8  # where a kink is looked for, and how many times nearer
 AHEAD, EDGE = 1.5, 0.9  # lengths of a segment within which a line may be zero; where only one side tells
 
 
@@ -48,55 +50,38 @@ class Evidence(NamedTuple):
         """Whether a margin is negative."""
         return self.distances[:, -1] < 0.0
 
-    def distance(self, column: int | np.ndarray) -> np.ndarray:
-        """One of the distances, or some of the margins', at all points."""
+    def distance(self, column: int) -> np.ndarray:
+        """One of the distances, or a margin's, at all points."""
         first = self.first_margin
-        return (
-            self.distances[:, column]
-            if np.max(column, initial=0) < first
-            else self.margins[:, column - first] - MARGIN
-        )
+        return self.distances[:, column] if column < first else self.margins[:, column - first] - MARGIN
 
 
-def evidence(
-    engine: Engine,
-    rows: np.ndarray,
-    smallest: np.ndarray,
-    spectra: Spectra,
-    slopes: np.ndarray,
-    signs: np.ndarray,
-    flat: float,
-    own: np.ndarray,
-) -> Evidence:
+def evidence(engine: Engine, chunk: Chunk, tests: Sequence[Own], scanned: Scan | None = None) -> Evidence:
     """What points tell.
 
     Parameters
     ----------
     engine : Engine
-    rows : ndarray, shape (n, row_size)
-    smallest : ndarray, shape (n,)
-        Smallest margins.
-    spectra : Spectra
-        What their multipliers tell.
-    slopes : ndarray, shape (n,)
-        The parameter's parts of the tangents; up to ``flat`` they are rounding.
-    signs : ndarray, shape (n,)
-        Of the bordered determinants.
-    flat : float
-    own : ndarray, shape (n, o)
-        Values of users' tests.
+    chunk : Chunk
+    tests : sequence of Own
+        Of users.
+    scanned : Scan, optional
+        Of the chunk, where it is known.
     """
-    directions = np.where(np.abs(slopes) > flat, np.sign(slopes), 0.0)
-    slopes = np.where(directions != 0.0, slopes, np.nan)
-    tests = [*own.T, balance(engine, rows)] if engine.exchanges else own.T
+    rows, slopes = chunk.rows, chunk.tangents[:, -1]
+    own = np.array([test.values(chunk) for test in tests]).reshape(len(tests), len(chunk))
+    smallest = engine.smallest_margin(rows) if scanned is None else scanned.smallest
+    past = spectra(engine, rows).past if scanned is None else scanned.spectra.past
+    directions = np.where(np.abs(slopes) > engine.upright(float(chunk.values[0])), np.sign(slopes), 0.0)
+    balances = [balance(engine, rows)] if engine.exchanges else []
     sides = [
         directions,
-        np.sign(signs),
-        *(spectra.past + 1),
-        *(np.where(values >= 0.0, 1, -1) for values in tests),
+        np.sign(chunk.signs),
+        *(past + 1),
+        *(np.where(values >= 0.0, 1, -1) for values in (*own, *balances)),
     ]
-    distances = np.column_stack([slopes, own, smallest - MARGIN])
-    return Evidence(np.column_stack(sides).astype(int), distances, rows[:, 2 * engine.m :])
+    distances = [np.where(directions != 0.0, slopes, np.nan), *own, smallest - MARGIN]
+    return Evidence(np.column_stack(sides).astype(int), np.column_stack(distances), rows[:, 2 * engine.m :])
 
 
 def filled(sides: np.ndarray) -> np.ndarray:
@@ -118,27 +103,16 @@ def suspicious(seen: Evidence, scan: Scan) -> tuple[np.ndarray, np.ndarray]:
         All distances but margins', then those of margins for which it is not excluded.
     found : ndarray of bool, shape (n - 1, j)
     """
-    first, lengths = seen.first_margin, scan.lengths
-    if len(lengths) < 2:
-        return np.arange(first), np.zeros((len(lengths), first), dtype=bool)
-    size = np.abs(seen.distances)
-    with np.errstate(all="ignore"):
-        # as of `scan.low`, of all points at once
-        uneven = lengths[1:] / lengths[:-1]
-        part = 0.5 * float(np.fmax.reduce(np.fmax(uneven, 1.0 / uneven), initial=1.0)) ** 2
-        least = np.fmin.reduce(size, axis=0)
-        low = np.flatnonzero(least < part * np.fmax.reduce(np.abs(np.diff(seen.distances, axis=0)), axis=0))
-    low_margins = first + np.flatnonzero(scan.low)
-    found = np.zeros((len(lengths), first + len(low_margins)), dtype=bool)
-    for columns, places in ((low, low), (low_margins, slice(first, None))):
-        if not len(columns):
-            continue
-        values = seen.distance(columns)
-        three = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
-        dip = parabola_dips(three[0], three[1], three[2], lengths[:-1, None], lengths[1:, None])
-        found[:-1, places] |= dip
-        found[1:, places] |= dip
-    return np.append(np.arange(first), low_margins), found
+    first, lengths, low = seen.first_margin, scan.lengths, np.flatnonzero(scan.low)
+    columns = np.append(np.arange(first), first + low)
+    found = np.zeros((len(lengths), len(columns)), dtype=bool)
+    if len(lengths) > 1:
+        values = np.hstack([seen.distances, seen.margins[:, low] - MARGIN])
+        left, middle, right = np.array([values[:-2], values[1:-1], values[2:]]) * np.sign(values[1:-1])
+        dips = parabola_dips(left, middle, right, lengths[:-1, None], lengths[1:, None])
+        found[:-1] |= dips
+        found[1:] |= dips
+    return columns, found
 
 
 def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np.ndarray:
@@ -166,27 +140,71 @@ def pointed(distances: np.ndarray, signs: np.ndarray, lengths: np.ndarray) -> np
 
 
 def may_be_real(seen: Evidence, lengths: np.ndarray) -> np.ndarray:
-    """Segments of a virtual branch that may be real inside though both ends are not, shape (n - 1,).
+    """Segments of a virtual branch that may be real inside though both ends are not, shape (n - 1,); of a single one nothing is known.
 
     A margin that is negative at both ends may be positive in between where the lines through the two points before and through
     the two behind are, which lie above it wherever it bends downwards, or is a roof, as the reserve of friction is.
     """
-    outside = seen.outside
-    found = outside[:-1] & outside[1:]
-    margins = seen.margins - MARGIN
+    margins, lengths = seen.margins - MARGIN, lengths[:, None]
     kept = (margins[:-1] < 0.0) & (margins[1:] < 0.0)
-    for j in np.flatnonzero(kept[found].any(axis=0)):
-        found &= _may_rise(margins[:, j], lengths) | ~kept[:, j]
-    return found
+    rises, falls = (
+        np.full(kept.shape, np.inf),
+        np.full(kept.shape, -np.inf),
+    )  # from where to where on a segment
+    if len(lengths) > 1:
+        rises[0], falls[-1] = 0.0, lengths[-1]
+        with np.errstate(all="ignore"):
+            slopes, inner = np.diff(margins, axis=0) / lengths, margins[1:-1]
+            rises[1:] = np.where(slopes[:-1] > 0.0, -inner / slopes[:-1], np.inf)
+            falls[:-1] = np.where(slopes[1:] < 0.0, lengths[:-1] - inner / slopes[1:], -np.inf)
+    may = (rises < falls) & (rises < lengths) & (falls > 0.0)
+    return seen.outside[:-1] & seen.outside[1:] & (may | ~kept).all(axis=1)
 
 
-def _may_rise(margin: np.ndarray, lengths: np.ndarray) -> np.ndarray:
-    """Segments in which both lines of a margin that is negative at both ends are positive at once; of a single segment nothing is known."""
-    if len(lengths) < 2:
-        return np.zeros(len(lengths), dtype=bool)
+# ------------------------------------------------------------------ kinks
+def nearest(engine: Engine, rows: np.ndarray, spectra: Spectra | None = None) -> np.ndarray:
+    """Distance of the real multiplier nearest to +1 (of eigenvalues: to zero, pairs included, which pass the axis elsewhere), shape (n,).
+
+    Of points whose multipliers are known to tell something it need not be computed again; on the circle it is NaN there.
+    """
+    if engine.many:
+        return -rows[:, 0]
+    if spectra is not None and engine.detection != "real":
+        return spectra.near
     with np.errstate(all="ignore"):
-        slopes = np.diff(margin) / lengths
-        rises = np.where(slopes[:-1] > 0.0, -margin[1:-1] / slopes[:-1], np.inf)
-        falls = np.where(slopes[1:] < 0.0, lengths[:-1] - margin[1:-1] / slopes[1:], -np.inf)
-    begins, ends = np.append(0.0, rises), np.append(falls, lengths[-1])
-    return (begins < ends) & (begins < lengths) & (ends > 0.0)
+        if engine.detection == "real":
+            sizes = np.hypot(rows[:, : 2 * engine.m : 2], rows[:, 1 : 2 * engine.m : 2])
+        else:
+            sizes = np.abs(sizes_by_sort(engine, rows)[0])
+        return np.fmin.reduce(sizes, axis=1, initial=np.inf)
+
+
+def kinked(segment: Segment) -> bool:
+    """Whether the real multiplier nearest to the circle has a kink there within a segment: looked at nearer, its sides stay as steep.
+
+    Along a branch a multiplier that touches the circle does so as a parabola. Where it falls to nothing in a straight line, and no count
+    changes, a step has led from one branch to another through the point in which they cross: both are unstable alike, and where unknowns of
+    very different sizes hide the corner the rule of the loop, which compares tangents, sees none (x (2 p + 3 x^2 + 3) = 0 behind unknowns
+    hundreds of times as large).
+    Of cycles on a mesh nothing is told where both ends are next to the circle, as where a branch turns round at a cycle of half the period.
+    """
+    engine, low, high, first = segment.engine, 0.0, 1.0, 0.0
+    for zoom in range(ZOOMS):
+        places = low + (high - low) * PLACES
+        rows, found = segment.rows(places)
+        places = places[found]
+        if len(places) < 3:
+            return False
+        near = nearest(engine, rows[found])
+        k = int(np.argmin(near[1:-1])) + 1
+        steepness = min(near[0], near[-1]) / (high - low)
+        if not (np.isfinite(near).all() and near[k] < min(near[0], near[-1])):
+            return False
+        if zoom == 0:
+            if engine.adaptive and max(near[0], near[-1]) <= engine.settings.critical:
+                return False  # kinks are those of rounding
+            first = steepness
+        elif steepness < engine.settings.steep * first:
+            return False
+        low, high = float(places[k - 1]), float(places[k + 1])
+    return True

@@ -1,20 +1,27 @@
-"""Kind: what a special point is called and drawn as, and how it is found, verified, classified and followed. Built-in kinds and users' own."""
+"""Kind: what a special point is called and drawn as, and how it is found, verified, classified and followed. Built-in kinds and users' own.
+
+Users' functions see a `Point`; what they return that is no answer is refused in a sentence.
+"""
 
 from __future__ import annotations
 
+import math
+import numbers
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
 
 from ..continuation.settings import hinted
 
 if TYPE_CHECKING:
-    from ..continuation.engine import Solved
-    from ..continuation.layout import Aim
-    from .located import Located
-    from .point_on_branch import Point, PointOnBranch
-    from .segment import Segment
+    from ..continuation.engine import Engine, Solved
+    from ..continuation.layout import Aim, Chunk
+    from ..problems.protocol import Problem
+    from .locate import Located, Segment
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +54,7 @@ class Classified(NamedTuple):
 
 Sides = tuple[str | None, float | None]
 """What a user's kind may return in the place of `Classified`: criticality and coefficient."""
+SIDES = ("supercritical", "subcritical", None)
 NAME = re.compile(r"[a-z][a-z0-9-]*")
 LABEL = re.compile(r"[A-Z][A-Z0-9]*")
 MARKERS = tuple("*os^vDpdhHPXx+|<>8.,1234_")
@@ -106,7 +114,7 @@ class Kind:
     ends: bool = False
     # of built-in kinds
     border: bool = False  # a margin vanishes there, and a branch ends
-    tests: Callable[[Segment, Sequence[Located]], list[Test]] | None = None  # several test functions
+    tests: Callable[[Segment], list[Test]] | None = None  # several test functions
     find: Callable[[Segment, Sequence[Located]], list[Located]] | None = None  # in the place of tests
     leaves: str = (
         ""  # "branch", "doubled", "cycles", "circle" or "beyond": see contvines.graph.schedule_branches
@@ -143,3 +151,214 @@ class Kind:
             "marker": self.marker,
             "filled": self.filled,
         }
+
+
+# ------------------------------------------------------------------ what the functions of a kind see
+class Point(Protocol):
+    """What the functions of a kind may ask of a point, on a branch or on a locus; see `PointOnBranch`."""
+
+    @property
+    def u(self) -> np.ndarray: ...
+    @property
+    def value(self) -> float: ...
+    @property
+    def problem(self) -> Problem: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def place(self) -> dict[str, float]: ...
+    @cached_property
+    def multipliers(self) -> np.ndarray: ...
+    @property
+    def margins(self) -> np.ndarray: ...
+    @cached_property
+    def jacobian(self) -> np.ndarray: ...
+    def measure(self, name: str) -> float: ...
+
+
+class PointOnBranch:
+    """A point of a branch; what takes time is computed when it is asked for.
+
+    Attributes
+    ----------
+    u : ndarray, shape (N,)
+    value : float
+        Of the parameter.
+    tangent : ndarray, shape (N + 1,)
+        Unit tangent of the branch, its last entry that of the parameter.
+    problem : Problem
+    """
+
+    def __init__(self, engine: Engine, solved: Solved, segment: Segment | None = None) -> None:
+        self.engine, self.solved, self.segment = engine, solved, segment
+        self.problem, self.u, self.value, self.tangent = engine.problem, solved.u, solved.p, solved.tangent
+
+    @property
+    def place(self) -> dict[str, float]:
+        """The varying parameter by its name."""
+        return {self.problem.parameter: self.value}
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """All parameters by name, the varying one included."""
+        return {**self.problem.parameters, **self.place}
+
+    @cached_property
+    def multipliers(self) -> np.ndarray:
+        """Of the full period (eigenvalues for flows), complex."""
+        return self.engine.multipliers(self.solved.row)
+
+    @property
+    def margins(self) -> np.ndarray:
+        """Distances from borders, positive on a real solution; +inf where one does not apply."""
+        return self.engine.margins(self.solved.row)
+
+    @cached_property
+    def jacobian(self) -> np.ndarray:
+        """F_u of the problem's equations, shape (N, N)."""
+        engine, kernels = self.engine, self.problem.kernels
+        engine.residual(self.u, self.value)
+        if kernels.matrix is None:
+            raise ValueError(f"a {type(self.problem).__name__} does not tell its Jacobian")
+        return np.array(kernels.matrix(self.problem.data, engine.work))
+
+    def measure(self, name: str) -> float:
+        """A measure of the solution by its name."""
+        if name == self.problem.parameter:
+            return self.value
+        return float(self.problem.measures((name,), self.u[None, :], np.array([self.value]))[name][0])
+
+
+# ------------------------------------------------------------------ what they answer
+def number_of(kind: Kind, role: str, point: Point) -> float:
+    """The "test" or the condition ("locus") of a kind at a point; NaN where arithmetic fails.
+
+    Raises
+    ------
+    ValueError
+        If it fails for a reason of its own, or returns no real number.
+    """
+    try:
+        found = _answer(kind, role, point)
+    except (ArithmeticError, np.linalg.LinAlgError):
+        return math.nan
+    number = found.item() if isinstance(found, np.ndarray | np.generic) and np.size(found) == 1 else found
+    if isinstance(number, bool) or not isinstance(number, numbers.Real):
+        raise _no_answer(kind, role, found, point, "a real number")
+    return float(number)
+
+
+def verified(kind: Kind, point: Point) -> bool:
+    """Whether a located zero is of the kind.
+
+    Raises
+    ------
+    ValueError
+        If `verify` of a user's kind fails, or returns neither True nor False.
+    """
+    if kind.verify is None:
+        return True
+    if kind.test is None:
+        return kind.verify(point)
+    found = _answer(kind, "verify", point)
+    if not isinstance(found, bool | np.bool_):
+        raise _no_answer(kind, "verify", found, point, "True or False")
+    return bool(found)
+
+
+def classified(kind: Kind, point: PointOnBranch) -> Classified:
+    """The normal form of a special point.
+
+    Raises
+    ------
+    ValueError
+        If `classify` of a user's kind fails, or returns no pair of criticality and coefficient.
+    """
+    if kind.classify is None:
+        return Classified()
+    found = _answer(kind, "classify", point) if kind.test else kind.classify(point)
+    if isinstance(found, Classified):
+        return found
+    try:
+        side, coefficient = found
+        assert side in SIDES and (coefficient is None or isinstance(coefficient, numbers.Real))
+    except (AssertionError, TypeError, ValueError):
+        wanted = '(criticality, coefficient): "supercritical", "subcritical" or None, and a number or None'
+        raise _no_answer(kind, "classify", found, point, wanted) from None
+    return Classified(side, None if coefficient is None else float(coefficient))
+
+
+def _answer(kind: Kind, role: str, point: Point) -> Any:
+    try:
+        return getattr(kind, role)(point)
+    except Exception as error:
+        if role in ("test", "locus") and isinstance(error, ArithmeticError | np.linalg.LinAlgError):
+            raise
+        why = f"{type(error).__name__}: {error}"
+        raise ValueError(f"kind {kind.name}: its {role} fails at {_place(point)}: {why}") from error
+
+
+def _no_answer(kind: Kind, role: str, found: object, point: Point, wanted: str) -> ValueError:
+    return ValueError(
+        f"kind {kind.name}: its {role} returns {found!r} at {_place(point)}; {wanted} is asked for"
+    )
+
+
+def _place(point: Point) -> str:
+    return ", ".join(f"{name} = {value:.10g}" for name, value in point.place.items())
+
+
+# ------------------------------------------------------------------ tests of users along a branch
+UserFunction = Callable[[np.ndarray, float], float] | tuple[str, float]
+"""A number of a solution (u, p), or a measure by name and the value at which it is asked for."""
+
+
+class Own(NamedTuple):
+    """A kind of the user's with the name of the function, its test at one point, and, of a function, at many points u at values p."""
+
+    kind: Kind
+    name: str
+    at: Callable[[Solved], float]
+    many: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
+
+    def values(self, chunk: Chunk) -> np.ndarray:
+        """The test at all points of a chunk."""
+        if self.many is None:
+            return np.array([self.at(chunk.solved(i)) for i in range(len(chunk))])
+        return np.asarray(self.many(chunk.points, chunk.values), dtype=float)
+
+
+def own_tests(
+    engine: Engine,
+    kinds: Iterable[Kind],
+    functions: Mapping[str, UserFunction],
+    stops: Iterable[str],
+    user: Kind,
+) -> list[Own]:
+    """Tests of the kinds that have one, and of functions by name (kind `user`); branches end at zeros of those named in `stops`."""
+
+    def of_kind(kind: Kind, point: Solved) -> float:
+        return number_of(kind, "test", PointOnBranch(engine, point))
+
+    def of_function(many: Callable[[np.ndarray, np.ndarray], np.ndarray], point: Solved) -> float:
+        return float(many(point.u[None, :], np.array([point.p]))[0])
+
+    found = [Own(kind, "", partial(of_kind, kind)) for kind in kinds if kind.test is not None]
+    for name, function in functions.items():
+        many = _many(engine.problem, function)
+        found.append(Own(replace(user, ends=name in stops), name, partial(of_function, many), many))
+    return found
+
+
+def _many(problem: Problem, function: UserFunction) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    if callable(function):
+        return lambda points, values: np.array([float(function(u, float(p))) for u, p in zip(points, values)])
+    try:
+        measure, value = function[0], float(function[1])
+    except (TypeError, ValueError, IndexError):
+        raise ValueError(
+            f"user function {function!r} must be a callable (u, p) -> float or a pair (measure, value)"
+        ) from None
+    if measure == problem.parameter:
+        return lambda points, values: values - value
+    return lambda points, values: problem.measures((measure,), points, values)[measure] - value

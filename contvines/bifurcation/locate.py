@@ -1,25 +1,105 @@
-"""Locating a special point on a segment."""
+"""Segments between neighbouring points of a branch: any point of one can be solved; locating a special point there, and what was found."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache, cached_property
 from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebder, chebval, chebvander
 
-from ..continuation.engine import Solved
-from ..continuation.layout import Aim
+from ..continuation.engine import Engine, Solved
+from ..continuation.layout import Aim, Found, Way, solved_point, solved_points
+from ..continuation.mesh_motion import MeshMotion
 from ..shared.floating_point import EPSILON, ROUNDED
-from .segment import Segment
+from .scan import counts
 from .settings import LOCATING
 
 NODES = 8
-NARROWER, WIDER = (
-    0.5 ** np.arange(7),
-    2.0 ** np.arange(1, 6),
-)  # windows that are tried, in units of the first one
+NARROWER = 0.5 ** np.arange(7)  # windows that are tried, in units of the first one, ...
+WIDER = 2.0 ** np.arange(1, 6)  # ... and where that is too narrow
+NOWHERE = (math.nan, math.nan)  # a bracket that is not known yet
+FAR = 3.0  # decades between a multiplier and the circle
+
+
+class Segment:
+    """Points between a and b: s in [0, 1] measures along the chord.
+
+    Parameters
+    ----------
+    engine : Engine
+    a, b : Solved
+        Their tangents make an angle of less than a right angle with the chord.
+    turns : bool
+        A fold has been found on a segment of which this is a part: signs of the parameter's part of the tangent tell folds, however small it is, so
+        that as many are found on all parts together.
+    """
+
+    def __init__(self, engine: Engine, a: Solved, b: Solved, turns: bool = False) -> None:
+        self.engine, self.a, self.b, self.turns = engine, a, b, turns
+        chord_ends = np.empty((4, engine.n + 1))
+        self.za, self.zb = chord_ends[0], chord_ends[2]
+        self.za[:-1], self.za[-1], self.zb[:-1], self.zb[-1] = a.u, a.p, b.u, b.p
+        begin, end = a.tangent, b.tangent
+        read = MeshMotion(engine).carried(a.u, b.u, begin)
+        if read is not None:
+            self.za[:-1] = read
+        chord = self.zb - self.za
+        self.length = engine.norm(chord)
+        self.direction = chord / self.length if self.length > 0.0 else a.tangent
+        if read is not None:
+            begin = end = self.direction  # tangents tell how meshes move that are not one
+        turn = begin - end
+        self.border = engine.weights * self.direction
+        arc = self.length * (1.0 + engine.inner(turn, turn) / 24.0)
+        np.multiply(arc, begin, out=chord_ends[1])
+        np.multiply(arc, end, out=chord_ends[3])
+        self.way = Way(chord_ends, float(self.border.dot(self.za)), self.length, self.border, self.direction)
+
+    @cached_property
+    def counts(self) -> tuple[list[int], list[int]]:
+        """Multipliers past the circle at both ends: real ones past 1, past -1, and complex pairs."""
+        engine = self.engine
+        before, after = counts(engine, np.array([self.a.row, self.b.row])).tolist()
+        return (before, before) if engine.adaptive and self._far_from_circle() else (before, after)
+
+    def _far_from_circle(self) -> bool:
+        """Whether as many multipliers are outside the circle at both ends, and all of them so far from it that none has passed it: beside a
+        homoclinic orbit they turn round zero."""
+        sizes = np.abs(self.engine.spectrum(np.array([self.a.row, self.b.row])))
+        with np.errstate(all="ignore"):
+            logs = np.abs(np.log10(sizes))
+        outside = (sizes > 1.0).sum(axis=1)
+        return bool((logs > FAR).all() and outside[0] == outside[1])
+
+    def through_infinity(self) -> bool:
+        """Whether the outermost multipliers of both ends are real, of opposite signs, and so large that one has come back from infinity."""
+        spectra = self.engine.spectrum(np.array([self.a.row, self.b.row]))
+        one, other = spectra[(0, 1), np.abs(spectra).argmax(axis=1)]
+        far = min(abs(one), abs(other)) > 10.0**FAR and one.imag == other.imag == 0.0
+        return bool(far and one.real * other.real < 0.0)
+
+    def at(self, s: float) -> Solved | None:
+        """The point of the branch at s, to roundoff; None if it cannot be solved or belongs to another branch."""
+        return solved_point(self.found((s,)), 0)
+
+    def several(self, places: Sequence[float] | np.ndarray) -> list[Solved | None]:
+        """The points of the branch at some places, each as by `at`."""
+        return solved_points(self.found(places))
+
+    def rows(self, places: Sequence[float] | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of multipliers and margins at some places, (k, columns), and which of them are of points of the branch, (k,)."""
+        found = self.found(places)
+        return found.rows, found.numbers[:, 1] >= 0.0
+
+    def found(self, places: Sequence[float] | np.ndarray) -> Found:
+        """All that is found at some places, as arrays."""
+        return self.engine.on_chord(self.way, np.array(places, dtype=float))
 
 
 class Root(NamedTuple):
@@ -42,11 +122,73 @@ class Root(NamedTuple):
     continuous: bool = True
 
 
+class Role(StrEnum):
+    """What a located point means for following the branch."""
+
+    SPECIAL = "special"  # a special point of the branch
+    BORDER = "border"  # a margin vanishes: the branch ends
+    MEETING = "meeting"  # the branch comes back to the fixed space of a symmetry, and ends
+    STOP = "stop"  # a function at whose zeros the user wants branches to end
+    LEFT = "left"  # the branch leaves the interval between two points that lie in it
+    UNRESOLVED = "unresolved"  # both ends of a segment, which is not halved any more, do not agree with what was found between
+    PLAIN = "plain"  # just a point between two special points
+    LEAP = "leap"  # the point before a step to another branch: to be traced again with shorter ones
+    LANDING = "landing"  # the same, before a step that ends next to a meeting: with another one
+
+
+@dataclass(frozen=True, eq=False)
+class Located:
+    """A point that was located on a chunk, or on a segment that nobody has put on its branch yet.
+
+    Attributes
+    ----------
+    position : float
+        Index of the point before it plus the fraction of the segment.
+    point : Solved
+    kind : str
+        See :mod:`contvines.bifurcation.kinds`; of a meeting that of the symmetry. Empty for a plain point, a leap, a landing and where the interval is left.
+    index : int
+        Which multiplier, margin, symmetry or user function.
+    role : Role
+    error : float
+        Estimated error of the parameter value.
+    bracket : (float, float)
+    name : str
+        Of the user function.
+    rounding : float
+        Of a border, how far rounding of its margins may move the parameter value: no sign of a leap, but part of the error.
+    astray : bool
+        It is no special point: the segment has led from one branch to another.
+    """
+
+    position: float
+    point: Solved
+    kind: str = ""
+    index: int = 0
+    role: Role = Role.SPECIAL
+    error: float = 0.0
+    bracket: tuple[float, float] = NOWHERE
+    name: str = ""
+    rounding: float = 0.0
+    astray: bool = False
+
+    @classmethod
+    def at(
+        cls, root: Root, kind: str, index: int = 0, role: Role = Role.SPECIAL, astray: bool = False
+    ) -> Located:
+        """What a located zero is."""
+        return cls(root.position, root.point, "" if astray else kind, index, role, root.error, astray=astray)
+
+    @property
+    def ends_branch(self) -> bool:
+        """Whether what lies behind it is left out."""
+        return self.role in (Role.BORDER, Role.MEETING, Role.STOP, Role.LEFT)
+
+
 def locate(
     segment: Segment,
     test: Callable[[Solved], float] | Aim,
     tolerance: float = LOCATING.bracket,
-    fallback_zero: bool = False,
     jump: float = np.inf,
 ) -> Root | None:
     """The zero of a test function whose bordered system is regular there.
@@ -58,8 +200,6 @@ def locate(
         Of opposite signs at the two ends; a callable is Solved -> float.
     tolerance : float
         Width of the final bracket relative to the segment.
-    fallback_zero : bool
-        Of an aim: where the ends do not have opposite signs after all, take the end at which it is smallest.
     jump : float
         A test that changes by more than this over a tiny part of the segment jumps; the root is then not continuous.
 
@@ -69,8 +209,7 @@ def locate(
         None if the ends do not bracket a zero or the segment cannot be solved.
     """
     if isinstance(test, Aim):
-        aim = replace(test, anyway=1) if fallback_zero else test
-        hit = segment.search(aim, tolerance, jump)
+        hit = segment.engine.search(segment.way, test, tolerance, jump)
         if hit is None:
             return None
         if hit.point is not None:
@@ -81,22 +220,65 @@ def locate(
     def value(s: float) -> float:
         point = segment.at(s)
         if point is None:
-            return float("nan")
+            return math.nan
         solved[s] = point
         return float(test(point))
 
-    from .roots import bracketed_root
-
     fa, fb = value(0.0), value(1.0)
-    if not (np.isfinite(fa) and np.isfinite(fb)):
-        return None
-    if fa * fb > 0.0:
+    if not (math.isfinite(fa) and math.isfinite(fb) and fa * fb <= 0.0):
         return None
     s, low, high, flow, fhigh = bracketed_root(value, 0.0, 1.0, fa, fb, tolerance, jump)
     width = abs(solved[high].p - solved[low].p) + 2.0 * EPSILON * abs(solved[s].p)
-    return Root(
-        s, solved[s], max(width, solved[s].correction * LOCATING.halved), abs(fhigh - flow) <= LOCATING.jump
-    )
+    error = max(width, solved[s].correction * LOCATING.halved)
+    return Root(s, solved[s], error, abs(fhigh - flow) <= LOCATING.jump)
+
+
+def bracketed_root(
+    f: Callable[[float], float],
+    a: float,
+    b: float,
+    fa: float,
+    fb: float,
+    tolerance: float = ROUNDED,
+    jump: float = np.inf,
+) -> tuple[float, float, float, float, float]:
+    """Root of f between a and b; see :mod:`contvines.continuation.bracketing`.
+
+    Parameters
+    ----------
+    f : callable
+        May return NaN where it cannot be evaluated; such a point is replaced by one nearby.
+    a, b, fa, fb : float
+        Bracket, fa and fb of opposite sign (or one of them zero).
+    tolerance : float
+        Width of the final bracket relative to the first one.
+    jump : float
+        Give up where f still changes by more than this over a bracket of 1e-5 of the first one: f has a jump there.
+
+    Returns
+    -------
+    (root, low, high, f(low), f(high)) : tuple of float
+        The best estimate and the final bracket.
+    """
+    from ..continuation.bracketing import Bracket  # the native core has its own
+
+    bracket = Bracket(b, fb, 0.0, a, fa, 0.0, tolerance, jump)
+    bracket.narrow(lambda x: (f(x), 0.0))
+    (low, flow), (high, fhigh) = sorted(((bracket.x1, bracket.f1), (bracket.x2, bracket.f2)))
+    return bracket.best, low, high, flow, fhigh
+
+
+# ------------------------------------------------------------------ where the bordered system is singular
+@cache
+def chebyshev_nodes(n: int) -> np.ndarray:
+    """The n roots of the Chebyshev polynomial T_n, none of them 0 for even n."""
+    return np.cos((2.0 * np.arange(n) + 1.0) * np.pi / (2 * n))
+
+
+@cache
+def chebyshev_series(n: int) -> np.ndarray:
+    """What makes of values at ``chebyshev_nodes(n)`` the coefficients of the Chebyshev series through them, shape (n, n)."""
+    return np.linalg.inv(chebvander(chebyshev_nodes(n), n - 1))
 
 
 def locate_singular(
@@ -140,13 +322,12 @@ def _in_windows(
     """Roots with what they are wrong by, from windows of such widths, until rounding makes them worse."""
     roots: list[tuple[float, Root]] = []
     for width in widths.tolist():
-        found = _interpolated(segment, test, rough, width)
-        if found is None:
+        root = _interpolated(segment, test, rough, width)
+        if root is None:
             continue
-        root, residual = found
-        roots.append((max(root.error, residual / segment.engine.size(root.point.u)), root))
-        score, best = roots[-1][0], min(score for score, _ in roots)
-        if score > best or score < ROUNDED:
+        score = max(root.error, root.point.residual / segment.engine.size(root.point.u))
+        roots.append((score, root))
+        if score > min(roots, key=itemgetter(0))[0] or score < ROUNDED:
             break
         rough = root.position
     return roots
@@ -154,51 +335,35 @@ def _in_windows(
 
 def _interpolated(
     segment: Segment, test: Callable[[Solved], float], rough: float, width: float
-) -> tuple[Root, float] | None:
-    from .roots import bracketed_root, chebyshev_fit, chebyshev_nodes, chebyshev_value
-
-    engine = segment.engine
-    nodes = chebyshev_nodes(NODES)
-    points, values = [], []
-    # nearest to the singular point first: a test may choose its reference there
-    nodes = np.array(sorted(nodes, key=abs))
-    for x, point in zip(nodes.tolist(), segment.several(rough + width * nodes)):
-        if point is None:
-            return None
-        points.append((x, point))
-        values.append((x, float(test(point))))
-    points.sort(key=lambda pair: -pair[0])
-    values.sort(key=lambda pair: -pair[0])
-    f = np.array([value for _, value in values])
-    if not np.all(np.isfinite(f)):
+) -> Root | None:
+    engine, nodes, values = segment.engine, chebyshev_nodes(NODES), np.empty(NODES)
+    points = [point for point in segment.several(rough + width * nodes) if point is not None]
+    if len(points) < NODES:
         return None
-    series = chebyshev_fit(f)
+    for i in np.argsort(np.abs(nodes)):
+        # nearest to the singular point first: a test may choose its reference there
+        values[i] = test(points[i])
+    if not np.isfinite(values).all():
+        return None
+    parts = [np.array([getattr(p, name) for p in points]) for name in ("u", "p", "tangent", "row")]
+    both = np.column_stack(parts)
+    known = np.isfinite(both).all(axis=0)
+    f, series = (chebyshev_series(NODES) @ of for of in (values, np.where(known, both, 0.0)))
     grid = np.linspace(-1.2, 1.2, 49)
-    on_grid = chebyshev_value(series, grid)
+    on_grid = chebval(grid, f)
     changes = np.flatnonzero(on_grid[:-1] * on_grid[1:] <= 0.0)
     if not len(changes):
         return None
     i = int(changes[np.argmin(np.abs(grid[changes] + 0.025))])
-    x = bracketed_root(
-        lambda t: float(chebyshev_value(series, t)), grid[i], grid[i + 1], on_grid[i], on_grid[i + 1]
-    )[0]
-    z = chebyshev_fit(np.array([engine.join(p.u, p.p) for _, p in points]))
-    tangent = chebyshev_fit(np.array([p.tangent for _, p in points]))
-    rows = np.array([p.row for _, p in points])
-    known = np.isfinite(rows).all(axis=0)
-    here = chebyshev_value(z, x)
-    u, p = np.ascontiguousarray(here[:-1]), float(here[-1])
+    x = bracketed_root(lambda t: float(chebval(t, f)), *grid[i : i + 2], *on_grid[i : i + 2])[0]
+    n, here = engine.n, np.where(known, chebval(x, series), np.inf)
+    z, tangent, row = here[: n + 1], here[n + 1 : 2 * n + 2], here[2 * n + 2 :]
+    u, p = np.ascontiguousarray(z[:n]), float(z[n])
     residual = engine.residual(u, p)
-    row = np.where(known, chebyshev_value(chebyshev_fit(np.where(known, rows, 0.0)), x), np.inf)
-    polished = engine.polish(u, p, segment.border, float(segment.border @ here), segment.direction)
-    if polished is not None:
-        row = polished.row
-    slope = abs(float(chebyshev_value(np.polynomial.chebyshev.chebder(series), x)))
-    error = float(np.abs(z[-1, -1]) + np.abs(z[-2, -1]))
+    polished = engine.polish(u, p, segment.border, float(segment.border @ z), segment.direction)
+    along, slope = series[:, n], abs(float(chebval(x, chebder(f))))
+    error = float(np.abs(along[-2:]).sum())
     if slope > 0.0:
-        shift = (np.abs(series[-1]) + np.abs(series[-2])) / slope
-        error += float(
-            shift * abs(np.polynomial.chebyshev.chebval(x, np.polynomial.chebyshev.chebder(z[:, -1])))
-        )
-    point = Solved(u, p, engine.unit(chebyshev_value(tangent, x)), row, 0.0, residual, error)
-    return Root(rough + width * x, point, error), residual
+        error += float(np.abs(f[-2:]).sum() / slope * abs(chebval(x, chebder(along))))
+    row = row if polished is None else polished.row
+    return Root(rough + width * x, Solved(u, p, engine.unit(tangent), row, 0.0, residual, error), error)

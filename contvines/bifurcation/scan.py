@@ -1,13 +1,15 @@
 """One pass over a chunk of points: lengths, margins, multipliers and symmetric parts, from which detection begins.
 
-The native core does it for compiled problems (native/scan.hpp), numpy for others.
+The native core does it for compiled problems (native/scan.hpp), numpy for others. Multipliers are taken one by one
+(:func:`contvines.continuation.layout.multiplier`): the k-th largest real one is a test function of its own, so two that cross at once are two
+events. A product of test functions would not change sign.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache, partial
-from typing import NamedTuple
+from functools import cache, lru_cache, partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,10 +17,13 @@ from ..continuation.engine import Engine
 from ..continuation.layout import KINDS, MARGIN, Chunk
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
-from .multiplier_counts import sizes_by_sort
-from .parabola import parabola_dips
+from ..shared.floating_point import CENTRAL, TINY
 from .settings import LOCATING
-from .symmetry_test import SymmetryTest
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Symmetry
+
+OPPOSITE = 0.9  # cosine of the angle between what is opposite, at least, but for the sign
 
 
 class Spectra(NamedTuple):
@@ -236,3 +241,144 @@ class NativeScan:
 @cache
 def _native() -> Callable[..., int]:
     return function("core_scan", WHOLE, POINTER, WHOLE, NUMBER, *[POINTER] * 6)
+
+
+# ------------------------------------------------------------------ multipliers past the circle
+def sizes_by_sort(engine: Engine, rows: np.ndarray) -> np.ndarray:
+    """How far past the circle multipliers are, shape (3, ..., m): real ones near 1, near -1, and complex pairs; NaN where they are of another sort.
+
+    As logarithms; for flows real parts (there is nothing near -1). Where only branch points are looked for ("real") all count as real, so
+    that a double one, which rounding makes a pair or two, counts twice either way.
+    """
+    re, im, kind = rows[..., : 2 * engine.m : 2], rows[..., 1 : 2 * engine.m : 2], engine.detection
+    with np.errstate(all="ignore"):
+        real = im == 0.0
+        if kind == "map":
+            size = np.log(np.where(real | np.isnan(re), np.abs(re), np.hypot(re, im)))
+            sorts = real & (re > 0.0), real & (re <= 0.0), im > 0.0
+        else:
+            size, none = re, np.zeros_like(real)
+            sorts = (
+                (real, none, im > 0.0) if kind == "flow" else (np.full_like(real, kind == "real"), none, none)
+            )
+        return np.where(np.array(sorts), size, np.nan)
+
+
+def counts(engine: Engine, rows: np.ndarray) -> np.ndarray:
+    """How many multipliers are past the circle: real ones past 1, past -1, and complex pairs; shape (..., 3)."""
+    return np.moveaxis((sizes_by_sort(engine, rows) > LOCATING.past).sum(axis=-1), 0, -1)
+
+
+def balance(engine: Engine, rows: np.ndarray) -> np.ndarray:
+    """Smallest number past the circle plus the largest before it, of the real multipliers of each row; 0 without both.
+
+    Where one multiplier leaves while another enters at the same place, as at branch points with the symmetry of a triangle, no
+    count changes, but this sum passes through zero.
+    """
+    size = sizes_by_sort(engine, rows)[0]
+    past = np.where(size > 0.0, size, np.inf).min(axis=-1, initial=np.inf)
+    before = np.where(size <= 0.0, size, -np.inf).max(axis=-1, initial=-np.inf)
+    both = np.isfinite(past) & np.isfinite(before)
+    return np.where(both, np.where(both, past, 0.0) + np.where(both, before, 0.0), 0.0)
+
+
+def pairs_past(engine: Engine, rows: np.ndarray) -> np.ndarray:
+    """Of eigenvalues that all count as real ones ("real"), how many are past the axis in pairs that rounding has not made; shape (...)."""
+    re, im = rows[..., : 2 * engine.m : 2], np.abs(rows[..., 1 : 2 * engine.m : 2])
+    unit = np.minimum(np.hypot(re, im).max(axis=-1, keepdims=True, initial=0.0), 1.0)
+    return ((re > LOCATING.past) & (im > engine.settings.critical * unit)).sum(axis=-1)
+
+
+def parabola_dips(
+    left: np.ndarray, middle: np.ndarray, right: np.ndarray, h1: np.ndarray | float, h2: np.ndarray | float
+) -> np.ndarray:
+    """Whether the parabola through three positive values at such distances passes zero between them."""
+    with np.errstate(all="ignore"):
+        before, after = (middle - left) / h1, (right - middle) / h2
+        bend, slope = (after - before) / (h1 + h2), (before * h2 + after * h1) / (h1 + h2)
+        vertex = -0.5 * slope / bend
+        found = (left > 0.0) & (middle > 0.0) & (right > 0.0) & (bend > 0.0) & (-h1 < vertex) & (vertex < h2)
+        return found & (middle - 0.25 * slope * slope / bend < 0.0)
+
+
+# ------------------------------------------------------------------ what a symmetry changes
+@lru_cache(maxsize=64)
+def _patternless(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Twice n numbers without a pattern, multiples of irrational numbers, and the order of the first ones."""
+    probe, check = (0.1 + 0.8 * np.modf(np.sqrt(a) * np.arange(1.0, n + 1.0))[0] for a in (2.0, 3.0))
+    return probe, check, np.argsort(probe, kind="stable")
+
+
+def image_of(symmetry: Symmetry, u: np.ndarray, p: float) -> np.ndarray:
+    """The image of a solution (u, p)."""
+    image = symmetry.apply(u)
+    return image if symmetry.offset is None else image + symmetry.offset(p)
+
+
+class SymmetryTest:
+    """The part of u that a symmetry changes: u - T(u), modulo the shift by a period, in units of the unknowns' scale.
+
+    T is usually a signed permutation plus a constant; it is then found out once and applied to whole chunks. Where T depends on the
+    parameter it is asked at each point. ``shift`` is not zero, ``scale`` not one all over: else they are None.
+    """
+
+    def __init__(
+        self, symmetry: Symmetry, n: int, shift: np.ndarray | None, scale: np.ndarray | None = None
+    ) -> None:
+        self.symmetry, self.kind = symmetry, symmetry.kind
+        self.shift, self.scale = shift, scale
+        probe, check, places = _patternless(n)
+        self.affine: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        if symmetry.offset is not None:
+            return
+        try:
+            constant = np.asarray(symmetry.apply(np.zeros(n)), dtype=float)
+            image = np.asarray(symmetry.apply(probe), dtype=float) - constant
+            order = np.empty(n, dtype=int)
+            order[np.argsort(np.abs(image), kind="stable")] = places
+            signs = np.sign(image)
+            wrong = np.abs(signs * check[order] + constant - symmetry.apply(check)).max()
+            if np.abs(signs * probe[order] - image).max() < LOCATING.rounding and wrong < LOCATING.rounding:
+                self.affine = (order, signs, constant)
+        except (ArithmeticError, ValueError, IndexError):
+            self.affine = None
+
+    def part(self, points: np.ndarray, values: Sequence[float] | np.ndarray) -> np.ndarray:
+        """u - T(u) for points of shape (n, N) at parameter values of shape (n,)."""
+        if self.affine is not None:
+            order, signs, constant = self.affine
+            gap = np.take(points, order, axis=1)  # of long branches a large array: worked on in place
+            gap *= signs
+            gap += constant
+            np.subtract(points, gap, out=gap)
+        else:
+            gap = points - np.array([image_of(self.symmetry, u, float(p)) for u, p in zip(points, values)])
+        if self.shift is not None:
+            turns = np.rint(gap.dot(self.shift) / self.shift.dot(self.shift))
+            if turns.any():
+                gap = gap - turns[:, None] * self.shift
+        return gap if self.scale is None else gap / self.scale
+
+    def image_direction(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Derivative of T at u applied to v."""
+        if self.affine is not None:
+            order, signs, _ = self.affine
+            return signs * v[order]
+        scale = CENTRAL / max(float(np.abs(v).max()), TINY)
+        return (self.symmetry.apply(u + scale * v) - self.symmetry.apply(u - scale * v)) / (2.0 * scale)
+
+
+def turns_round(test: SymmetryTest, parts: np.ndarray, least: float, accuracy: float = np.inf) -> bool:
+    """Whether the part that a symmetry changes has turned round between two points, shape (2, N).
+
+    Both are larger than noise; or all their many unknowns are opposite, as those of noise are not: of a cycle on a mesh, known to an accuracy, that has
+    become one of half the period, or an equilibrium.
+    """
+    along = float(parts[0] @ parts[1])
+    if not along < 0.0:
+        return False
+    smaller = np.abs(parts).max(axis=1).min()
+    if smaller > least:
+        return True
+    opposite = along < -OPPOSITE * float(np.linalg.norm(parts[0]) * np.linalg.norm(parts[1]))
+    return opposite and (test.kind == "hopf" or (test.kind == "period-doubling" and bool(smaller > accuracy)))

@@ -14,13 +14,13 @@ from typing import TypeVar
 import numpy as np
 
 from ..bifurcation.detect import Detector
-from ..bifurcation.located import Role
+from ..bifurcation.locate import Role
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import Status, packed
 from ..continuation.mesh_motion import MeshMotion
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
-from .half_branch import HalfBranch, Piece
+from .half_branch import HalfBranch
 
 Start = TypeVar("Start")
 
@@ -32,73 +32,70 @@ class Meshes:
 
     Parameters
     ----------
-    engine_of : callable
-        Engine and detector of a problem.
-    engine, detector : Engine, Detector
+    detector : Detector
         Of the first mesh.
+    detector_of : callable
+        The detector of a problem.
     vanishes : callable, optional
         Whether the solutions of a half shrink to nothing at its end, where equations are singular on every mesh: it ends there.
     """
 
     def __init__(
         self,
-        engine_of: Callable[[Problem], tuple[Engine, Detector]],
-        engine: Engine,
         detector: Detector,
+        detector_of: Callable[[Problem], Detector],
         vanishes: Callable[[HalfBranch], bool] = lambda half: False,
     ) -> None:
-        self.engine_of, self.vanishes = engine_of, vanishes
-        self.detectors = {engine: detector}  # in order of the meshes
+        self.detector_of, self.vanishes = detector_of, vanishes
+        self.detectors = [detector]  # in order of the meshes
 
-    def finer(self, engine: Engine) -> Engine:
-        """The engine of the next mesh."""
-        engines = list(self.detectors)
-        if engine is engines[-1]:
-            finer, self.detectors[finer] = self.engine_of(_adaptive(engine).refined())
-            return finer
-        return engines[engines.index(engine) + 1]
+    def finer(self, detector: Detector) -> Detector:
+        """The detector of the next mesh."""
+        place = self.detectors.index(detector) + 1
+        if place == len(self.detectors):
+            self.detectors.append(self.detector_of(_adaptive(detector.engine).refined()))
+        return self.detectors[place]
 
     def followed(
         self,
-        engine: Engine,
         start: Start,
-        halves: Callable[[Engine, Start, Container[str]], dict[str, HalfBranch]],
-        again: Callable[[Engine, Engine, Start], Start | None],
+        halves: Callable[[Detector, Start, Container[str]], dict[str, HalfBranch]],
+        again: Callable[[Detector, Detector, Start], Start | None],
         real: bool,
-    ) -> tuple[dict[str, HalfBranch], Engine, Start]:
-        """The halves of a branch, by the names of its sides, on one mesh, with the engine and the start of those that were followed last.
+    ) -> tuple[dict[str, HalfBranch], Detector, Start]:
+        """The halves of a branch, by the names of its sides, on one mesh, with the detector and the start of those that were followed last.
 
         Parameters
         ----------
-        engine, start
-            To begin with.
+        start
+            To begin with, on the first mesh.
         halves : callable
-            Follows the branch with an engine from a start, but for some of its sides.
+            Follows the branch with a detector from a start, but for some of its sides.
         again : callable
-            A side that cannot be read on the finer mesh of the other one, or comes to a mesh that is too coarse, is followed again: from an
-            engine, that of the finer mesh and a start to the start there; None where there is none.
+            A side that cannot be read on the finer mesh of the other one, or comes to a mesh that is too coarse, is followed again: from a
+            detector, that of the finer mesh and a start to the start there; None where there is none.
         real : bool
             Whether the branch has positive margins.
         """
-        known: dict[str, HalfBranch] = {}
+        known, detector = dict[str, HalfBranch](), self.detectors[0]
         while True:
-            found = {**known, **halves(engine, start, known)}
-            coarse = [half.engine for half in found.values() if half.status == Status.COARSE]
-            meshes = [half.engine for half in found.values()] + [self.finer(each) for each in coarse]
-            wanted = max(meshes, key=list(self.detectors).index)
+            found = {**known, **halves(detector, start, known)}
+            coarse = [half.detector for half in found.values() if half.status == Status.COARSE]
+            meshes = [half.detector for half in found.values()] + [self.finer(each) for each in coarse]
+            wanted = max(meshes, key=self.detectors.index)
             level = {side: self._level(half, wanted, real) for side, half in found.items()}
             known = {side: half for side, half in level.items() if half is not None}
-            begin = None if len(known) == len(found) else again(engine, wanted, start)
+            begin = None if len(known) == len(found) else again(detector, wanted, start)
             if begin is None:
                 whole = {side: known.get(side) or self.read(half, wanted) for side, half in found.items()}
-                return whole, engine, start
-            engine, start = wanted, begin
+                return whole, detector, start
+            detector, start = wanted, begin
 
-    def _level(self, half: HalfBranch, wanted: Engine, real: bool) -> HalfBranch | None:
+    def _level(self, half: HalfBranch, wanted: Detector, real: bool) -> HalfBranch | None:
         """A half on a finer mesh; None where it is to be followed on that, or has other special points there."""
         if half.status == Status.COARSE:
             return None
-        while half.engine is not wanted:
+        while half.detector is not wanted:
             onward = self.onward(half, real)
             if onward is None:
                 return None
@@ -106,47 +103,43 @@ class Meshes:
         return half
 
     def moved(
-        self, engine: Engine, wanted: Engine, point: Solved | None, solve: bool = True
+        self, detector: Detector, wanted: Detector, point: Solved | None, solve: bool = True
     ) -> Solved | None:
         """How a point of a mesh reads on one of the finer ones; None where it cannot be solved there."""
-        while point is not None and engine is not wanted:
-            point, engine = self.image(point, engine, solve), self.finer(engine)
+        while point is not None and detector is not wanted:
+            before, detector = detector, self.finer(detector)
+            point = _read(point, before.engine, detector.engine)
+            point = MeshMotion(detector.engine).solved(point) if solve else point
         return point
 
-    def image(self, point: Solved, engine: Engine, solve: bool = True) -> Solved | None:
-        """How a point of a mesh reads on the next one; None where it cannot be solved there."""
-        finer = self.finer(engine)
-        read = _read(point, engine, finer)
-        return MeshMotion(finer).solved(read) if solve else read
-
-    def read(self, half: HalfBranch, wanted: Engine) -> HalfBranch:
+    def read(self, half: HalfBranch, wanted: Detector) -> HalfBranch:
         """A half on a finer mesh, as it is."""
-        while half.engine is not wanted:
-            engine, finer = half.engine, self.finer(half.engine)
+        while half.detector is not wanted:
+            detector, engine, problem = self.finer(half.detector), half.engine, _adaptive(half.engine)
+            finer, whole = detector.engine, half.joined()
+            directions, slopes = problem.halved(whole.tangents[:, :-1], True), whole.tangents[:, -1]
+            tangents = np.array([finer.unit(finer.join(v, float(s))) for v, s in zip(directions, slopes)])
             events = [(i, replace(e, point=_read(e.point, engine, finer))) for i, e in half.events]
-            first = None if half.first is None else _adaptive(engine).halved(half.first)
-            pieces = [_piece(piece, engine, finer) for piece in half.pieces]
-            half = HalfBranch(finer, pieces, events, half.status, first)
+            first = None if half.first is None else problem.halved(half.first)
+            pieces = [whole._replace(points=problem.halved(whole.points), tangents=tangents)]
+            half = HalfBranch(detector, pieces, events, half.status, first)
         return half
 
-    def onward(
-        self, half: HalfBranch, real: bool
-    ) -> tuple[HalfBranch, Detector, Callable[[Solved], Solved]] | None:
-        """A half on the next mesh, the detector there, and how points of the half's mesh read there; None where it has other special points there."""
-        engine, problem = half.engine, _adaptive(half.engine)
-        if problem.parts_of_refined != 1:
+    def onward(self, half: HalfBranch, real: bool) -> tuple[HalfBranch, Callable[[Solved], Solved]] | None:
+        """A half on the next mesh, and how points of its mesh read there; None where it has other special points there."""
+        if _adaptive(half.engine).parts_of_refined != 1:
             return None  # a mesh with other intervals altogether
-        finer = self.finer(engine)
-        found = self.read(half, finer)
-        detector = self.detectors[finer]
+        coarse, detector = half.detector, self.finer(half.detector)
+        found = self.read(half, detector)
         ended = half.status != Status.LEFT_INTERVAL or _at_the_end(found)
-        same = ended and _goes_on(found, real) and _located_again(found, detector, real)
-        detector.parts = self.detectors[engine].parts
+        same = ended and _goes_on(found, real) and _located_again(found, real)
+        detector.parts = coarse.parts
 
         def image(point: Solved) -> Solved:
-            return self.image(point, engine) or _read(point, engine, finer)
+            read = self.moved(coarse, detector, point)
+            return read or _read(point, coarse.engine, detector.engine)
 
-        return (found, detector, image) if same else None
+        return (found, image) if same else None
 
 
 def _adaptive(engine: Engine) -> Adaptive:
@@ -155,17 +148,11 @@ def _adaptive(engine: Engine) -> Adaptive:
 
 
 def _read(point: Solved, engine: Engine, finer: Engine) -> Solved:
+    """How a point of a mesh reads on the next one."""
     problem = _adaptive(engine)
     direction = problem.halved(point.tangent[:-1], True)
     tangent = finer.unit(finer.join(direction, float(point.tangent[-1])))
     return point._replace(u=problem.halved(point.u), tangent=tangent)
-
-
-def _piece(piece: Piece, engine: Engine, finer: Engine) -> Piece:
-    problem = _adaptive(engine)
-    directions, slopes = problem.halved(piece.tangents[:, :-1], True), piece.tangents[:, -1]
-    tangents = np.array([finer.unit(finer.join(v, float(s))) for v, s in zip(directions, slopes)])
-    return piece._replace(points=problem.halved(piece.points), tangents=tangents)
 
 
 def _guess(half: HalfBranch, i: int) -> Solved:
@@ -194,9 +181,9 @@ def _at_the_end(half: HalfBranch) -> bool:
     return found is not None
 
 
-def _located_again(half: HalfBranch, detector: Detector, real: bool) -> bool:
+def _located_again(half: HalfBranch, real: bool) -> bool:
     """Locate the special points of a half between their neighbours on its mesh; whether they are the same ones."""
-    events, half.events = half.events, []
+    detector, events, half.events = half.detector, half.events, []
     places = sorted({i for i, _ in events})
     breaks = [k + 1 for k, (one, other) in enumerate(pairwise(places)) if other > one + 1]
     for group in np.split(np.array(places, dtype=int), breaks) if places else []:

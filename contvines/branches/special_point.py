@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..bifurcation.critical import critical
-from ..bifurcation.kinds import BORDERS
+from ..bifurcation.kinds import BORDERS, critical
 from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
@@ -215,7 +214,7 @@ class SpecialPoint:
         """
         if self.kind != "hopf":
             raise ValueError(f"{self.label} is a point of kind {self.kind}; cycles are born at Hopf points")
-        from ..graph.cycle_at import cycle_at
+        from ..graph.schedule_branches import cycle_at
 
         return cycle_at(self)
 
@@ -226,7 +225,7 @@ class SpecialPoint:
         return f"SpecialPoint({self.label}: {virtual}{self.kind} on {self.branch} at {where}{side})"
 
     def _repr_html_(self) -> str:
-        from ..graph.pages import point_page
+        from ..graph.table import point_page
 
         return point_page(self)
 

@@ -1,4 +1,9 @@
-"""Following a branch in one direction with its events."""
+"""Following a branch in one direction with its events.
+
+Where it leaves a special point it begins with the opening: from there to the first point from which it is followed. That lies at a distance
+that suits the branch itself. Where others are near (the next doublings of a cascade, say) it may be one of those; where a border is near it may
+lie behind that. Then a first point is looked for that is nearer.
+"""
 
 from __future__ import annotations
 
@@ -8,20 +13,21 @@ from itertools import count as count_from
 from typing import TYPE_CHECKING
 
 from ..bifurcation.detect import Detector
-from ..bifurcation.located import Located, Role
+from ..bifurcation.first_border import one_sided
+from ..bifurcation.locate import Located, Role, Root, Segment
 from ..continuation.engine import Engine, Solved
-from ..continuation.layout import Chunk, Status
+from ..continuation.layout import MARGIN, Chunk, Status
 from ..continuation.trace import Finer, Retrace, chunks
-from ..journal import NullJournal
 from .finer_mesh import Meshes
-from .half_branch import HalfBranch, Piece, pack, piece_of, single, unpack
-from .opening import SHORTER, opening
+from .half_branch import HalfBranch, Piece, pack, piece_of, unpack
 
 if TYPE_CHECKING:
     from ..journal import Journal
 
 # a branch that has come to an end like this is followed again where its mesh is too coarse
 UNFINISHED = (Status.RUNNING, Status.STEP_TOO_SMALL, Status.BORDER, Status.LEFT_INTERVAL, Status.CREEPING)
+ASTRAY = 0.5  # part of its way along the tangent by which a nearer point may miss the parabola through the first one
+SHORTER = 0.125  # steps towards a gap between two branches, as a part of the step that leapt over it
 AGAIN = {
     Role.LEAP: SHORTER,
     Role.LANDING: 0.7,
@@ -30,9 +36,8 @@ SHORTEST = 0.1  # part of a first step: where a mesh lags behind after shorter o
 
 
 def trace_half(
-    engine: Engine,
-    start: Solved,
     detector: Detector,
+    start: Solved,
     journal: Journal,
     key: str,
     real: bool = True,
@@ -50,9 +55,8 @@ def trace_half(
 
     Parameters
     ----------
-    engine : Engine
-    start : Solved
     detector : Detector
+    start : Solved
     journal, key
         Chunks and their events are asked for, and recorded, under ``key/number`` and ``key/number/events``.
     real : bool
@@ -63,50 +67,47 @@ def trace_half(
         The special point beside which the branch starts: it becomes the first point, and the segment between is looked at.
     meshes : Meshes, optional
     """
-    half, detector.parts = single(engine, start), 0
+    engine, detector.parts = detector.engine, 0
+    half = HalfBranch(detector, [piece_of(engine, start)])
     if origin is not None:
-        half, closer = opening(engine, origin, start, detector, journal, f"{key}/opening", real)
+        half, closer = _opening(detector, origin, start, journal, f"{key}/opening", real)
         if half.status != Status.RUNNING:
             return half
         if closer is not start:
             start, first_step = closer, engine.distance(origin, closer)
     half.first, begun = start.u, len(half)
-    stop = real and engine.problem.n_margins > 0
-    walk = chunks(engine, start, journal, key, stop, first_step)
+    walk = chunks(engine, start, journal, key, real and engine.problem.n_margins > 0, first_step)
     wish: Retrace | Finer | None = None
     for number in count_from(0):
         chunk = next(walk) if wish is None else walk.send(wish)
         name = f"{key}/{number}/events"
-        lag = _lag(engine, chunk)
-        if _too_coarse(engine, chunk) or (
-            lag is not None and lag.longest < SHORTEST * engine.settings.first_step
-        ):
+        coarse, lag = _coarse(engine, chunk)
+        if coarse:
             whole = _ended(half, chunk)
             if meshes is not None and meshes.vanishes(whole):
                 return replace(whole, status=Status.STEP_TOO_SMALL)
             onward = None if meshes is None else meshes.onward(half, real)
             if onward is None:
                 return whole
-            half, detector, image = onward
-            engine, wish = half.engine, Finer(half.engine, image)
+            half, image = onward
+            detector, engine = half.detector, half.engine
+            wish = Finer(engine, image)
             continue
         chunk = chunk if lag is None else chunk.cut(lag.count)
         known, scanned = journal.recall(name), detector.scan(chunk)
         if known is None:
             events = detector.look(chunk, scanned, real)
-            if len(chunk) > 1 and not isinstance(journal, NullJournal):
+            if len(chunk) > 1:
                 journal.record(name, {**pack(events, engine), "parts": detector.parts})
         else:
             events, detector.parts = unpack(known), int(known.get("parts", 0))
         if any(_repeats(engine, event) for event in events):
             return _ended(half, chunk)
-        status, count = chunk.status if lag is None else Status.RUNNING, len(chunk)
-        wish = lag
+        status, count, wish = chunk.status if lag is None else Status.RUNNING, len(chunk), lag
         if events and events[-1].role in AGAIN:
             part, i = AGAIN[events[-1].role], int(events.pop().position)
-            change = chunk.points[i + 1] - chunk.points[i], chunk.values[i + 1] - chunk.values[i]
             status, count = Status.RUNNING, i + 1
-            wish = Retrace(count, part * engine.norm(engine.join(change[0], float(change[1]))))
+            wish = Retrace(count, part * _step(engine, chunk, count))
         elif events and events[-1].role is Role.LEFT:
             status, count = Status.LEFT_INTERVAL, int(events[-1].position) + 1
             events[-1] = replace(events[-1], role=Role.PLAIN)
@@ -119,18 +120,13 @@ def trace_half(
         if engine.adaptive and len(half) > begun and not beside:
             # on the mesh of what follows; what was found before lies on that of the point
             half.put(len(half) - 1, chunk.solved(0))
-        whole = Piece(
-            chunk.points,
-            chunk.values,
-            chunk.tangents,
-            chunk.rows[:, : 2 * engine.m].copy(),  # the loop writes its next rows to the same place
-            scanned.smallest,
-        )
+        # the loop writes its next rows to the same place
+        spectrum = chunk.rows[:, : 2 * engine.m].copy()
+        whole = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, scanned.smallest)
         here, total = 1, len(half)  # the first point is the last one of the chunk before
         for event in events:
             where = max(int(event.position) + 1, here)
-            half.pieces += [whole.part(here, where)] if where > here else []
-            half.pieces.append(piece_of(engine, event.point))
+            half.pieces += [whole.part(here, where), piece_of(engine, event.point)]
             total += where - here
             if event.role is not Role.PLAIN:
                 half.events.append((total, event))
@@ -146,8 +142,7 @@ def trace_half(
 
 def _ended(half: HalfBranch, chunk: Chunk) -> HalfBranch:
     """A half that ends where its mesh is too coarse."""
-    engine = half.engine
-    spectrum, margins = chunk.rows[:, : 2 * engine.m].copy(), engine.smallest_margin(chunk.rows)
+    spectrum, margins = chunk.rows[:, : 2 * half.engine.m].copy(), half.engine.smallest_margin(chunk.rows)
     last = Piece(chunk.points, chunk.values, chunk.tangents, spectrum, margins)
     return replace(half, pieces=[*half.pieces, last], status=Status.COARSE)
 
@@ -160,24 +155,108 @@ def _repeats(engine: Engine, event: Located) -> bool:
     return problem.too_coarse(event.point.u, event.point.p) and problem.parts_of_refined > 1
 
 
-def _too_coarse(engine: Engine, chunk: Chunk) -> bool:
-    """Whether the mesh has become too coarse on a chunk."""
+def _coarse(engine: Engine, chunk: Chunk) -> tuple[bool, Retrace | None]:
+    """Whether the mesh has become too coarse on a chunk; else where it lags behind the solutions: from the last point before on it is
+    adapted again, with steps that are not longer."""
     problem = engine.adaptive
     if problem is None or chunk.status not in UNFINISHED:
-        return False
-    stuck = chunk.status == Status.STEP_TOO_SMALL
-    return problem.too_coarse(chunk.points[-1], float(chunk.values[-1]), stuck)
+        return False, None
+    lag = None
+    if len(chunk) > 1 and problem.lags(chunk.points[-1]):
+        count = next(i for i in range(1, len(chunk)) if problem.lags(chunk.points[i]))
+        lag = Retrace(count, (1.0 if count > 1 else 0.5) * _step(engine, chunk, count))
+    stuck, last = chunk.status == Status.STEP_TOO_SMALL, float(chunk.values[-1])
+    short = lag is not None and lag.longest < SHORTEST * engine.settings.first_step
+    return problem.too_coarse(chunk.points[-1], last, stuck) or short, lag
 
 
-def _lag(engine: Engine, chunk: Chunk) -> Retrace | None:
-    """Where the mesh lags behind the solutions of a chunk: from the last point before on it is adapted again, with steps that are not longer."""
-    problem = engine.adaptive
-    if problem is None or chunk.status not in UNFINISHED or len(chunk) < 2:
+def _step(engine: Engine, chunk: Chunk, i: int) -> float:
+    """Length of the step to a point of a chunk."""
+    change = chunk.points[i] - chunk.points[i - 1], float(chunk.values[i] - chunk.values[i - 1])
+    return engine.norm(engine.join(*change))
+
+
+# ------------------------------------------------------------------ the opening
+def _opening(
+    detector: Detector, origin: Solved, start: Solved, journal: Journal, key: str, real: bool
+) -> tuple[HalfBranch, Solved]:
+    """From a special point to the first point of a branch that leaves it, and that point: a nearer one than `start` where that one leapt."""
+    engine, known = detector.engine, journal.recall(key)
+    if known is None:
+        events, times = _looked_at(detector, origin, start, real)
+        journal.record(key, {**pack(events, engine), "nearer": times})
+    else:
+        events, times = unpack(known), int(known.get("nearer", 0))
+    for _ in range(times):
+        start = nearer(engine, origin, start) or start
+    ends = bool(events) and events[-1].ends_branch
+    points = [origin, *(event.point for event in events), *([] if ends else [start])]
+    half = HalfBranch(detector, [piece_of(engine, *points)], list(enumerate(events, 1)))
+    half.status = Status.BORDER if ends else Status.RUNNING
+    return half, start
+
+
+def _looked_at(detector: Detector, origin: Solved, start: Solved, real: bool) -> tuple[list[Located], int]:
+    """The special points of the opening, and how many times its end was brought nearer; not at all where that does not help."""
+    engine, whole = detector.engine, detector.beside(origin, start, real)
+    events, times, point = whole, 0, start
+    while events and events[-1].role is Role.LEAP:
+        closer = nearer(engine, origin, point)
+        if closer is None or engine.distance(origin, closer) <= engine.settings.resolution:
+            return whole[:-1], 0
+        times, point = times + 1, closer
+        events = detector.beside(origin, point, real)
+    return events, times
+
+
+def nearer(engine: Engine, origin: Solved, point: Solved) -> Solved | None:
+    """A point of a branch that leaves a special point, nearer to that than a known one; None if none is found.
+
+    The tangent of `origin` points along the branch; its bend is that of the parabola through both points.
+    """
+    z, direction = engine.join(origin.u, origin.p), origin.tangent
+    gap = engine.join(point.u, point.p) - z
+    along = engine.inner(direction, gap)
+    guess = z + SHORTER * along * direction + SHORTER**2 * (gap - along * direction)
+    border = engine.weights * direction
+    tangent = direction if along > 0.0 else -direction
+    found = engine.solve(guess[:-1], guess[-1], border, float(border @ guess), tangent)
+    if found is None:
         return None
-    if not problem.lags(chunk.points[-1]):
-        return None
-    count = next(i for i in range(1, len(chunk)) if problem.lags(chunk.points[i]))
-    step = engine.join(
-        chunk.points[count] - chunk.points[count - 1], chunk.values[count] - chunk.values[count - 1]
-    )
-    return Retrace(count, (1.0 if count > 1 else 0.5) * engine.norm(step))
+    missed = engine.norm(engine.join(found.u, found.p) - guess)
+    return found if missed <= ASTRAY * SHORTER * abs(along) else None
+
+
+def on_this_side(engine: Engine, origin: Solved, point: Solved | None) -> Solved | None:
+    """The first point of a branch that leaves a point with positive margins, brought so near that it has them, too, if it can be."""
+    if point is None or float(engine.smallest_margin(origin.row)) < engine.settings.inside:
+        return point
+    closer: Solved | None = point
+    while closer is not None and engine.distance(origin, closer) > engine.settings.resolution:
+        if float(engine.smallest_margin(closer.row)) >= MARGIN:
+            return closer
+        closer = nearer(engine, origin, closer)
+    return point
+
+
+def from_border(half: HalfBranch, first: Solved) -> HalfBranch:
+    """A half that begins at a border beyond which its equations go on, without what is the border itself; its multipliers there are limits.
+
+    Where a stick or flight vanishes p is stationary, or another solution crosses; and where the equations are singular, what they
+    tell of the multipliers there is rounding.
+    """
+    engine = half.engine
+    again = [
+        i
+        for i, e in half.events
+        if e.kind in ("fold", "branch-point")
+        and engine.norm(engine.join(e.point.u - first.u, e.point.p - first.p)) <= engine.settings.one_place
+    ]
+    half = half.without(again)
+    if len(half) < 2:
+        return half
+    u, p, tangent = half.at(1)
+    ends = Solved(u, p, -tangent, first.row, 0.0, 0.0, 0.0), first._replace(tangent=-first.tangent)
+    limits, _ = one_sided(Segment(engine, *ends), Root(1.0, ends[1], 0.0))
+    half.put(0, first._replace(row=limits.row))
+    return half

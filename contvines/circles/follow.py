@@ -14,13 +14,10 @@ from ..interrupts import listening
 from ..problems.abilities import notation_of
 from ..problems.registry import without_problem
 from ..shared.floating_point import TINY
-from .along import Reach, followed
-from .averages import rotation_number
-from .birth import Birth, anchored, born
+from .along import Birth, Family, anchored, born
 from .circle import Circle, Circles
-from .invariance import Curve, between
+from .invariance import CIRCLES, Curve, between, rotation_number
 from .section import Section, Watched, section_of
-from .settings import CIRCLES
 
 REACH = (
     0.5  # amplitude, relative to the size of the section, to which circles are followed where no end is given
@@ -87,7 +84,8 @@ def circles(point: SpecialPoint, to: float | None = None, count: int = COUNT) ->
         return section_of(problem, p)
 
     largest = REACH * birth.frame.size if to is None else birth.amplitude(to)
-    found, ended = followed(section, birth, Reach(largest, to, side, count, point.parameter))
+    family = Family(section, birth, largest, to, side, count, point.parameter)
+    ended, found = family.follow(), family.found
     about = section(point.value)
     made = tuple(_circle(section, curve, birth) for curve in found)
     beyond = _beyond(section, found, birth) if found else {}

@@ -10,18 +10,69 @@ Source of the method: Schilder, Osinga and Vogt, SIAM J. Appl. Dyn. Syst. 4 (200
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ..shared.floating_point import TINY
 from .section import Imaged, Section, Varied, slopes
-from .settings import CIRCLES
 
 INSIDE = (
     0.01  # largest step of differences, relative to the size of the circle and to the distance from its birth
 )
 SWEEPS = 15
+
+
+@dataclass(frozen=True)
+class CircleSettings:
+    """What decides where circles are and where they end.
+
+    Attributes
+    ----------
+    step, least_step : float
+        Differences: their length, relative to the sizes of the section, of the unknowns and of the parameter, and the least one beside a small circle.
+    crossing : tuple of float
+        Differences: lengths, relative to the size of the parameter, over which multipliers at the birth are compared; a fold, or the end of the
+        pair, may be near.
+    least_parameter : float
+        Differences: smallest size of a parameter.
+    solved : float
+        Newton's method: residual, relative to the size of the circle.
+    rounded, rough : float
+        Newton's method: residual that does not shrink any more, relative to the size of the section, and at most relative to that of the circle.
+    beginning : float
+        Family: part of the usual first amplitude below which no circle is looked for.
+    smooth, torn : float
+        Ends: the last harmonics, relative to the first, of a circle that has enough points, and beyond which it has broken.
+    apart : float
+        Ends: by how much its images miss a circle between its points, relative to its radius; beyond that there is none.
+    displaced : float
+        Simulation: displacement, relative to the radius, whose growth or decay says whether a circle is stable.
+    settled : float
+        Simulation: difference of the rotation numbers of all and of half the returns that have settled.
+    far, same : float
+        Simulation: distance of a motion that runs away, and of returns that are one, relative to the size of the section.
+    """
+
+    step: float = 1e-6
+    least_step: float = 1e-13
+    crossing: tuple[float, ...] = (1e-5, 1e-6, 1e-7, 1e-8)
+    least_parameter: float = 1e-3
+    solved: float = 1e-10
+    rounded: float = 1e-11
+    rough: float = 1e-4
+    beginning: float = 1e-4
+    smooth: float = 1e-7
+    torn: float = 3e-3
+    apart: float = 1e-3
+    displaced: float = 1e-3
+    settled: float = 1e-11
+    far: float = 1e3
+    same: float = 1e-8
+
+
+CIRCLES = CircleSettings()
 
 
 class Frame(NamedTuple):
@@ -72,6 +123,14 @@ class Curve(NamedTuple):
         n = len(self.points)
         k = np.fft.fftfreq(n, 1.0 / n)
         return np.real(np.exp(1j * np.outer(np.asarray(phases), k)) @ self.harmonics)
+
+    def beyond(self, before: Curve, share: float, bend: float) -> Curve:
+        """As far beyond this curve as it is from another one, times a share; rotation and parameter times another."""
+        return Curve(
+            self.points + share * (self.points - before.points),
+            self.rotation + bend * (self.rotation - before.rotation),
+            self.value + bend * (self.value - before.value),
+        )
 
     def finer(self, count: int) -> Curve:
         """The same curve through another number of points."""
@@ -218,3 +277,30 @@ def solve(
         points = points + change[:size].reshape(n, d)
         rho, p = rho + float(change[size]), p + float(change[size + 1])
     return None
+
+
+# ------------------------------------------------------------------ averages
+def weights(count: int) -> np.ndarray:
+    """Weights of `count` values in a row, with sum one."""
+    t = (np.arange(count) + 1.0) / (count + 1.0)
+    bump = np.exp(-1.0 / (t * (1.0 - t)))
+    return bump / bump.sum()
+
+
+def rotation_number(z: np.ndarray, near: float) -> tuple[float, float]:
+    """(turns per step, estimate of its error) of a sequence of complex numbers that goes round zero.
+
+    Averages along quasi-periodic sequences with the weight exp(-1/(t (1 - t))) in the place of 1 converge faster than any power of their length.
+    Source: Das, Saiki, Sander and Yorke, Nonlinearity 30 (2017) 4111.
+
+    Parameters
+    ----------
+    z : ndarray of complex, shape (m,)
+    near : float
+        A rotation number that is at most half a turn off.
+    """
+    turns = np.angle(z[1:] / z[:-1]) / (2.0 * np.pi)
+    turns = near + (turns - near + 0.5) % 1.0 - 0.5
+    whole = float(weights(len(turns)) @ turns)
+    half = len(turns) // 2
+    return whole, abs(whole - float(weights(half) @ turns[:half]))

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack, runtime_checka
 import numpy as np
 
 from ..continuation.settings import hinted, hinting
-from ..graph.attractor import Attractor
+from ..graph.contents import Attractor
 from ..graph.graph import Graph
-from ..graph.shortening import short_word
+from ..graph.table import short_word
 from ..problems.abilities import Gauged, Sectioned, notation_of
 from ..shared.figures import PlotOptions
 from ..shared.motions import Motion

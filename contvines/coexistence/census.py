@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..graph.attractor import Attractor
+from ..graph.contents import Attractor
 from ..graph.run import Run
 from ..shared.motions import Motion
 from .population import Population

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..branches.branch import Branch
 from ..continuation.settings import hinted, hinting
-from ..graph.shortening import short_word
-from ..graph.table import with_unit
+from ..graph.table import short_word, with_unit
 from ..problems.abilities import notation_of
 from ..shared.figures import PlotOptions
 from ..shared.number_text import figures, figures_in

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..bifurcation.symmetry_test import image_of
+from ..bifurcation.scan import image_of
 from ..branches.solutions import solutions_at
 from ..circles.section import Section, Walled, section_of
 from ..continuation.settings import Settings

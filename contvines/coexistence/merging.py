@@ -49,7 +49,7 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
         if known is None:
             added = replace(branch, label=called[branch.label])
             graph.branches[added.label] = added
-            run.register.add(added, run.engine(added.attached)[0])
+            run.register.add(added, run.engine(added.attached))
     for point in other.special.values():
         called[point.label] = _special(run, point, called)
     fresh = {called[label] for label in other.branches} - {

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from ..continuation.settings import Settings
-from ..graph.attractor import Attractor
 from ..graph.builder import adopt
+from ..graph.contents import Attractor
 from ..graph.graph import Graph
 from ..graph.run import Run
-from ..graph.shortening import short_word
+from ..graph.table import short_word
 from ..journal import NullJournal
 from .census import census, locate
 from .places import UNBRANCHED

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..branches.branch import Branch
-from ..branches.ending import Reason
+from ..branches.branch import Branch, Reason
 from ..continuation.starts import problem_and_start
 from ..graph.automatic import diagram
 from ..problems.maps import MapProblem

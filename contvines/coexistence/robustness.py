@@ -12,7 +12,7 @@ from ..branches.branch import Branch
 from ..branches.solutions import solutions_at
 from ..circles.section import section_of
 from ..continuation.settings import hinting
-from ..graph.shortening import short_word
+from ..graph.table import short_word
 from ..problems.abilities import Gauged
 from ..shared.motions import called
 from ..shared.number_text import figures

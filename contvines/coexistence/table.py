@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from typing import TYPE_CHECKING
 
-from ..graph.shortening import short_word
+from ..graph.table import short_word
 from ..shared.number_text import figures
 from ..text_table import Table, titled
 

@@ -62,7 +62,7 @@ def loads(found: Findings) -> dict[str, float]:
 def met(found: Findings) -> dict[str, float]:
     """Shares of the simulated motions by what they are (with impacts and a period, modulated or chaotic, without impacts, stuck), and the
     largest response of each, that of the branches included."""
-    from ..graph.measures import default_measure
+    from ..graph.stretches import default_measure
 
     name = default_measure(found.graph)
     kinds = [_kind(measures, text) for _, measures, text in found.simulated]

@@ -128,7 +128,7 @@ def _settled(study: Study):
     """The motion that settles from rest, where the study begins or elsewhere in its interval; told on stderr."""
     from orbits.design import Family
 
-    from ..graph.shortening import short_word
+    from ..graph.table import short_word
 
     orbit = Family(
         study.model, loose=study.loose, over=study.parameter, within=study.within, state=study.named_state
@@ -239,7 +239,7 @@ def _default(path: Path) -> str:
     """The measure that is drawn of a study or graph if none is named."""
     if path.suffix == ".vines":
         from ..graph.graph import Graph
-        from ..graph.measures import default_measure
+        from ..graph.stretches import default_measure
         from ..store import load
 
         graph = load(path)

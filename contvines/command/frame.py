@@ -260,7 +260,7 @@ def tell_result(found: Graph | Chart, file: Path, details: bool) -> None:
     size = len(found.branches if isinstance(found, Graph) else found.loci)
     brief = size > MANY and not details
     if isinstance(found, Graph):
-        from ..graph.summary import summary
+        from ..graph.table import summary
 
         whole = f"{size} branches, {len(found.special)} special points"
         known = any(branch.stable is not None for branch in found.branches.values())

@@ -127,8 +127,7 @@ EVENTS = {
 
 def _describe(about: dict[str, Any]) -> str:
     """An orbit as a readable text, from what --json prints."""
-    from ..graph.shortening import short_word
-    from ..graph.table import with_unit
+    from ..graph.table import short_word, with_unit
     from ..shared.stability import marginal_text
     from ..text_table import Table, terminal_width
 

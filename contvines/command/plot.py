@@ -193,7 +193,7 @@ def draw_compared(axes: Axes, graph: Graph, kinds: Sequence[str], x: str | None,
     """
     from orbits.problem import OrbitProblem
 
-    from ..graph.measures import default_measure
+    from ..graph.stretches import default_measure
 
     shown, over = y or default_measure(graph), x or graph.parameter
     problem = next((branch.problem for branch in graph.branches.values() if branch.problem is not None), None)

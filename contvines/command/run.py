@@ -290,7 +290,7 @@ def _picture(
 
 def _shows_response(graph: Graph, y: str | None) -> bool:
     """Whether the picture shows how far something goes, of which simulations tell the band."""
-    from ..graph.measures import default_measure
+    from ..graph.stretches import default_measure
 
     shown = default_measure(graph)
     return shown.startswith("max_") and y in (None, shown)

@@ -121,7 +121,7 @@ def _summary(rows: list[Kept], study: Study) -> str:
     """Runs of equal attractors, one line each, and what is modulated."""
     from itertools import groupby
 
-    from ..graph.shortening import short_word
+    from ..graph.table import short_word
 
     runs, step = [], abs(rows[-1].value - rows[0].value) / max(len(rows) - 1, 1)
     for _, equal in groupby(rows, lambda row: (row.attractor, row.word, row.periods)):
@@ -241,7 +241,7 @@ def _lines(graph: Graph) -> list[tuple[Any, Any, Any]]:
     """Word, parameter values and B at the word's first impact of every branch that has one."""
     from orbits.words import Word
 
-    from ..graph.measures import measured
+    from ..graph.stretches import measured
 
     found = []
     for branch in graph.branches.values():

@@ -265,7 +265,8 @@ class Engine:
             Corrections at most.
         """
         self.guess[0, : self.n], self.guess[0, self.n] = u, p
-        return solved_point(self._run(self.guess, float(target), 0.0, ONE, border, along, sweeps)[0], 0)
+        along = self.nothing if along is None else along
+        return solved_point(self._run(Way(self.guess, float(target), 0.0, border, along, sweeps), ONE)[0], 0)
 
     def polish(
         self, u: np.ndarray, p: float, border: np.ndarray, target: float, along: np.ndarray | None = None
@@ -273,42 +274,23 @@ class Engine:
         """Linearise at a point that is already good: residual, tangent, spectrum and margins belong to it."""
         return self.solve(u, p, border, target, along, 0)
 
-    def on_chord(
-        self,
-        chord: np.ndarray,
-        places: np.ndarray,
-        start: float,
-        length: float,
-        border: np.ndarray,
-        along: np.ndarray,
-    ) -> Found:
-        """The points of a branch at places along a chord; see :class:`contvines.continuation.layout.Way`."""
-        return self._run(chord, start, length, places, border, along, 40)[0]
+    def on_chord(self, way: Way, places: np.ndarray) -> Found:
+        """The points of a branch at places along a chord."""
+        return self._run(way, places)[0]
 
-    def search(
-        self,
-        chord: np.ndarray,
-        start: float,
-        length: float,
-        border: np.ndarray,
-        along: np.ndarray,
-        aim: Aim,
-        tolerance: float,
-        jump: float,
-    ) -> Hit | None:
+    def search(self, way: Way, aim: Aim, tolerance: float, jump: float) -> Hit | None:
         """The point of a branch along a chord at which a number passes zero; None if there is none.
 
         Parameters
         ----------
-        chord, start, length, border, along
-            See :class:`contvines.continuation.layout.Way`.
+        way : Way
         aim : Aim
         tolerance, jump : float
             See :class:`contvines.continuation.bracketing.Bracket`.
         """
         known = self.known
         known[PRECISION], known[JUMP] = tolerance, jump
-        found, outcome = self._run(chord, start, length, ONE, border, along, 40, aim)
+        found, outcome = self._run(way, ONE, aim)
         if outcome == NOWHERE:
             return None
         point = solved_point(found, 0)
@@ -319,20 +301,9 @@ class Engine:
         width = abs(p_one - p_other) + 2.0 * EPSILON * abs(point.p)
         return Hit(place, point, max(width, SOLUTION.left * point.correction), abs(f_one - f_other))
 
-    def _run(
-        self,
-        chord: np.ndarray,
-        start: float,
-        length: float,
-        places: np.ndarray,
-        border: np.ndarray,
-        along: np.ndarray | None,
-        sweeps: int,
-        aim: Aim = NO_AIM,
-    ) -> tuple[Found, int]:
+    def _run(self, way: Way, places: np.ndarray, aim: Aim = NO_AIM) -> tuple[Found, int]:
         k, n = len(places), self.n
         found = Found(np.empty((k, n)), np.empty((k, n + 1)), np.zeros((k, self.row_size)), np.empty((k, 5)))
-        way = Way(chord, start, length, border, self.nothing if along is None else along, sweeps)
         with self.section:
             return found, self.loop.points(way, places, found, aim)
 

@@ -89,7 +89,7 @@ class Way(NamedTuple):
     length: float
     border: np.ndarray
     along: np.ndarray
-    sweeps: int
+    sweeps: int = 40
 
 
 class Metric(NamedTuple):

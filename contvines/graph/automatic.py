@@ -17,8 +17,7 @@ from ..problems.registry import without_problem
 from ..progress import Asked, OnInterrupt, Tell, carried_out
 from .builder import adopt, begin, finish, work
 from .graph import Graph
-from .limits import NO_LIMITS, Limits
-from .run import Progress, Run
+from .run import NO_LIMITS, Limits, Progress, Run
 from .schedule_branches import leave, why_nothing_leaves
 
 
@@ -130,9 +129,9 @@ def diagram(
 def _ever_a_number(run: Run, kind: Kind) -> bool:
     """Whether a user's test is a number in the middle of any branch."""
     for branch in run.graph.branches.values():
-        engine, detector = run.engine(branch.attached)
+        detector = run.detector(branch.attached)
         i = len(branch) // 2
-        point = engine.at_value(branch.points[i], float(branch.values[i]))
+        point = detector.engine.at_value(branch.points[i], float(branch.values[i]))
         own = next(own for own in detector.own if own.kind is kind)
         if point is not None and np.isfinite(own.at(point)):
             return True

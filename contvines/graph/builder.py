@@ -2,32 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..bifurcation.detect import Detector
 from ..bifurcation.kinds import BORDERS
-from ..bifurcation.multiplier_counts import sizes_by_sort
+from ..bifurcation.scan import sizes_by_sort
 from ..bifurcation.settings import LOCATING
-from ..branches.assembly import filled, make_branch
-from ..branches.half_branch import HalfBranch
-from ..branches.opening import on_this_side
+from ..branches.branch import Ending, Reason
+from ..branches.finer_mesh import Meshes
+from ..branches.half_branch import HalfBranch, filled, make_branch
+from ..branches.tracing import from_border, on_this_side, trace_half
 from ..continuation.engine import Engine, Solved
-from ..continuation.layout import MARGIN
+from ..continuation.layout import MARGIN, Status
 from ..continuation.starts import solve_start, start_remark
 from ..interrupts import listening, take
 from ..problems.protocol import Problem
-from .both_ways import DEAD, followed
 from .identity import parts_further_on
 from .label_special_points import mark, origin_index
-from .match_borders import is_border, same_border, tie_borders
+from .match_borders import is_border, same_border, tell_dead_end, tie_borders
 from .run import LARGE, LOCATED, Origin, Pending, Run
-from .schedule_branches import SWITCHING, leave, tell_dead_end
+from .schedule_branches import SWITCHING, leave
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+DEAD = (Status.STEP_TOO_SMALL, Status.NOT_EVALUABLE)  # why a branch may end at its very start
 BEYOND = (
     0.1 * MARGIN
 )  # a branch whose margins are less all along is none, though they are no less than what counts as rounding
@@ -43,7 +47,7 @@ def begin(run: Run, problem: Problem, u: ArrayLike, p: float, depth: int = 0) ->
     ValueError
         If it does not converge, lies outside the interval, or has a negative margin and ``virtual`` is off.
     """
-    engine, _ = run.engine(problem)
+    engine = run.engine(problem)
     start = solve_start(engine, u, p)
     outside = run.limits.outside(problem, start.u, start.p)
     if outside:
@@ -63,7 +67,7 @@ def adopt(run: Run) -> None:
     """Continue the register of a graph that has branches already."""
     for branch in run.graph.branches.values():
         if branch.problem is not None:
-            run.register.add(branch, run.engine(branch.problem)[0], {i for i, _ in branch.marks})
+            run.register.add(branch, run.engine(branch.problem), {i for i, _ in branch.marks})
     run.serial = len(run.graph.branches)
 
 
@@ -81,7 +85,12 @@ def work(run: Run) -> None:
                     break
                 trace_pending(run, run.queue.popleft())
             tie_borders(run)
-            tell_dead_ends(run)
+            crossed = {switch.point for switch in graph.switches}
+            for point in graph.special.values():
+                # its solutions beyond were looked for, and came to nothing one by one
+                untold = point.kind in BORDERS and point.real and not point.remarks
+                if untold and point.label not in crossed and point.problem is not None:
+                    tell_dead_end(run, point)
         except KeyboardInterrupt:
             take()
             graph.message = "interrupted; run the same command again to go on"
@@ -128,15 +137,6 @@ def tell_waiting(run: Run, why: str) -> None:
             run.remark(pending.point, f"a branch that leaves here is not followed: {why}")
 
 
-def tell_dead_ends(run: Run) -> None:
-    """Say why nothing goes on at a border whose solutions beyond were looked for, and came to nothing one by one."""
-    crossed = {switch.point for switch in run.graph.switches}
-    for point in run.graph.special.values():
-        untold = point.kind in BORDERS and point.real and not point.remarks and point.label not in crossed
-        if untold and point.problem is not None:
-            tell_dead_end(run, point)
-
-
 def trace_pending(run: Run, pending: Pending) -> None:
     """Trace a branch unless it is known, and queue what leaves it."""
     if pending.reached:
@@ -151,7 +151,7 @@ def trace_pending(run: Run, pending: Pending) -> None:
 
 def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
     """First point of a pending branch, and whether it is real; None if there is none to trace, or it is known."""
-    first = first_point(run, run.engine(pending.problem)[0], pending)
+    first = first_point(run, run.engine(pending.problem), pending)
     # the virtual rest of a branch goes on in its own equations, though at the border it repeats a shorter solution
     rest = pending.kind is Origin.REST and not pending.real
     shorter = None if first is None or rest else pending.problem.root(first.u, first.p)
@@ -163,14 +163,14 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
             pending.kind, pending.real = Origin.BORDER, None
         elif pending.kind is Origin.SWITCH:
             pending.kind = Origin.ROOT
-        first = first_point(run, run.engine(pending.problem)[0], pending)
+        first = first_point(run, run.engine(pending.problem), pending)
     if first is None:
         return None
     if outside := run.limits.outside(pending.problem, first.u, first.p):
         if pending.point is not None:
             run.remark(pending.point, f"the branch that leaves here is not followed: {outside}")
         return None
-    engine, _ = run.engine(pending.problem)
+    engine = run.engine(pending.problem)
     real = pending.real
     if real is None:
         real = float(engine.smallest_margin(first.row)) >= MARGIN
@@ -182,7 +182,7 @@ def new_branch(run: Run, pending: Pending) -> tuple[Solved, bool] | None:
         return None
     known = run.register.find(pending.problem, first.u, first.p, real)
     if known is not None and pending.kind is Origin.SWITCH and known.label == pending.source:
-        itself = run.engine(known.attached)[0]
+        itself = run.engine(known.attached)
         known = None if parts_further_on(known, itself, engine, first) else known
     if known is not None:
         if pending.kind is Origin.BORDER and pending.point is not None and known.label == pending.source:
@@ -227,7 +227,7 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.graph.branches[label] = branch
     run.register.add(branch, engine, {i for i, _ in half.events} | {origin})
     run.connect(pending.point, pending.source, label, pending.note)
-    new = mark(run, engine, branch, half, pending, origin)
+    new = mark(run, branch, half, pending, origin)
     for point in new:
         leave(run, point, branch, pending.depth)
     run.points += len(branch)
@@ -237,6 +237,98 @@ def trace_new(run: Run, pending: Pending, first: Solved, real: bool) -> None:
     run.tell(f"{label} finished", float(branch.values[-1]))
 
 
+# ------------------------------------------------------------------ both ways
+def followed(
+    run: Run, pending: Pending, first: Solved, real: bool, label: str
+) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
+    """The whole branch in order, why it ends at either side, and whether it is closed.
+
+    Where what was found on a coarse mesh cannot be read on a finer one, that side of the branch is followed again from its start. What is known
+    of the pending branch is on the mesh of the result then.
+    """
+    meshes = Meshes(run.detector(pending.problem), run.detector)
+
+    def notice(points: int, value: float) -> None:
+        run.tell(f"{label}: {points} points", value)
+
+    def halves(detector: Detector, first: Solved, known: Container[str]) -> dict[str, HalfBranch]:
+        """The sides of the first point but for those that are known; the first alone where that closes."""
+        if pending.kind is Origin.START and first.tangent[-1] < 0.0:
+            first = turned(first)
+        origin, starts = None, {"ahead": first, "back": turned(first)}
+        if pending.kind is Origin.REST:
+            del starts["back"]
+        elif pending.kind is Origin.SWITCH:
+            engine, origin = detector.engine, pending.origin
+            sides = {"ahead": pending.ahead, "back": pending.back}
+            starts = {side: at for side, at in sides.items() if at and engine.lower <= at.p <= engine.upper}
+        found: dict[str, HalfBranch] = {}
+        for side, start in starts.items():
+            if side not in known:
+                place = f"{run.serial}/{side}"
+                found[side] = trace_half(
+                    detector, start, run.journal, place, real, pending.first_step, notice, origin, meshes
+                )
+                if found[side].status == Status.CLOSED and side == "ahead":
+                    break
+        return found
+
+    def moved(detector: Detector, wanted: Detector, first: Solved, solve: bool = True) -> Solved | None:
+        """The first point on a finer mesh, and the pending branch, too; None, and all as it was, where the point cannot be solved there."""
+        begin = meshes.moved(detector, wanted, first, solve)
+        if begin is not None:
+            pending.problem, pending.u = wanted.engine.problem, begin.u
+            pending.tangent = begin.tangent if pending.tangent is not None else None
+            pending.origin = meshes.moved(detector, wanted, pending.origin, solve=False)
+            pending.ahead = meshes.moved(detector, wanted, pending.ahead, solve)
+            pending.back = meshes.moved(detector, wanted, pending.back, solve)
+        return begin
+
+    def again(detector: Detector, wanted: Detector, first: Solved) -> Solved | None:
+        begin = moved(detector, wanted, first)
+        run.serial += begin is not None
+        return begin
+
+    found, detector, first = meshes.followed(first, halves, again, real)
+    finest = next(iter(found.values())).detector
+    first = moved(detector, finest, first, solve=False) or first
+    return _in_order(pending, found, first)
+
+
+def turned(point: Solved) -> Solved:
+    """A point of the branch in the other direction."""
+    return point._replace(tangent=-point.tangent, sign=-point.sign)
+
+
+def _in_order(
+    pending: Pending, halves: dict[str, HalfBranch], first: Solved
+) -> tuple[HalfBranch, tuple[Ending, Ending], bool]:
+    ahead, back = halves.get("ahead"), halves.get("back")
+    reason = Reason.GOES_ON if pending.kind is Origin.REST else Reason.LEAVES
+    begins = Ending(reason, pending.p, pending.point, pending.source)
+    if ahead is None:
+        assert back is not None
+        return back.reversed(), (_ending(back), begins), False
+    end = _ending(ahead)
+    if ahead.status == Status.CLOSED:
+        if pending.kind is Origin.SWITCH:
+            assert ahead.first is not None
+            ahead = ahead.since(ahead.first)
+        return ahead, (end, end), True
+    if back is not None:
+        return back.reversed().extended(ahead, skip=1), (_ending(back), end), False
+    return from_border(ahead, first) if pending.kind is Origin.REST else ahead, (begins, end), False
+
+
+def _ending(half: HalfBranch) -> Ending:
+    found = Ending.of(half.status, half.end)
+    if half.status in DEAD:
+        problem, stuck = half.engine.problem, half.status == Status.STEP_TOO_SMALL
+        return replace(found, text=problem.explain_end(*half.at(len(half) - 1), stuck))
+    return found
+
+
+# ------------------------------------------------------------------ first points
 def of_no_length(run: Run, half: HalfBranch) -> bool:
     """Whether a branch ends both ways where it begins, but for rounding, or is real there by rounding alone."""
     nowhere = run.settings.rounding

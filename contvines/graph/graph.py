@@ -14,8 +14,7 @@ from ..continuation.settings import hinted
 from ..interrupts import Resumable
 from ..problems.abilities import Several, notation_of
 from ..shared.figures import PlotOptions
-from .attractor import Attractor
-from .unresolved import Unresolved
+from .contents import Attractor, Unresolved
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -171,7 +170,7 @@ class Graph(Resumable):
         return not self.complete and self.settings.get("max_branches") != 1
 
     def _repr_html_(self) -> str:
-        from .pages import graph_page
+        from .table import graph_page
 
         return graph_page(self) + (f"<p>{self.message}</p>" if self._cut else "")
 

@@ -9,10 +9,11 @@ is stated, up to a hundredth of it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable
+from collections.abc import Collection, Hashable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +22,28 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..problems.protocol import Problem
-from .settings import IDENTITY
 
+
+@dataclass(frozen=True)
+class Identity:
+    """When two values of the parameter, or two solutions, are one, in parts of `Settings.same`.
+
+    Attributes
+    ----------
+    stated : float
+        Of values whose errors are stated; the errors come on top of it.
+    unstated : float
+        Of values of which none is stated.
+    exact : float
+        Of solutions to roundoff: those that differ by more are two, though they count as the same.
+    """
+
+    stated: float = 1e-4
+    unstated: float = 1e-2
+    exact: float = 1e-3
+
+
+IDENTITY = Identity()
 SAME = Settings().same
 ERRORS = 10.0  # times the stated errors
 FAR = 0.1  # length along two branches after which they are one
@@ -148,32 +169,45 @@ class Register:
         near = [known for known in self.known if real in (None, known.branch.real) and known.reaches(p)]
         if not near:
             return None
-        key, vector = problem.canonical(u, p)
+        form = problem.canonical(u, p)
         for known in near:
             branch, engine = known.branch, known.engine
-            if key not in known.keys:
+            if form[0] not in known.keys:
                 continue
-            if _passes(branch, engine, key, vector, p) or _ends_at(branch, engine, key, vector, p):
+            limits = {True: engine.settings.same, False: engine.settings.near}
+            if any(gap <= limits[solved] for gap, solved in _crossings(branch, engine, form, p, 0.1)):
                 return branch
+            place = Place(p, 0.0)  # it may be an end point of the branch, where the parameter is not passed
+            for i in () if branch.closed else (0, -1):
+                at = Place(float(branch.values[i]), 0.0)
+                if same_value(at, place, engine.parameter_unit(p), engine.settings.same) and is_end(
+                    branch, engine, i, form
+                ):
+                    return branch
         return None
 
 
-def _passes(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> bool:
-    gaps = branch.values - p
+def _crossings(
+    branch: Branch, engine: Engine, form: Form, p: float, far: float = np.inf
+) -> Iterator[tuple[float, bool]]:
+    """Distances of a solution, in its canonical form, from those of a branch that passes its parameter value, and whether these were solved for.
+
+    Else they are those of the interpolated ones, of which those farther away than `far` are passed over.
+    """
+    (key, vector), gaps = form, branch.values - p
     for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
         guess = _at_value(branch, engine, int(i), p)
         here, near = engine.problem.canonical(guess, p)
-        if here == key and not same_vector(near, vector, 0.1, engine.scale):
+        apart = distance(near, vector, engine.scale) if here == key else None
+        if apart is not None and apart > far:
             continue
         found = engine.at_value(guess, p)
-        if found is None:
-            if here == key and same_vector(near, vector, engine.settings.near, engine.scale):
-                return True
-            continue
-        here, near = engine.problem.canonical(found.u, p)
-        if here == key and same_vector(near, vector, engine.settings.same, engine.scale):
-            return True
-    return False
+        if found is not None:
+            here, near = engine.problem.canonical(found.u, p)
+            if here == key:
+                yield distance(near, vector, engine.scale), True
+        elif apart is not None:
+            yield apart, False
 
 
 def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solved) -> bool:
@@ -194,7 +228,10 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
     """
 
     def away(point: Solved) -> float:
-        return _gap(branch, known, *engine.problem.canonical(point.u, point.p), point.p)
+        form = engine.problem.canonical(point.u, point.p)
+        return min(
+            (gap for gap, solved in _crossings(branch, known, form, point.p) if solved), default=np.inf
+        )
 
     same = engine.settings.same
     gap, length, point = away(first), same, first
@@ -214,61 +251,28 @@ def parts_further_on(branch: Branch, known: Engine, engine: Engine, first: Solve
     return same < gap < np.inf
 
 
-def _gap(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> float:
-    """Distance of a canonical form from the branch at its parameter value as :func:`distance` has it, infinite where the branch is not near."""
-    least, gaps = np.inf, branch.values - p
-    for i in np.flatnonzero((gaps[:-1] * gaps[1:] <= 0.0) & (gaps[:-1] != gaps[1:])):
-        found = engine.at_value(_at_value(branch, engine, int(i), p), p)
-        if found is None:
-            continue
-        here, near = engine.problem.canonical(found.u, p)
-        if here == key:
-            least = min(least, distance(near, vector, engine.scale))
-    return least
-
-
-def _ends_at(branch: Branch, engine: Engine, key: Hashable, vector: np.ndarray, p: float) -> bool:
-    """Whether the solution is an end point of the branch, where the parameter is not passed."""
-    if branch.closed:
-        return False
-    return any(
-        same_value(
-            Place(float(branch.values[i]), 0.0), Place(p, 0.0), engine.parameter_unit(p), engine.settings.same
-        )
-        and is_end(branch, engine, i, key, vector)
-        for i in (0, -1)
-    )
-
-
-def is_end(branch: Branch, engine: Engine, i: int, key: Hashable, vector: np.ndarray) -> bool:
+def is_end(branch: Branch, engine: Engine, i: int, form: Form) -> bool:
     """Whether a solution, in its canonical form, is point i of a branch, an end of it."""
-    here, near = engine.problem.canonical(branch.points[i], float(branch.values[i]))
-    return here == key and same_vector(near, vector, singular(engine.settings.same), engine.scale)
+    here = engine.problem.canonical(branch.points[i], float(branch.values[i]))
+    return same_form(here, form, engine.scale, singular(engine.settings.same))
 
 
 def _at_value(branch: Branch, engine: Engine, i: int, p: float) -> np.ndarray:
     """u at parameter value p on the cubic between points i and i + 1."""
     za, zb = (engine.join(branch.points[j], branch.values[j]) for j in (i, i + 1))
-    ta, tb = branch.tangents[i], branch.tangents[i + 1]
-    d = engine.norm(zb - za)
+    chord = engine.norm(zb - za)
 
-    def at(t: float) -> np.ndarray:
-        return (
-            (1 + 2 * t) * (1 - t) ** 2 * za
-            + t * (1 - t) ** 2 * d * ta
-            + t * t * (3 - 2 * t) * zb
-            + t * t * (t - 1) * d * tb
+    def at(t: float, a: Any, slope_a: Any, b: Any, slope_b: Any) -> Any:
+        rest = 1.0 - t
+        return rest * rest * ((1.0 + 2.0 * t) * a + t * slope_a) + t * t * (
+            (3.0 - 2.0 * t) * b - rest * slope_b
         )
 
-    # only the parameter's cubic has to be solved
-    a, b, c, e = float(za[-1]), float(d * ta[-1]), float(zb[-1]), float(d * tb[-1])
-    low, high, flow = 0.0, 1.0, a - p
+    ends = za, chord * branch.tangents[i], zb, chord * branch.tangents[i + 1]
+    parameter = [float(end[-1]) for end in ends]  # only its cubic has to be solved
+    low, high, first = 0.0, 1.0, parameter[0] - p
     for _ in range(30):
         middle = 0.5 * (low + high)
-        t, rest = middle, 1.0 - middle
-        value = rest * rest * ((1.0 + 2.0 * t) * a + t * b) + t * t * ((3.0 - 2.0 * t) * c - rest * e) - p
-        if (value > 0.0) == (flow > 0.0):
-            low, flow = middle, value
-        else:
-            high = middle
-    return at(0.5 * (low + high))[:-1]
+        value = at(middle, *parameter) - p
+        low, high, first = (middle, high, value) if (value > 0.0) == (first > 0.0) else (low, middle, first)
+    return at(0.5 * (low + high), *ends)[:-1]

@@ -1,14 +1,27 @@
-"""Which borders are one: a border is seen from both its sides, with different words, and other borders may be very near."""
+"""Borders: which are one, as a border is seen from both its sides, with different words, and others may be very near; and what lies beyond."""
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
 from ..bifurcation.kinds import BORDERS
-from ..bifurcation.located import Located
+from ..bifurcation.locate import Located
 from ..branches.branch import Branch
 from ..branches.special_point import SpecialPoint
-from ..problems.protocol import Problem
+from ..journal import NullJournal
+from ..problems.abilities import Onward
+from ..problems.protocol import Problem, Seed
+from ..problems.registry import UnknownFactory, rebuild
 from .identity import Place, is_end, may_be_one, same_value
-from .run import Run
+from .run import Origin, Pending, Run
+
+CROSSING = "the search for solutions beyond the border"
+DEEPER = "the solutions found beyond are not followed: depth = {depth}"
 
 
 def is_border(run: Run, problem: Problem, event: Located, label: str) -> bool:
@@ -28,13 +41,13 @@ def same_border(run: Run, label: str, known: Branch) -> str:
     """The border has led to a branch that ends at a border with this very value: they are one point, with one label."""
     graph = run.graph
     here = graph.special[label]
-    engine, _ = run.engine(known.attached)
+    engine = run.engine(known.attached)
     for i, other in known.marks:
         point = graph.special[other]
         if other == label or point.kind not in BORDERS or not _in_one_place(run, point, here):
             continue
         if may_be_one(here.attached, here.u, here.value, point, run.settings.same) or is_end(
-            known, engine, i, *run.form(here)
+            known, engine, i, run.form(here)
         ):
             run.merge(label, other)
             return other
@@ -67,3 +80,97 @@ def tie_borders(run: Run) -> None:
                 run.merge(label, other.label)
                 run.connect(other.label, other.branch, point.branch)
                 break
+
+
+# ------------------------------------------------------------------ what lies beyond
+def cross(run: Run, point: SpecialPoint, branch: Branch, depth: int) -> None:
+    """Queue the solutions on the other side of a border, and with ``virtual`` the rest of the branch itself."""
+    leaving = point
+    if point.index == 0:
+        leaving = copy.copy(point)  # `dataclasses.replace` would ask for what is worked out later
+        leaving.tangent = -point.tangent
+    outward, queued = leaving.tangent, list[Pending]()
+    if branch.real:
+        seeds = _seeds(run, leaving, depth < run.depth)
+        for seed in seeds:
+            # a branch that goes on in the same direction is as deep, another one is a switch deeper
+            deep = depth + (0 if seed.persistence else 1)
+            if deep <= run.depth:
+                u = np.asarray(seed.u, dtype=float)
+                tangent = None if seed.tangent is None else np.asarray(seed.tangent, dtype=float)
+                note = str(seed.note) or ("persistence" if seed.persistence else "nonsmooth fold")
+                queued.append(
+                    Pending(seed.problem, u, float(seed.p), tangent, Origin.BORDER, deep, note=note)
+                )
+        if not seeds:
+            tell_dead_end(run, leaving)
+        elif not queued:
+            run.remark(point.label, DEEPER.format(depth=run.depth))
+    if run.virtual:
+        engine = run.engine(point.attached)
+        border, z = engine.weights * outward, engine.join(point.u, point.value)
+        origin = engine.polish(point.u, point.value, border, float(border @ z), outward)
+        if origin is not None:
+            origin = origin._replace(tangent=engine.unit(outward))  # solved for, it may be rounding
+        rest = Pending(point.attached, point.u, point.value, outward, Origin.REST, depth, origin=origin)
+        rest.note, rest.real = "virtual" if branch.real else "real again", not branch.real
+        queued.append(rest)
+    for pending in queued:
+        pending.source, pending.point = branch.label, point.label
+    run.queue += queued
+
+
+def tell_dead_end(run: Run, point: SpecialPoint) -> None:
+    """Say why nothing goes on at a border."""
+    run.remark(point.label, run.attempt(point.label, CROSSING, partial(point.attached.dead_end, point), ""))
+
+
+def _seeds(run: Run, point: SpecialPoint, every: bool) -> list[Seed]:
+    """What lies beyond a border; unless `every`, what would not be followed is left out if something else is found."""
+    problem = point.attached
+    onward = problem.onward if isinstance(problem, Onward) and not every else None
+    key = f"{run.serial}/{'beyond' if onward is None else 'onward'}/{point.label}"
+    recorded = run.journal.recall(key)
+    known = _rebuilt(recorded)
+    if known is not None:
+        return known
+    ask = onward or problem.beyond
+    seeds = run.attempt(point.label, CROSSING, lambda: list(ask(point)), None)
+    if seeds is None:
+        return []
+    if recorded is None and not isinstance(run.journal, NullJournal):
+        run.journal.record(key, _recorded(seeds))
+    return seeds
+
+
+def _recorded(seeds: list[Seed]) -> dict[str, Any]:
+    """Seeds as a journal keeps them."""
+    record: dict[str, Any] = {
+        "problems": [dict(seed.problem.describe()) for seed in seeds],
+        "p": [float(seed.p) for seed in seeds],
+        "note": [str(seed.note) for seed in seeds],
+        "persistence": [bool(seed.persistence) for seed in seeds],
+    }
+    for i, seed in enumerate(seeds):
+        record[f"u{i}"] = np.asarray(seed.u, dtype=float)
+        if seed.tangent is not None:
+            record[f"tangent{i}"] = np.asarray(seed.tangent, dtype=float)
+    return record
+
+
+def _rebuilt(record: Mapping[str, Any] | None) -> list[Seed] | None:
+    """The seeds of a journal's record; None where a problem cannot be obtained from it, and is asked for again."""
+    if record is None:
+        return None
+    seeds = []
+    for i, entry in enumerate(record["problems"]):
+        try:
+            problem = rebuild(entry)
+        except UnknownFactory:
+            return None
+        if problem is None:
+            return None
+        tangent, note = record.get(f"tangent{i}"), record["note"][i]
+        persistence = bool(record["persistence"][i])
+        seeds.append(Seed(problem, record[f"u{i}"], record["p"][i], tangent, "border", note, persistence))
+    return seeds

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -13,8 +14,8 @@ import numpy as np
 from ..bifurcation.detect import Detector
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import KINDS, kind_named
-from ..bifurcation.located import Located
-from ..branches.ending import Ending, Reason
+from ..bifurcation.locate import Located
+from ..branches.branch import Ending, Reason
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
@@ -23,13 +24,92 @@ from ..problems.protocol import Problem
 from ..progress import time_left
 from .graph import Graph, Switch
 from .identity import Register
-from .limits import NO_LIMITS, Limits
 
 if TYPE_CHECKING:
     from ..journal import Journal
 
+
 LARGE = 64  # unknowns from which a point takes longer the more it has
 LOCATED = 40  # points that take as long as a special point of cycles on a mesh: located, solved on a finer one, and left
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Functions at whose zeros branches end, and the bounds that some of them stand for.
+
+    Attributes
+    ----------
+    functions : dict
+        name -> callable (u, p) -> float, or (measure, value).
+    bounds : dict
+        name of a measure -> (low, high).
+    """
+
+    functions: dict[str, Any] = field(default_factory=dict)
+    bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls,
+        stop: Mapping[str, Any] | None,
+        bounds: Mapping[str, tuple[float, float]] | None,
+        problem: Problem,
+    ) -> Limits:
+        """From what a user gives.
+
+        Parameters
+        ----------
+        stop : mapping, optional
+            name -> callable (u, p) -> float, or (measure, value).
+        bounds : mapping, optional
+            measure -> (low, high); either may be infinite or None.
+        problem : Problem
+            Its measures may have bounds.
+
+        Raises
+        ------
+        ValueError
+            If a bound is no pair of numbers, the first one smaller, or there is no such measure.
+        """
+        functions, pairs = dict(stop or {}), {}
+        for name, pair in (bounds or {}).items():
+            known = problem.measure_names
+            if name not in known:
+                raise ValueError(f"bounds: there is no measure {name!r}; choose from {', '.join(known)}")
+            try:
+                low, high = (
+                    float(default if value is None else value)
+                    for value, default in zip(pair, (-math.inf, math.inf), strict=True)
+                )
+            except (TypeError, ValueError):
+                raise ValueError(
+                    f"bounds: {name!r} has {pair!r}; give two numbers, low and high (None where there is no bound)"
+                ) from None
+            if not low < high:
+                raise ValueError(
+                    f"bounds: {name!r} has [{low:g}, {high:g}]; the first one must be the smaller one"
+                )
+            pairs[name] = (low, high)
+            functions |= {f"{name} = {end:g}": (name, end) for end in (low, high) if math.isfinite(end)}
+        return cls(functions, pairs)
+
+    def kept(self) -> dict[str, Any]:
+        """What a graph keeps of them among its settings, JSON-able: the bounds."""
+        pairs = {
+            name: [end if math.isfinite(end) else None for end in pair] for name, pair in self.bounds.items()
+        }
+        return {"bounds": pairs} if pairs else {}
+
+    def outside(self, problem: Problem, u: np.ndarray, p: float) -> str:
+        """A sentence on the first bound beyond which a solution lies; empty if it lies within all."""
+        for name, (low, high) in self.bounds.items():
+            value = float(problem.measures((name,), np.atleast_2d(u), np.array([p]))[name][0])
+            if not low <= value <= high:
+                return f"{name} = {value:.6g} is outside of its bounds [{low:g}, {high:g}]"
+        return ""
+
+
+NO_LIMITS = Limits()
 
 
 class Origin(StrEnum):
@@ -126,10 +206,11 @@ class Progress(NamedTuple):
         return said
 
 
+@dataclass(eq=False)
 class Run:
     """Graph, queue, register of known branches, labels.
 
-    Parameters
+    Attributes
     ----------
     graph : Graph
         Filled in place.
@@ -143,40 +224,40 @@ class Run:
         Where branches end because the user says so.
     kinds : sequence of Kind
         What is looked for.
+    left : callable or None
+        What is left of an atlas.
+    over : callable
+        Whether no further branch may leave another one, of an atlas.
+    narrowest : float
+        So near to a homoclinic orbit nothing that leaves a branch is followed.
+    events : dict of Located
+        By label, of special points that were found in this run.
+    cost : int
+        Points, those of many unknowns as often as they have `LARGE`; of cycles special points as well.
     """
 
-    def __init__(
-        self,
-        graph: Graph,
-        settings: Settings,
-        journal: Journal,
-        depth: int,
-        virtual: bool,
-        user_functions: Mapping[str, Any] | None,
-        progress: Callable[[Progress], None] | None,
-        limits: Limits = NO_LIMITS,
-        kinds: Sequence[Kind] = KINDS,
-    ) -> None:
-        self.graph, self.settings, self.journal = graph, settings, journal
-        self.depth, self.virtual = depth, virtual
-        self.limits, self.kinds = limits, tuple(kinds)
-        self.user_functions = {**(user_functions or {}), **limits.functions}
-        self.progress = progress
-        self.left: Callable[[], Left] | None = None
-        self.over: Callable[[], bool] = lambda: (
-            False
-        )  # whether no further branch may leave another one, of an atlas
-        self.narrowest = 0.0  # so near to a homoclinic orbit nothing that leaves a branch is followed
-        self.queue: deque[Pending] = deque()
-        self.register = Register()
-        self.numbers: dict[str, int] = {}
-        self.events: dict[str, Located] = {}
-        self.engines: dict[int, tuple[Any, Engine, Detector]] = {}
-        self.forms: dict[str, tuple[SpecialPoint, Any]] = {}
-        self.compared: dict[tuple[int, int], tuple[Solved, SpecialPoint, bool]] = {}
-        self.serial = 0
-        self.points = 0
-        self.cost = 0  # points, those of many unknowns as often as they have `LARGE`; of cycles special points as well
+    graph: Graph
+    settings: Settings
+    journal: Journal
+    depth: int
+    virtual: bool
+    user_functions: Mapping[str, Any] | None
+    progress: Callable[[Progress], None] | None
+    limits: Limits = NO_LIMITS
+    kinds: Sequence[Kind] = KINDS
+    left: Callable[[], Left] | None = None
+    over: Callable[[], bool] = lambda: False
+    narrowest: float = 0.0
+    serial: int = 0
+    points: int = 0
+    cost: int = 0
+    queue: deque[Pending] = field(default_factory=deque)
+    register: Register = field(default_factory=Register)
+    numbers: dict[str, int] = field(default_factory=dict)
+    events: dict[str, Located] = field(default_factory=dict)
+    detectors: dict[int, Detector] = field(default_factory=dict)
+    forms: dict[str, tuple[SpecialPoint, Any]] = field(default_factory=dict)
+    compared: dict[tuple[int, int], tuple[Solved, SpecialPoint, bool]] = field(default_factory=dict)
 
     def tell(self, message: str, value: float) -> None:
         """Report progress."""
@@ -200,18 +281,23 @@ class Run:
 
     def unit(self, p: float) -> float:
         """What differences of the parameter near p are compared with: see :func:`parameter_unit`."""
-        for _, engine, _ in self.engines.values():
-            return engine.parameter_unit(p)
+        for detector in self.detectors.values():
+            return detector.engine.parameter_unit(p)
         return parameter_unit(self.graph.within, p)
 
-    def engine(self, problem: Problem) -> tuple[Engine, Detector]:
-        """Engine and detector of a problem, made once."""
-        if id(problem) not in self.engines:
+    def detector(self, problem: Problem) -> Detector:
+        """Detector of a problem, made once."""
+        if id(problem) not in self.detectors:
+            functions = {**(self.user_functions or {}), **self.limits.functions}
             engine = Engine(problem, self.graph.within, self.settings)
-            detector = Detector(engine, self.kinds, self.user_functions, tuple(self.limits.functions))
-            self.engines[id(problem)] = (problem, engine, detector)
-        _, engine, detector = self.engines[id(problem)]
-        return engine, detector
+            self.detectors[id(problem)] = Detector(
+                engine, self.kinds, functions, tuple(self.limits.functions)
+            )
+        return self.detectors[id(problem)]
+
+    def engine(self, problem: Problem) -> Engine:
+        """Engine of a problem, made once."""
+        return self.detector(problem).engine
 
     def kind(self, name: str) -> Kind:
         """The kind of this name among those that are looked for, or of the built-in ones."""

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+import html
+import re
+import textwrap
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
 from ..bifurcation.kinds import BORDERS, KINDS
-from ..branches.special_point import TRANSCRITICAL
+from ..branches.branch import Branch
+from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.settings import Settings
-from ..shared.number_text import figures_in
+from ..shared.motions import MODULATIONS
+from ..shared.number_text import PART, complex_figures, figures, figures_in
+from ..shared.number_text import number_text as number
 from ..text_table import Table, fitted, terminal_width
+from .contents import Attractor, sentences
+from .graph import Graph
 from .proving import mark, proof_text
-from .shortening import short_text, short_word, short_words
-from .unresolved import sentences
+from .stretches import Stretch, at_points, default_measure, gaps, stretches, united
 
-if TYPE_CHECKING:
-    from ..branches.branch import Branch
-    from .attractor import Attractor
-    from .graph import Graph
-
+MOST = 8  # motions that a summary lists
 LEFT = tuple(kind.name for kind in KINDS if kind.leaves)  #: kinds that solutions leave
 
 
@@ -189,7 +193,7 @@ def describe(branch: Branch) -> str:
     """A branch in a few words: its motion's word, periods, symmetry, virtual or not."""
     about = branch.description
     parts = (
-        short_word(str(about.get("word") or about.get("name", ""))),
+        motion_name(about),
         f"k={about['periods']}" if "periods" in about else "",
         "symmetric" if about.get("symmetric") else "",
         "" if branch.real else "virtual",
@@ -215,3 +219,183 @@ def ends(branch: Branch) -> str:
 def with_unit(name: str, unit: str | None) -> str:
     """A name as the head of a column."""
     return f"{name} [{unit}]" if unit else name
+
+
+# ------------------------------------------------------------------ long words, for tables and captions; files keep them whole
+def short_word(word: str, limit: int = 24) -> str:
+    """A word of events in at most about `limit` characters.
+
+    A word that repeats a shorter one is written with its power, ``(LtRLttR)^8``; what is still too long is cut, with the
+    number of its events (between blanks where their names are long; else letters, as signs such as those of ``s+`` belong to the event before them). Names of modulations stay as they are.
+    """
+    if len(word) <= limit or word in MODULATIONS:
+        return word
+    joint = " " if " " in word else ""  # names of several letters stand apart
+    length = (word + joint + word).find(word, 1)  # of the shortest root, with its joint
+    power = f"^{(len(word) + len(joint)) // length}" if length < len(word) else ""
+    root = word[:length].rstrip()
+    if len(root) > limit:
+        shown = re.sub(r"\[[^\]]*\]", "", root)  # without modes, which are no events
+        events = len(shown.split()) if joint else sum(letter.isalpha() for letter in shown)
+        cut = root[: limit - 8]
+        root = f"{cut[: cut.rfind(joint)] if joint else cut}... {events} events"
+    return f"({root}){power}" if power else root
+
+
+def told_apart(words: Iterable[str], limit: int = 24) -> dict[str, str]:
+    """Short forms of words by word: those of different words differ, and are longer where they have to be."""
+    limits = dict.fromkeys(words, limit)
+    while True:
+        short = {word: short_word(word, most) for word, most in limits.items()}
+        times = Counter(short.values())
+        alike = [word for word, most in limits.items() if times[short[word]] > 1 and most < len(word)]
+        if not alike:
+            return short
+        limits.update((word, 2 * limits[word]) for word in alike)
+
+
+def short_text(text: str) -> str:
+    """A text on one line of at most 100 characters, cut between words."""
+    return textwrap.shorten(text, 100, placeholder=" ...", break_on_hyphens=False)
+
+
+def motion_name(description: Mapping[str, Any]) -> str:
+    """How tables and pictures call a motion: its word, or, where nothing happens on it, what its problem calls that ("stuck", "no events")."""
+    return short_word(_word(description))
+
+
+def _word(description: Mapping[str, Any]) -> str:
+    return str(description.get("word") or description.get("name", ""))
+
+
+def short_words(text: str) -> str:
+    """A sentence with its long words shortened."""
+    return " ".join(short_word(part) for part in text.split(" "))
+
+
+# ------------------------------------------------------------------ pages for notebooks
+def graph_page(graph: Graph) -> str:
+    """All tables of a graph."""
+    about = f"<p>{title(graph)}</p>" + (f"<p>{html.escape(graph.start)}</p>" if graph.start else "")
+    parts = [about, branches_table(graph).html()]
+    if graph.special:
+        parts.append(special_table(graph).html())
+    parts += [f"<p>{html.escape(line)}</p>" for line in sentences(graph.unresolved, graph.parameter)]
+    if graph.attractors:
+        parts += [attractors_table(graph).html(), f"<p>{html.escape(simulated(graph))}</p>"]
+    return "".join(parts)
+
+
+def branch_page(branch: Branch) -> str:
+    """What a branch is, line by line."""
+    low, high = branch.range
+    rows = [
+        ("what", describe(branch)),
+        (branch.parameter, f"{number(low, 10)}..{number(high, 10)}"),
+        ("stable", stable_text(branch, lambda value: number(value, 6))),
+        ("points", str(len(branch))),
+        ("from .. to", ends(branch)),
+        ("special points", ", ".join(label for _, label in branch.marks) or "-"),
+    ]
+    return Table((branch.label, "branch"), rows).html()
+
+
+def point_page(point: SpecialPoint) -> str:
+    """What a special point is, line by line."""
+    rows = [
+        (
+            "kind",
+            " ".join(filter(None, (point.criticality or "", point.kind, "" if point.real else "(virtual)"))),
+        ),
+        ("on", point.branch),
+        (point.parameter, number(point.value, 14)),
+        ("located to", number(point.location_error, 2)),
+        ("multipliers", complex_figures(point.multipliers[:8]) or "-"),
+        *([("note", point.note)] if point.note else []),
+    ]
+    return Table((point.label, "special point"), rows).html()
+
+
+# ------------------------------------------------------------------ a first answer in a few lines
+def summary(graph: Graph, width: int | None = None, brief: bool = False) -> str:
+    """Stable motions of a graph: word, period, where, largest response; then what part of the interval has none.
+
+    Of an atlas that is told in brief also the motions that most simulated starts reach.
+
+    Parameters
+    ----------
+    graph : Graph
+    width : int, optional
+        Characters to a line; those of the terminal by default.
+    brief : bool
+        Whether no tables follow.
+    """
+    width = terminal_width() if width is None else width
+    measure = default_measure(graph)
+    met: dict[tuple[str, str], list[Stretch]] = {}
+    for part in stretches(graph):
+        met.setdefault((_word(part.branch.description), _kind(part.branch.description)), []).append(part)
+    stable = {
+        key: united((float(part.values.min()), float(part.values.max())) for part in parts)
+        for key, parts in met.items()
+    }
+    length = graph.within[1] - graph.within[0]
+    lengths = {key: sum(high - low for low, high in spans) for key, spans in stable.items()}
+    found = sorted(met, key=lambda key: -lengths[key])
+    listed = [key for key in found if lengths[key] >= PART * length][:MOST] or found[:MOST]
+    short = told_apart(word for word, _ in listed)
+    known = [end for key in listed for interval in stable[key] for end in interval]
+    number = figures_in(
+        graph.within, known, same=Settings.located * length
+    )  # one point, seen from two branches
+    rows = []
+    for key in listed:
+        top = max(map(at_points, met[key]), key=lambda top: top.response)
+        ends = [f"{number(a)}..{number(b)}" for a, b in stable[key]]
+        rows.append(
+            (
+                short[key[0]],
+                key[1],
+                ", ".join(ends[:3]) + (f" and {len(ends) - 3} more" if len(ends) > 3 else ""),
+                f"{figures(top.response)} at {number(top.value)}" if np.isfinite(top.response) else "-",
+            )
+        )
+    unit = graph.units.get(graph.parameter)
+    head = (
+        "motion",
+        "type",
+        f"stable in {with_unit(graph.parameter, unit)}",
+        f"largest {with_unit(measure, graph.units.get(measure))}",
+    )
+    lines = Table(head, rows).lines(width) if rows else ["no stable motion on these branches"]
+    if rows:
+        count = len(graph.branches)
+        lines.insert(
+            0, fitted(f"stable motions of {count} branch{'' if count == 1 else 'es'}, the widest first")
+        )
+    if len(found) > len(listed):
+        lines.append(f"and {len(found) - len(listed)} more, on narrow stretches")
+    open_ = gaps(graph)
+    part = sum(b - a for a, b in open_) / length
+    if part >= PART and rows:
+        low, high = max(open_, key=lambda gap: gap[1] - gap[0])
+        where = f"{graph.parameter} = {number(low)} to {number(high)} {unit or ''}".rstrip()
+        lines.append(
+            fitted(
+                f"no stable motion on a branch in {100.0 * part:.3g} % of the interval, most of it {where}: modulated or chaotic motions, or motions that are not connected to these"
+            )
+        )
+    if brief and graph.attractors:
+        reached = attractors_table(graph, MOST)
+        lines += ["", *reached.lines(width), "", fitted(simulated(graph))]
+    return "\n".join(lines)
+
+
+def _kind(about: Mapping[str, Any]) -> str:
+    """What kind of motion it is, in a few words."""
+    periods = int(about.get("periods") or 0)
+    said = ["symmetric"] if about.get("symmetric") else []
+    said += [f"period {periods}"] if periods > 1 else []
+    if about.get("impacts") == 0:
+        said.append("no impacts")
+    return ", ".join(said)

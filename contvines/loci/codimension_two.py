@@ -14,13 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bifurcation.kinds import CODIMENSION_TWO
-from ..bifurcation.locate import locate
-from ..bifurcation.normal_forms.coefficients import Forms
+from ..bifurcation.locate import Segment, locate
+from ..bifurcation.normal_forms.coefficients import Forms, ReturnForms, forms_at
 from ..bifurcation.normal_forms.critical import normal_form
-from ..bifurcation.normal_forms.returned import ReturnForms, forms_at
-from ..bifurcation.segment import Segment
+from ..bifurcation.scan import image_of
 from ..bifurcation.settings import LOCATING
-from ..bifurcation.symmetry_test import image_of
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..flows.cycles import CycleProblem

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..bifurcation.critical import critical
 from ..bifurcation.kind import Kind
+from ..bifurcation.kinds import critical
 from ..branches.branch import Branch
 from ..branches.solutions import on_segment
 from ..continuation.engine import Engine

@@ -10,9 +10,8 @@ import numpy as np
 
 from contvines.shared.near_names import did_you_mean
 
-from ..bifurcation.critical import critical
-from ..bifurcation.kind import Kind
-from ..bifurcation.kind_answers import number_of
+from ..bifurcation.kind import Kind, number_of
+from ..bifurcation.kinds import critical
 from ..core.library import native
 from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
@@ -186,7 +185,7 @@ class LocusProblem(ProblemDefaults):
         assert kind is not None and callable(kind.locus)
         first.kernels.inspect(first.data, u, p, work, row)
         point = PointOfLocus(self, first, u, p, q, row)
-        return number_of(kind, "locus", kind.locus, point, point.place)
+        return number_of(kind, "locus", point)
 
     @property
     def tested(self) -> int:

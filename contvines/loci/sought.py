@@ -8,8 +8,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ..bifurcation.kind import Kind
-from ..bifurcation.kind_answers import number_of, verified
+from ..bifurcation.kind import Kind, number_of, verified
 from ..bifurcation.normal_forms.coefficients import Coefficient, Forms
 from ..bifurcation.settings import NORMAL_FORMS
 from ..problems.abilities import Adaptive
@@ -195,8 +194,7 @@ def vanishing_margins(plane: Plane) -> set[int]:
 
 
 def _of_own_kind(kind: Kind, plane: Plane) -> bool:
-    point = _point(plane)
-    return verified(kind, point, point.place)
+    return verified(kind, _point(plane))
 
 
 def _point(plane: Plane) -> PointOfLocus:
@@ -205,9 +203,7 @@ def _point(plane: Plane) -> PointOfLocus:
 
 # ------------------------------------------------------------------ tests
 def _of_own_test(kind: Kind, plane: Plane, at: References) -> float:
-    assert kind.test is not None
-    point = _point(plane)
-    return number_of(kind, "test", kind.test, point, point.place)
+    return number_of(kind, "test", _point(plane))
 
 
 def _margin(j: int, plane: Plane, at: References) -> float:

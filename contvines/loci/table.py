@@ -11,8 +11,7 @@ import numpy as np
 
 from contvines.shared.motions import BAND
 
-from ..graph.shortening import motion_name, short_word
-from ..graph.table import with_unit
+from ..graph.table import motion_name, short_word, with_unit
 from ..shared.number_text import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .settings import PLACES

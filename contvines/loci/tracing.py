@@ -10,12 +10,10 @@ import numpy as np
 from ..bifurcation.detect import Detector
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import BY_NAME, checked
-from ..bifurcation.located import Located, Role
-from ..branches.assembly import make_branch
-from ..branches.branch import Branch
-from ..branches.ending import Ending
+from ..bifurcation.locate import Located, Role
+from ..branches.branch import Branch, Ending
 from ..branches.finer_mesh import Meshes
-from ..branches.half_branch import HalfBranch
+from ..branches.half_branch import HalfBranch, make_branch
 from ..branches.special_point import SpecialPoint
 from ..branches.tracing import trace_half
 from ..continuation.engine import Engine, Solved
@@ -275,48 +273,46 @@ class BothSides:
     ) -> None:
         self.engine, self.name, self.journal, self.notice = engine, name, journal, notice
         self.begins_real, self.virtual = real, virtual
-        self.meshes = Meshes(self._engine_of, engine, Detector(engine), self._vanishes)
+        self.meshes = Meshes(Detector(engine), self._detector_of, self._vanishes)
         self.real: dict[str, np.ndarray] = {}
 
     def followed(self, start: Solved) -> dict[str, HalfBranch]:
         """Both sides on one mesh, from a point in the direction of its tangent and backwards."""
-        return self.meshes.followed(self.engine, start, self._halves, self.meshes.moved, self.begins_real)[0]
+        return self.meshes.followed(start, self._halves, self.meshes.moved, self.begins_real)[0]
 
-    def _engine_of(self, problem: Problem) -> tuple[Engine, Detector]:
-        engine = Engine(problem, self.engine.within, self.engine.settings)
-        return engine, Detector(engine)
+    def _detector_of(self, problem: Problem) -> Detector:
+        return Detector(Engine(problem, self.engine.within, self.engine.settings))
 
     def _vanishes(self, half: HalfBranch) -> bool:
         return becoming(half, self.engine.within)[1] is not None
 
-    def _halves(self, engine: Engine, start: Solved, known: Container[str]) -> dict[str, HalfBranch]:
+    def _halves(self, detector: Detector, start: Solved, known: Container[str]) -> dict[str, HalfBranch]:
         turned = start._replace(tangent=-start.tangent, sign=-start.sign)
         found: dict[str, HalfBranch] = {}
         for side, first in (("ahead", start), ("back", turned)):
             if side not in known:
-                found[side] = self._side(engine, first, side)
+                found[side] = self._side(detector, first, side)
                 if found[side].status == Status.CLOSED:
                     break
         return found
 
-    def _side(self, engine: Engine, first: Solved, side: str) -> HalfBranch:
-        mesh = list(self.meshes.detectors).index(engine)
+    def _side(self, detector: Detector, first: Solved, side: str) -> HalfBranch:
+        mesh = self.meshes.detectors.index(detector)
         name = f"{self.name}/finer {mesh}/{side}" if mesh else f"{self.name}/{side}"
         now, half, self.real[side] = self.begins_real, None, np.zeros(0, dtype=bool)
         for part in range(MOST):
-            detector, key = self.meshes.detectors[engine], f"{name}/{part}"
             more = trace_half(
-                engine, first, detector, self.journal, key, now, notice=self.notice, meshes=self.meshes
+                detector, first, self.journal, f"{name}/{part}", now, notice=self.notice, meshes=self.meshes
             )
             new = len(more) - (0 if half is None else 1)
             self.real[side] = np.append(self.real[side], np.full(new, now))
-            half = more if half is None else self.meshes.read(half, more.engine).extended(more, skip=1)
+            half = more if half is None else self.meshes.read(half, more.detector).extended(more, skip=1)
             border = border_of(more)
             if border is None or not self.virtual:
                 break
             if locus_of(more).margin_kind(border.index) in ("end", "resonance"):
                 break
-            engine, now, first = more.engine, not now, border.point
+            detector, now, first = more.detector, not now, border.point
         assert half is not None
         return half
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from ..continuation.settings import hinting
-from ..graph.shortening import told_apart
+from ..graph.table import told_apart
 from .basins import COLORS
 from .diagram import draw_diagram
 from .figures import Size, Style, freeze, given_axes, narrower, new_figure, settle, styled, thin_ticks
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..graph.attractor import Attractor
+    from ..graph.contents import Attractor
     from ..graph.graph import CurveOptions, Graph
 
 MOST, FEW = 8, 5  # words with a colour of their own, and in a low figure; the rest share one

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..continuation.settings import hinting
-from ..graph.shortening import told_apart
+from ..graph.table import told_apart
 from ..shared.number_text import figures
 from .figures import Size, Style, drawing, is_low
 from .legends import place_legend

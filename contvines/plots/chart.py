@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..continuation.settings import hinting
-from ..graph.shortening import short_word
+from ..graph.table import short_word
 from ..shared.motions import MODULATIONS
 from .figures import Size, Style, freeze, is_low, new_axes, settle, styled, thin_ticks
 from .labels import Box, Label, dense, grouped, place_labels, touching

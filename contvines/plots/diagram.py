@@ -11,7 +11,7 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
-from ..graph.measures import default_measure
+from ..graph.stretches import default_measure
 from ..shared.floating_point import TINY
 from .figures import Size, Style, freeze, is_low, new_axes, root, settle, styled, thin_ticks
 from .labels import Region

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..continuation.settings import hinting
-from ..graph.shortening import short_word
+from ..graph.table import short_word
 from .figures import Size, Style, drawing
 from .legends import place_legend
 from .style import axis_label

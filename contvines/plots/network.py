@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..continuation.settings import hinting
-from ..graph.shortening import short_word
+from ..graph.table import short_word
 from .figures import Size, Style, freeze, new_axes, settle, styled
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ import numpy as np
 from contvines.shared.figures import shrinking
 
 from ..bifurcation.kinds import BY_NAME
-from ..graph.measures import measure_at, measured, undrawn
 from ..graph.proving import mark as proof_of
 from ..graph.proving import stretches
-from ..graph.shortening import motion_name, told_apart
+from ..graph.stretches import measure_at, measured, undrawn
+from ..graph.table import motion_name, told_apart
 from .curves import Curve
 from .figures import pixels, root
 from .labels import (

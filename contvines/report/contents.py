@@ -10,9 +10,9 @@ import numpy as np
 
 from ..bifurcation.kinds import CRITICAL
 from ..continuation.settings import Settings
-from ..graph.measures import default_measure
 from ..graph.proving import mark, proof_text
-from ..graph.shortening import motion_name, short_word
+from ..graph.stretches import default_measure
+from ..graph.table import motion_name, short_word
 from ..plots.chart import COLORS
 from ..plots.style import mark_of, mark_of_locus
 from ..plots.survey import label_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from ..branches.branch import Branch
     from ..branches.special_point import SpecialPoint
-    from ..graph.attractor import Attractor
+    from ..graph.contents import Attractor
     from ..graph.graph import Graph
     from ..loci.chart import Chart
     from ..loci.locus import Locus, PlanePoint

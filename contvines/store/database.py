@@ -241,8 +241,7 @@ class Store:
 
         With `trust`, functions that the file names are imported; see :mod:`contvines.problems.registry`.
         """
-        from contvines.graph.persistence import graph_from_entries
-        from contvines.graph.well_formed import OtherEquations
+        from contvines.graph.persistence import OtherEquations, graph_from_entries
 
         entries: dict[str, dict[str, Any]] = {}
         folders = self._folders()

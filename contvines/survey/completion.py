@@ -16,11 +16,8 @@ from ..coexistence.roots import add_root
 from ..continuation.settings import Settings
 from ..graph.builder import adopt
 from ..graph.graph import Graph
-from ..graph.limits import Limits
-from ..graph.measures import default_measure
-from ..graph.run import Run
-from ..graph.settings import COVERAGE
-from ..graph.stretches import gaps, spread, stretches, unseen
+from ..graph.run import Limits, Run
+from ..graph.stretches import COVERAGE, default_measure, gaps, spread, stretches, unseen
 from ..journal import NullJournal
 
 if TYPE_CHECKING:
@@ -50,7 +47,7 @@ class Unbranched:
     value : float
         Of the parameter.
     kind : str
-        See `contvines.graph.attractor.Attractor`; "periodic" of one that was not traced.
+        See `contvines.graph.contents.Attractor`; "periodic" of one that was not traced.
     measures : dict
         Numbers by name, from simulation; empty where there are none.
     state : float array, optional

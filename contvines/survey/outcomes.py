@@ -15,9 +15,7 @@ import numpy as np
 from contvines.shared.motions import BAND, is_strong
 
 from ..coexistence.places import UNBRANCHED
-from ..graph.measures import default_measure
-from ..graph.settings import COVERAGE
-from ..graph.stretches import gaps, highest, stretches, united, unseen
+from ..graph.stretches import COVERAGE, default_measure, gaps, highest, stretches, united, unseen
 from ..shared.number_text import figures_in
 from .family import Simulated
 

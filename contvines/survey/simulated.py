@@ -8,8 +8,7 @@ from contvines.shared.motions import BAND, modulation_of
 
 from ..coexistence.population import Population
 from ..graph.graph import Graph
-from ..graph.measures import default_measure
-from ..graph.stretches import SIMULATED, gaps, spread
+from ..graph.stretches import SIMULATED, default_measure, gaps, spread
 from .completion import FEW, ON_ITS_WAY
 
 VALUES = 5  # in the gaps, at least

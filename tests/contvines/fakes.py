@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from contvines.branches.branch import Branch
-from contvines.branches.ending import Ending
+from contvines.branches.branch import Branch, Ending
 from contvines.branches.special_point import SpecialPoint
 from contvines.graph.graph import Graph, Switch
 

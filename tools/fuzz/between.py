@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contvines.bifurcation.segment import Segment
+from contvines.bifurcation.locate import Segment
 from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
 

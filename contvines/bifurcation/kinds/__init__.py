@@ -4,11 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from ...continuation.settings import Settings
+from ...problems.abilities import Critical
 from ..kind import Kind
-from . import borders, branch_point, fold, multipliers
+from . import branch_point, fold, multipliers
+
+
+def _border(name: str, label: str, marker: str, text: str = "", filled: bool = True) -> Kind:
+    return Kind(name, label, text=text, marker=marker, filled=filled, border=True, leaves="beyond")
+
+
+#: borders that are met at once take the first of these names
+_BORDERS = (
+    # friction holds what has come to rest, or lets it go
+    _border("stick", "ST", "<", "turn to stick"),
+    # a sliding velocity touches zero within a flight
+    _border("velocity-graze", "VG", "v"),
+    # a wall is touched without speed
+    _border("wall-graze", "WG", ">"),
+    # an impact loses its speed, or a stick or flight its duration
+    _border("vanishing-event", "VE", "X"),
+    # the surface of a switch is touched without speed
+    _border("switch-graze", "SG", "d"),
+    # events of two contacts happen at once
+    _border("corner", "CO", "P", "two events at once"),
+    # a solution comes to the surface between two pieces of the equations
+    _border("switch", "SW", "d", filled=False),
+    # the period of a cycle grows without bound
+    _border("homoclinic", "HC", "H", "homoclinic orbit"),
+    # a motion comes to touch an event that stops it
+    _border("event", "EV", "8"),
+)
+
 
 USER = Kind("user", "US", text="user function", nothing="nothing leaves the zero of a user function")
-"""A number that the user has named passes a value; see :mod:`contvines.bifurcation.user_functions`."""
+"""A number that the user has named passes a value; see :mod:`contvines.bifurcation.kind`."""
 END = Kind(
     "end",
     "EP",
@@ -21,7 +51,7 @@ KINDS: tuple[Kind, ...] = (
     fold.KIND,
     *multipliers.KINDS,
     branch_point.KIND,
-    *borders.KINDS,
+    *_BORDERS,
     USER,
     END,
 )
@@ -113,3 +143,10 @@ def checked(kinds: Iterable[Kind] | None) -> tuple[Kind, ...]:
                 )
         names[kind.name] = kind
     return chosen
+
+
+def critical(found: object, kind: str) -> object:
+    """The solution with its critical multipliers on the unit circle (eigenvalues on the axis), if the special point is of a kind that has them."""
+    if kind in CRITICAL and isinstance(found, Critical):
+        return found.critical(Settings.critical)
+    return found

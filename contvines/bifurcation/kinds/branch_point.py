@@ -1,7 +1,7 @@
 """Branch point: another branch crosses, where the bordered matrix [[F_u, F_p], [tangent]] is singular.
 
 A simple one is a change of the sign of its determinant, located on the regular function 1 / (c . M^-1 b) of
-:class:`~contvines.bifurcation.determinant.DeterminantTest`. Where multipliers are known each one that passes +1 is a test
+:class:`DeterminantTest`. Where multipliers are known each one that passes +1 is a test
 function of its own, so that an even number of branches at once is seen, too.
 """
 
@@ -9,21 +9,52 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from ...continuation.engine import Engine, Solved
-from ...continuation.layout import aim_at_multiplier
-from ..consistency import unresolved
-from ..determinant import alone, by_elimination, by_sign, passes, passes_for_certain, singular, turned
+from ...continuation.layout import NO_COLUMNS, SIGN, Aim, aim_at_multiplier
+from ...shared.floating_point import TINY
+from ..consistency import (
+    alone,
+    is_astray,
+    passes,
+    passes_for_certain,
+    singular,
+    turned,
+    unresolved,
+)
 from ..kind import Kind
-from ..locate import Root, locate, locate_singular
-from ..located import Located, Role
+from ..locate import Located, Role, Root, Segment, locate, locate_singular
 from ..location_error import blurred
-from ..multiplier_counts import balance, counts, sizes_by_sort
-from ..segment import Segment
+from ..scan import balance, counts, sizes_by_sort
 from .multipliers import passing
+
+WIDTH = 0.02  # part of a segment, either side of a place that is known already
+AT_SIGNS = Aim(SIGN, NO_COLUMNS)
+
+
+class DeterminantTest:
+    """A smooth function with a simple zero where [[F_u, F_p], [border]] is singular: 1 / (c . M^-1 b).
+
+    b is a fixed vector, c the direction of M^-1 b near the zero.
+    """
+
+    def __init__(self, engine: Engine, border: np.ndarray) -> None:
+        self.engine, self.border = engine, border
+        self.side = np.random.default_rng(2).standard_normal(engine.n + 1)
+        self.side[-1] = 0.0
+        self.row: np.ndarray | None = None
+
+    def __call__(self, point: Solved) -> float:
+        engine = self.engine
+        engine.residual(point.u, point.p)
+        x = engine.apply_inverse(self.border, self.side)
+        if self.row is None:
+            x2 = engine.apply_inverse(self.border, np.append(x[:-1], 0.0))
+            self.row = x2 / max(float(np.abs(x2).max()), TINY)
+        value = float(self.row @ x)
+        return 1.0 / value if value != 0.0 else np.nan
 
 
 def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
@@ -36,16 +67,24 @@ def find(segment: Segment, found: Sequence[Located]) -> list[Located]:
         points.append(double)
     counted = sum(e.kind == "branch-point" for e in points)
     if segment.a.sign * segment.b.sign < 0.0 and (counted + len(met)) % 2 == 0:
-        root = by_sign(segment)
+        root = _by_sign(segment)
         if root is not None and not _near(segment, root.position, met):
             turning = _near(segment, root.position, folds)
             # a side branch may turn where it meets the other one; at a plain fold the sign is that of rounding
             if not turning or (root.point.residual <= engine.settings.exact and singular(engine, root.point)):
-                place = Located.at(root, "branch-point", astray=_astray(segment, root))
+                place = Located.at(root, "branch-point", astray=is_astray(segment, root))
                 if not (place.astray or _may_pass(segment, root)):
                     place = replace(unresolved(segment, root.point), kind="branch-point")
                 points.append(place)
     return points
+
+
+def _by_sign(segment: Segment) -> Root | None:
+    """Where the determinant changes its sign on a segment; None where the change may be that of rounding."""
+    rough = locate(segment, AT_SIGNS, tolerance=segment.engine.settings.aside)
+    if rough is None or not passes_for_certain(segment, rough.position):
+        return None
+    return locate_singular(segment, DeterminantTest(segment.engine, segment.border), rough.position) or rough
 
 
 def _may_pass(segment: Segment, root: Root) -> bool:
@@ -99,27 +138,35 @@ def _complex(segment: Segment, point: Solved) -> bool:
 
 
 def _sharpened(segment: Segment, points: list[Located]) -> list[Located]:
-    """Branch points again, through interpolation; those at one and the same place from the mean of their tests."""
-    engine = segment.engine
+    """Branch points again, through interpolation; those at one and the same place from the mean of their tests.
+
+    Eigenvalues are rounded by the largest of them, which may be 1e9 times those that pass zero where the unknowns of the start are far
+    larger than here: then the determinant may know the place better.
+    """
+    engine, settings = segment.engine, segment.engine.settings
     result = [e for e in points if e.kind != "branch-point"]
     points = [e for e in points if e.kind == "branch-point"]
     aims = {test.index: test.function for test in passing(segment, "plus")}
     while points:
-        group = [e for e in points if abs(e.position - points[0].position) <= engine.settings.close]
+        group = [e for e in points if abs(e.position - points[0].position) <= settings.close]
         points = [e for e in points if e not in group]
         gaps = [0.4 * abs(e.position - group[0].position) for e in points]
-        mean = partial(_mean, [aims[e.index] for e in group])
+        tests = [aims[e.index] for e in group]
+
+        def mean(point: Solved, tests: list = tests) -> float:
+            return sum(test(point) for test in tests) / len(tests)
+
         root = locate_singular(segment, mean, group[0].position, width=min([0.2, *gaps]))
-        if engine.detection == "real" and len(group) == 1:
-            root = by_elimination(segment, root)
+        unit = 0.0 if root is None else engine.parameter_unit(root.point.p)
+        vague = root is not None and root.error > settings.rounding * unit
+        if root is not None and vague and engine.detection == "real" and len(group) == 1:
+            other = locate_singular(segment, DeterminantTest(engine, segment.border), root.position, WIDTH)
+            if other and other.error < root.error and abs(other.position - root.position) < WIDTH:
+                root = other
         for event in group:
             found = event if root is None else Located.at(root, event.kind, event.index)
             result.append(blurred(segment, found, aims[event.index]))
     return result
-
-
-def _mean(tests: list, point: Solved) -> float:
-    return sum(test(point) for test in tests) / len(tests)
 
 
 def _exchange(segment: Segment) -> Located | None:
@@ -129,39 +176,26 @@ def _exchange(segment: Segment) -> Located | None:
     def test(point: Solved) -> float:
         return float(balance(engine, point.row))
 
+    def nearest(point: Solved) -> float:
+        """How far from the circle the nearest real multiplier is."""
+        return float(np.nanmin(np.abs(sizes_by_sort(engine, point.row)[0]), initial=np.inf))
+
     if not test(segment.a) * test(segment.b) < 0.0:
         return None
     rough = locate(segment, test, tolerance=engine.settings.close)
     if rough is None:
         return None
-    aim = aim_at_multiplier(
-        engine.m, engine.detection, "plus", max(int(counts(engine, rough.point.row)[0]), 1)
-    )
-    if abs(test(rough.point)) > engine.settings.critical or (
-        engine.detection != "real" and abs(aim(rough.point)) > engine.settings.critical
-    ):
+    rank = max(int(counts(engine, rough.point.row)[0]), 1)
+    aim = aim_at_multiplier(engine.m, engine.detection, "plus", rank)
+    numbers = [test(rough.point)] + ([] if engine.detection == "real" else [aim(rough.point)])
+    if max(map(abs, numbers)) > engine.settings.critical or _complex(segment, rough.point):
         return None
-    if _complex(segment, rough.point) or not passes_for_certain(segment, rough.position):
+    if not passes_for_certain(segment, rough.position):
         return None
     root = locate_singular(segment, test, rough.position) or rough
-    ends = max(_nearest(engine, segment.a.row), _nearest(engine, segment.b.row))
     # both may be next to nothing, one on either side, without being zero
-    return (
-        Located.at(root, "branch-point")
-        if _nearest(engine, root.point.row) <= engine.settings.aside * ends
-        else None
-    )
-
-
-def _nearest(engine: Engine, row: np.ndarray) -> float:
-    """How far from the circle the nearest real multiplier is."""
-    return float(np.nanmin(np.abs(sizes_by_sort(engine, row)[0]), initial=np.inf))
-
-
-def _astray(segment: Segment, root: Root) -> bool:
-    """Whether the segment has led from one branch to another, so that there is no branch point."""
-    engine = segment.engine
-    return not (engine.many or segment.length <= engine.settings.resolution or singular(engine, root.point))
+    known = nearest(root.point) <= engine.settings.aside * max(nearest(segment.a), nearest(segment.b))
+    return Located.at(root, "branch-point") if known else None
 
 
 def _near(segment: Segment, position: float, others: list[float]) -> bool:

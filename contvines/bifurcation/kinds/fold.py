@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ...continuation.layout import NO_COLUMNS, SLOPE, Aim
-from ..determinant import alone
-from ..kind import Classified, Kind, Test
-from ..located import Located
+from ..consistency import alone
+from ..kind import Classified, Kind, Point, PointOnBranch, Test
+from ..locate import Segment
 from ..location_error import rounding_of_parameter
 from ..normal_forms.along_branch import fold_coefficient
-from ..point_on_branch import Point, PointOnBranch
-from ..segment import Segment
 from .multipliers import passing
 
 TURN = Aim(SLOPE, NO_COLUMNS)
 
 
-def tests(segment: Segment, found: Sequence[Located]) -> list[Test]:
+def tests(segment: Segment) -> list[Test]:
     """The parameter's part of the tangent, if it has another sign at the other end.
 
     On an upright branch it is rounding. Of cycles on a mesh the multiplier that passes +1 tells there, as at the folds of canards.

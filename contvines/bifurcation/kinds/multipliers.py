@@ -5,7 +5,6 @@ Each test function is the k-th largest multiplier of a sort, so that two that cr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -13,11 +12,9 @@ import numpy as np
 from ...continuation.engine import Engine, Solved
 from ...continuation.layout import SORTS, aim_at_multiplier
 from ...problems.abilities import Adaptive
-from ..kind import Classified, Kind, Test
-from ..located import Located
-from ..normal_forms.criticality import pair_form, strong_resonance
-from ..point_on_branch import Point, PointOnBranch
-from ..segment import Segment
+from ..kind import Classified, Kind, Point, PointOnBranch, Test
+from ..locate import Segment
+from ..normal_forms.criticality import near_resonance, pair_form
 
 JUMP = 0.05  # change of a multiplier's logarithm over a small part of a segment: it has come from elsewhere
 
@@ -32,7 +29,7 @@ def passing(segment: Segment, sort: str) -> list[Test]:
     ]
 
 
-def flips(segment: Segment, found: Sequence[Located], kind: str) -> list[Test]:
+def flips(segment: Segment, kind: str) -> list[Test]:
     """Multipliers that pass -1, where the problem says that this is what they mean.
 
     Where a pair of them meets on the real axis, or leaves it, their ranks tell nothing; of cycles on meshes the product of all distances from -1 is continuous
@@ -67,7 +64,7 @@ def alone_at_circle(point: Point) -> bool:
     return bool(gaps[nearest] <= max(point.engine.settings.critical, np.nanmin(others, initial=np.inf)))
 
 
-def pairs(segment: Segment, found: Sequence[Located], spectrum: str) -> list[Test]:
+def pairs(segment: Segment, spectrum: str) -> list[Test]:
     """Complex pairs that pass the circle (the imaginary axis)."""
     return passing(segment, "pair") if segment.engine.detection == spectrum else []
 
@@ -77,24 +74,20 @@ def classify_pair(point: PointOnBranch) -> Classified:
     a map, from the problem's own form.
     """
     problem = point.problem
-    if isinstance(problem, Adaptive) and problem.spectrum == "map":
-        return _of_cycle(problem, point)
     if problem.spectrum not in ("map", "flow"):
         return Classified()
-    form = pair_form(problem, point.u, point.value, point.engine.spectrum(point.solved.row))
-    return Classified(form.criticality, form.coefficient, (form.note,) if form.note else ())
-
-
-def _of_cycle(problem: Adaptive, point: PointOnBranch) -> Classified:
+    if not (isinstance(problem, Adaptive) and problem.spectrum == "map"):
+        return pair_form(problem, point.u, point.value, point.engine.spectrum(point.solved.row))
     upper = point.multipliers[np.imag(point.multipliers) > 0.0]
     if not len(upper):
         return Classified()
     multiplier = complex(upper[np.argmin(np.abs(np.abs(upper) - 1.0))])
-    form = problem.normal_form("neimark-sacker", point.u, point.value, multiplier)
-    resonance = strong_resonance(multiplier)
-    remarks = (f"near the strong resonance {resonance}",) if resonance else ()
+    form, remarks = (
+        problem.normal_form("neimark-sacker", point.u, point.value, multiplier),
+        near_resonance(multiplier),
+    )
     if form is None:
-        return Classified(None, None, remarks)
+        return Classified(remarks=remarks)
     return Classified("supercritical" if form[0] < 0.0 else "subcritical", form[0], remarks)
 
 

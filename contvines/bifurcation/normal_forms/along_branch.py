@@ -21,7 +21,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...continuation.engine import Engine, Solved
-from ...continuation.layout import aim_at_multiplier, solved_points
+from ...continuation.layout import Way, aim_at_multiplier, solved_points
 from ..settings import NORMAL_FORMS
 
 WIDE = 16.0  # times a step: the chord on which points beside a special point are placed; they may lie far off it, and are none of its ends
@@ -35,7 +35,7 @@ def _beside(engine: Engine, point: Solved, step: float) -> list[Solved] | None:
     z, along = engine.join(point.u, point.p), length * point.tangent
     border = engine.weights * point.tangent
     chord = np.array([z, along, z + along, along])
-    found = engine.on_chord(chord, PLACES, float(border @ z), length, border, point.tangent)
+    found = engine.on_chord(Way(chord, float(border @ z), length, border, point.tangent), PLACES)
     points = [near for near in solved_points(found) if near is not None]
     return points if len(points) == len(PLACES) else None
 
@@ -72,7 +72,7 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     point : Solved
         The special point, with the tangent of the known branch.
     name, k
-        Which multiplier; see :func:`contvines.continuation.layout.aim_at_multiplier`.
+        Which multiplier; see :func:`contvines.continuation.aims.aim_at_multiplier`.
     """
     kind = engine.problem.spectrum
     if kind == "none" or abs(point.tangent[-1]) < engine.settings.upright:

@@ -2,32 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ...problems.protocol import Problem
+from ..kind import Classified
 from ..settings import NORMAL_FORMS
 from .coefficients import Forms
-
-
-class Pitch(NamedTuple):
-    """What a pair on the stability boundary does: first Lyapunov coefficient, and how it is to be read.
-
-    Attributes
-    ----------
-    coefficient : float or None
-        d of a cycle, l1 of an equilibrium; None where it cannot be obtained.
-    criticality : {"supercritical", "subcritical"} or None
-        Supercritical: a stable circle (cycle) is born where the motion has lost its stability.
-    note : str
-        A nearby strong resonance, or that the error is as large as the coefficient.
-    """
-
-    coefficient: float | None
-    criticality: str | None
-    note: str
-
 
 STRONG = {"1:1": 0.0, "1:2": np.pi, "1:3": 2.0 * np.pi / 3.0, "1:4": 0.5 * np.pi}
 
@@ -38,8 +18,17 @@ def strong_resonance(multiplier: complex) -> str:
     return next((n for n, place in STRONG.items() if abs(angle - place) < NORMAL_FORMS.resonant), "")
 
 
-def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -> Pitch:
-    """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point.
+def near_resonance(multiplier: complex) -> tuple[str, ...]:
+    """Remarks on a multiplier of the full period next to a strong resonance."""
+    resonance = strong_resonance(multiplier)
+    return (f"near the strong resonance {resonance}",) if resonance else ()
+
+
+def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -> Classified:
+    """The first Lyapunov coefficient at a Neimark-Sacker or Hopf point, d of a cycle, l1 of an equilibrium; None where it cannot be obtained.
+
+    Supercritical: a stable circle (cycle) is born where the motion has lost its stability. Remarks name a nearby strong resonance, or say that
+    the error is as large as the coefficient.
 
     Parameters
     ----------
@@ -51,7 +40,7 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
     """
     flow = problem.spectrum == "flow"
     if problem.kernels.matrix is None:
-        return Pitch(None, None, "")
+        return Classified()
     from ...problems.spectra import is_large
 
     try:
@@ -65,17 +54,15 @@ def pair_form(problem: Problem, u: np.ndarray, p: float, spectrum: np.ndarray) -
             critical = _critical(forms.eigenvalues if flow else np.asarray(spectrum, dtype=complex), flow)
             found, _ = forms.lyapunov(critical)
     except (ValueError, IndexError, np.linalg.LinAlgError) as error:
-        return Pitch(None, None, f"no first Lyapunov coefficient: {error}")
+        return Classified(remarks=(f"no first Lyapunov coefficient: {error}",))
     value = float(found.value)
     if not np.isfinite(value):
-        return Pitch(None, None, "no first Lyapunov coefficient: it is not finite")
-    note = ""
-    if not flow:
-        resonance = strong_resonance(complex(np.asarray(problem.to_multipliers(np.array([critical])))[0]))
-        note = f"near the strong resonance {resonance}" if resonance else ""
+        return Classified(remarks=("no first Lyapunov coefficient: it is not finite",))
     if found.error > 0.5 * abs(value):
-        return Pitch(value, None, "the first Lyapunov coefficient is zero within its error")
-    return Pitch(value, "supercritical" if value < 0.0 else "subcritical", note)
+        return Classified(None, value, ("the first Lyapunov coefficient is zero within its error",))
+    full = np.asarray(problem.to_multipliers(np.array([critical])))[0]
+    remarks = () if flow else near_resonance(complex(full))
+    return Classified("supercritical" if value < 0.0 else "subcritical", value, remarks)
 
 
 def _critical(values: np.ndarray, flow: bool) -> complex:

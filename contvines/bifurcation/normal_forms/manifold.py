@@ -22,8 +22,9 @@ import numpy as np
 from scipy.linalg import qr
 
 from ...shared.floating_point import TINY
-from ..roots import chebyshev_nodes
+from ..locate import chebyshev_nodes
 from ..settings import NORMAL_FORMS
+from .taylor import taylor_weights
 
 if TYPE_CHECKING:
     from .coefficients import Forms
@@ -147,7 +148,7 @@ class Reduction:
         if not np.isfinite(samples).all():
             raise ValueError("the equations cannot be evaluated near the special point")
         samples = samples.reshape(len(lines), NODES, -1)
-        values = np.einsum("k,lkn->ln", fit_weights(degree), samples) / radii[:, None] ** degree
+        values = np.einsum("k,lkn->ln", taylor_weights(NODES, degree), samples) / radii[:, None] ** degree
         return np.linalg.lstsq(powers(points, wanted), values.astype(complex), rcond=None)[0]
 
     # ------------------------------------------------------------------ what balances it
@@ -208,15 +209,6 @@ def directions(m: int, degree: int) -> np.ndarray:
 
 def _less(exponents: Monomial, j: int) -> Monomial:
     return tuple(e - (i == j) for i, e in enumerate(exponents))
-
-
-@cache
-def fit_weights(degree: int) -> np.ndarray:
-    """Weights of samples at Chebyshev nodes in the coefficient of t^degree of the polynomial through them, on [-1, 1]."""
-    chebyshev = np.polynomial.chebyshev
-    series = np.linalg.inv(chebyshev.chebvander(chebyshev_nodes(NODES), NODES - 1))
-    parts = [chebyshev.cheb2poly(np.eye(NODES)[k])[degree] if k >= degree else 0.0 for k in range(NODES)]
-    return np.array(parts) @ series
 
 
 def reduced(

@@ -20,10 +20,10 @@ from scipy.sparse.linalg import splu
 
 from ...problems.large.sparse import SparseWork
 from ...shared.floating_point import ROUNDED
-from ..roots import chebyshev_nodes
+from ..locate import chebyshev_nodes
 from ..settings import NORMAL_FORMS
 from .coefficients import Coefficient, in_phase
-from .taylor import NODES, RADIUS, SMALLER, derivative_weights
+from .taylor import NODES, RADIUS, SMALLER, taylor_weights
 
 if TYPE_CHECKING:
     from ...problems.protocol import Problem
@@ -140,7 +140,7 @@ def _derivatives(
     changes: Products, u: np.ndarray, x: np.ndarray, vectors: np.ndarray, radius: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """B(x, v) and C(x, x, v) for some vectors v, columns as they are."""
-    first, second = derivative_weights(NODES)
+    first, second = taylor_weights(NODES, 1), 2.0 * taylor_weights(NODES, 2)
     one, two = np.zeros_like(vectors), np.zeros_like(vectors)
     for t, a, b in zip(chebyshev_nodes(NODES), first, second, strict=True):
         sample = changes(u + radius * t * x, vectors)

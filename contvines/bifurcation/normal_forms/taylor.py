@@ -7,14 +7,14 @@ converges like the Taylor series at the distance r. Two radii give an estimate o
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.chebyshev import cheb2poly
 
-from ..roots import chebyshev_nodes
+from ..locate import chebyshev_nodes, chebyshev_series
 from ..settings import NORMAL_FORMS
 
 NODES = 12
@@ -58,63 +58,51 @@ def along_line(
     if size == 0.0:
         here = jacobians(u[None, :])
         return None if here is None else Line(np.zeros_like(here[0]), np.zeros_like(here[0]), 0.0, 0.0)
+
+    def samples(radius: float, count: int) -> np.ndarray | None:
+        return jacobians(u + radius * chebyshev_nodes(count)[:, None] * x)
+
+    def largest() -> float:
+        here = jacobians(u[None, :])
+        return np.inf if here is None else float(np.abs(here).max())
+
     radius = RADIUS * scale / size
     if rough:
-        samples = jacobians(_places(u, x, ROUGH * radius, FEW))
-        if samples is None:
+        found = samples(ROUGH * radius, FEW)
+        if found is None:
             return None
-        inner, outer = ((samples[i] - samples[-1 - i]) / (2.0 * chebyshev_nodes(FEW)[i]) for i in (1, 0))
-        return Line(
-            *_fitted(samples, ROUGH * radius), float(np.abs(inner - outer).max()) / (ROUGH * radius), 0.0
-        )
+        inner, outer = ((found[i] - found[-1 - i]) / (2.0 * chebyshev_nodes(FEW)[i]) for i in (1, 0))
+        missed = float(np.abs(inner - outer).max()) / (ROUGH * radius)
+        return Line(*_fitted(found, ROUGH * radius), missed, 0.0)
     best: Line | None = None
-    reach = 0.0
-    narrow = _fit(jacobians, u, x, radius)
-    for _ in range(14):
-        wide, narrow = narrow, _fit(jacobians, u, x, SMALLER * radius)
+    reach, wide = 0.0, None
+    for _ in range(15):
+        found = samples(radius, NODES)
+        narrow = None if found is None else _fitted(found, radius)
         if wide is not None and narrow is not None:
             errors = [float(np.abs(a - b).max()) for a, b in zip(wide, narrow)]
             if best is None or errors[1] < best.third_error:
-                best, reach = Line(*wide, *errors), radius
-            elif errors[1] > 8.0 * best.third_error and best.third_error * reach**2 <= _size(jacobians, u):
+                best, reach = Line(*wide, *errors), radius / SMALLER
+            elif errors[1] > 8.0 * best.third_error and best.third_error * reach**2 <= largest():
                 break  # rounding grows; where the samples reached too far to say anything, a smaller radius may
-            if all(
-                error <= NORMAL_FORMS.enough * float(np.abs(part).max()) for error, part in zip(errors, wide)
-            ):
+            sizes = [float(np.abs(part).max()) for part in wide]
+            if all(error <= NORMAL_FORMS.enough * most for error, most in zip(errors, sizes)):
                 break
-        radius *= SMALLER
+        wide, radius = narrow, SMALLER * radius
     return best
-
-
-def _size(jacobians: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray) -> float:
-    here = jacobians(u[None, :])
-    return math.inf if here is None else float(np.abs(here).max())
-
-
-def _fit(
-    jacobians: Callable[[np.ndarray], np.ndarray | None], u: np.ndarray, x: np.ndarray, radius: float
-) -> tuple[np.ndarray, np.ndarray] | None:
-    samples = jacobians(_places(u, x, radius, NODES))
-    return None if samples is None else _fitted(samples, radius)
-
-
-def _places(u: np.ndarray, x: np.ndarray, radius: float, count: int) -> np.ndarray:
-    return u + radius * chebyshev_nodes(count)[:, None] * x
 
 
 def _fitted(samples: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
     """First and second derivative at the middle."""
-    first, second = derivative_weights(len(samples))
-    shape, flat = samples.shape[1:], samples.reshape(len(samples), -1)
-    return (first @ flat).reshape(shape) / radius, (second @ flat).reshape(shape) / radius**2
+    first, second = (
+        k * (taylor_weights(len(samples), k) @ samples.reshape(len(samples), -1)) for k in (1, 2)
+    )
+    shape = samples.shape[1:]
+    return first.reshape(shape) / radius, second.reshape(shape) / radius**2
 
 
 @cache
-def derivative_weights(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the samples in the first and second derivative at 0 of the polynomial through them, on [-1, 1]."""
-    chebyshev = np.polynomial.chebyshev
-    series = np.linalg.inv(chebyshev.chebvander(chebyshev_nodes(count), count - 1))
-    unit = np.eye(count)
-    first = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row)) for row in unit])
-    second = np.array([chebyshev.chebval(0.0, chebyshev.chebder(row, 2)) for row in unit])
-    return first @ series, second @ series
+def taylor_weights(count: int, degree: int) -> np.ndarray:
+    """Weights of samples at Chebyshev nodes in the coefficient of t^degree of the polynomial through them, on [-1, 1]."""
+    parts = [cheb2poly(row)[degree] if k >= degree else 0.0 for k, row in enumerate(np.eye(count))]
+    return np.array(parts) @ chebyshev_series(count)

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from contvines.bifurcation.scan import NativeScan, with_arrays
-from contvines.bifurcation.symmetry_test import SymmetryTest
+from contvines.bifurcation.scan import NativeScan, SymmetryTest, with_arrays
 from contvines.continuation.engine import Engine
 from contvines.continuation.layout import Chunk, Metric, Status
 from contvines.core.library import native

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.circles.averages import rotation_number
+from contvines.circles.invariance import rotation_number
 from contvines.command.cli import app
 from orbits import Coupled
 from tests.contvines.loci.systems import R, generalized_henon, generalized_henon_at

@@ -2,7 +2,7 @@
 
 import pytest
 
-from contvines.graph.shortening import short_word, told_apart
+from contvines.graph.table import short_word, told_apart
 
 SHORT = {
     "LtRLttR" * 8: "(LtRLttR)^8",

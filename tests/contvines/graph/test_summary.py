@@ -3,7 +3,7 @@
 import numpy as np
 
 import contvines as cv
-from contvines.graph.summary import summary
+from contvines.graph.table import summary
 from orbits import Machine
 from orbits.symbols import cos
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
+from contvines.graph.contents import Unresolved, sentences
 from contvines.graph.label_special_points import _unresolved
-from contvines.graph.unresolved import Unresolved, sentences
 
 
 def jumping(before, after, **settings):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.graph.attractor import Attractor
+from contvines.graph.contents import Attractor
 from contvines.plots import (
     plot_atlas,
     plot_basins,

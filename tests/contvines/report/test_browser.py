@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.graph.attractor import Attractor
+from contvines.graph.contents import Attractor
 from contvines.loci.chart import Chart
 from contvines.loci.locus import PlanePoint
 from contvines.loci.regions import Region

@@ -27,7 +27,7 @@ class Found(SimpleNamespace):
 @pytest.fixture
 def found(monkeypatch):
     """A low response `tt` from 0 to 0.6, a high one `LR` from 0.4 to 1, a virtual one, two overlapping stretches of `LRs`."""
-    monkeypatch.setattr("contvines.graph.measures.default_measure", lambda graph: "height")
+    monkeypatch.setattr("contvines.graph.stretches.default_measure", lambda graph: "height")
     p = np.linspace(0.0, 1.0, 101)
     parts = [
         branch("tt", p[:61], 1.0 + p[:61]),

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.bifurcation.normal_forms.coefficients import Forms
+from contvines.bifurcation.normal_forms.coefficients import Forms, forms_at
 from contvines.bifurcation.normal_forms.critical import normal_form
-from contvines.bifurcation.normal_forms.returned import forms_at
 
 
 class Bend:
