@@ -144,3 +144,15 @@ def workspace(length: int, node: int, parameters: int) -> Workspace:
     )
     memory, arrays = block((length, node), shapes)
     return Workspace._make([*arrays[:8], memory])
+
+
+def jacobian(data: CycleData, work: Workspace) -> np.ndarray:
+    """The derivatives of all residuals by all unknowns, shape (L n, L n), of the linearisation in a workspace."""
+    A, D, twist = work.A, work.D, data.twist
+    length, n = A.shape[0], A.shape[1]
+    whole = np.zeros((length, n, length, n))
+    np.einsum("kikj->kij", whole)[...] = A  # views: blocks on the diagonal, and beside it
+    np.einsum("kikj->kij", whole[:-1, :, 1:])[...] = D[:-1]
+    whole[-1, :, 0, 0] += D[-1, :, 0]
+    whole[-1, :, 0, 1:] += twist * D[-1, :, 1:]
+    return whole.reshape(length * n, length * n)

@@ -16,7 +16,7 @@ from orbits.protocol import CycleProblem, Embedding, Symmetry
 from orbits.words import Word
 
 if TYPE_CHECKING:
-    from orbits.simulation.section import Section
+    from orbits.simulation.runs import Section
 
 
 class Motions(CycleProblem):
@@ -149,8 +149,8 @@ class Motions(CycleProblem):
         """
         if not len(self.equations.unit):
             raise ValueError("the absorber that never slides has no section")
-        from orbits.simulation.runs import simulator_of
-        from orbits.simulation.section import Section
+        from orbits.flows.catalogue import simulator_of
+        from orbits.simulation.runs import Section
 
         simulator, unit = simulator_of(self.model, self.values(p)), self.equations.unit[0]
         return Section(simulator, self.word, self.periods, unit, self.model.place_of(self.parameter))

@@ -14,9 +14,9 @@ from contvines.shared.near_names import hinting
 from contvines.shared.number_text import pairs
 from contvines.shared.stability import attracts, onto_circle
 from orbits.cycles.cycle import Cycle
-from orbits.cycles.deviation import deviation
 from orbits.flows.protocol import Equations
 from orbits.settings import EVENTS
+from orbits.simulation.replaying import deviation
 from orbits.words.margins import Margin, approaches_of, limits_of, margin_units, named_margins
 
 REAL = -EVENTS.zero  # margins from here to zero, in units of the machine's own size, are rounding of zero: a border orbit itself is real

@@ -14,9 +14,9 @@ import numpy as np
 from orbits.borders.crossing import cross
 from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import INSTANTS, distance
-from orbits.cycles.identity import canonical, size_of_one
+from orbits.cycles.cycle import canonical, size_of_one
 from orbits.flows.catalogue import flow_of
-from orbits.flows.protocol import PLAIN
+from orbits.flows.equations import PLAIN
 from orbits.machines.catalogue import build
 from orbits.machines.path import along
 from orbits.motions import Motions

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from orbits.flows.catalogue import simulator_of
 from orbits.flows.protocol import Simulator
 from orbits.flows.trajectory import Trajectory
 from orbits.orbit import Orbit
 from orbits.settings import REPLAYING
-from orbits.simulation.runs import simulator_of
 from orbits.words import Word
 
 if TYPE_CHECKING:

@@ -11,12 +11,12 @@ import numpy as np
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import described, lasting
 from orbits.contacts.letters import SLIP
+from orbits.flows.catalogue import simulator_of
+from orbits.flows.equations import solved_nodes
 from orbits.flows.protocol import SimulationError, Simulator
-from orbits.flows.solving import solved_nodes
 from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.orbit import Orbit
 from orbits.settings import SIMULATING
-from orbits.simulation.runs import simulator_of
 from orbits.words import Word
 
 if TYPE_CHECKING:

@@ -14,10 +14,9 @@ from contvines.shared.processes import ATTEMPTS, spread
 from orbits.attractors.attractor import Attractor
 from orbits.attractors.observation import described, modulated
 from orbits.attractors.search import find_attractor, goes_on
-from orbits.flows.catalogue import flow_of
+from orbits.flows.catalogue import flow_of, simulator_of
 from orbits.flows.protocol import SimulationError
 from orbits.settings import SIMULATING
-from orbits.simulation.runs import simulator_of
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying

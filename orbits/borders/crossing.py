@@ -19,8 +19,8 @@ from orbits.borders.distance import CLOSE, distance, tends
 from orbits.borders.neighbours import Grown, followed, margins_of, parameter_unit, placed, proposals
 from orbits.borders.rounds import escapes
 from orbits.contacts.letters import HIT, SLIP
-from orbits.cycles.identity import canonical, size_of_one
-from orbits.flows.solving import newton, solved_at
+from orbits.cycles.cycle import canonical, size_of_one
+from orbits.flows.equations import newton, solved_at
 from orbits.orbit import REAL, Orbit
 from orbits.protocol import CycleProblem, Seed
 from orbits.settings import BORDERING, SOLVING

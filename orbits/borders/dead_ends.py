@@ -9,12 +9,12 @@ import numpy as np
 from orbits.attractors.search import goes_on
 from orbits.borders.neighbours import parameter_unit
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN
+from orbits.flows.catalogue import simulator_of
 from orbits.flows.protocol import SimulationError
 from orbits.machines.base import Model
 from orbits.orbit import Orbit
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, EVENTS
-from orbits.simulation.runs import simulator_of
 from orbits.starts.find import polish
 from orbits.words.margins import border_kind, place_of
 

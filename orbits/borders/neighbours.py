@@ -12,7 +12,7 @@ import numpy as np
 from orbits.borders.distance import SHRINKS, gap, tends
 from orbits.borders.rewriting import Edit, durations_after, edits_at, rewritten
 from orbits.contacts.letters import HIT, SLIP, STICK, Change, Grows, What
-from orbits.flows.solving import newton
+from orbits.flows.equations import newton
 from orbits.orbit import REAL, Orbit, examined
 from orbits.protocol import CycleProblem
 from orbits.settings import BORDERING, GROWING, REPLAYING, SOLVING

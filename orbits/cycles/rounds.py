@@ -26,25 +26,6 @@ from orbits.settings import ROUNDING, SOLVING
 
 
 @np.errstate(all="ignore")
-def through_flights(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray] | None:
-    """The product of -D_i^-1 A_i over all flights, and that of their absolute values; None where one cannot be solved for.
-
-    Parameters
-    ----------
-    A, D : ndarray, shape (l, n, n)
-        Derivatives of the equations of each flight by the node before it and after it; without D those of A are the factors.
-    """
-    try:
-        factors = A if D is None else -np.linalg.solve(D, A)
-    except np.linalg.LinAlgError:
-        return None
-    product = sizes = np.eye(A.shape[1])
-    for factor in factors:
-        product, sizes = factor @ product, np.abs(factor) @ sizes
-    return product, sizes
-
-
-@np.errstate(all="ignore")
 def sides_of_cycles(maps: np.ndarray, keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """For each cycle of some rounds the least and the largest distance of its points from the border, and the product of its rounds.
 
@@ -108,12 +89,16 @@ class Rounds(NamedTuple):
         """Numbers of rounds (2 to `most`) and of changed ones (1, or all but one) of cycles that are surely not real, or, of more than
         two rounds, not stable.
         """
-        sides, products = _sides(self.maps, most)
-        beside = sides if self.further is None else _sides(self.further, most)[0]
+        keys = choices(most)
+        sides, products = sides_of_cycles(self.maps, np.array(keys))
+        beside = sides if self.further is None else sides_of_cycles(self.further, np.array(keys))[0]
         own, other = np.abs(self.maps).sum(axis=2).max(axis=1).tolist()
+        finite = np.isfinite(products).all(axis=(1, 2))
+        largest = np.full(len(keys), np.nan)  # moduli of multipliers
+        largest[finite] = np.abs(np.linalg.eigvals(products[finite])).max(axis=1)
         hopeless = set()
-        for key, (low, high), before, product in zip(
-            choices(most), sides.tolist(), beside.tolist(), products
+        for key, (low, high), before, product, size in zip(
+            keys, sides.tolist(), beside.tolist(), products, largest.tolist()
         ):
             if self.linear:
                 torn = low < -ROUNDING.decided * high and high > -ROUNDING.decided * low
@@ -121,7 +106,7 @@ class Rounds(NamedTuple):
                 torn = key[0] * self.error * max(float(np.abs(product).max()), own * other) < ROUNDING.sure
             else:
                 torn = False
-            if torn or (key[0] > 2 and _radius(product) > UNSTABLE + self._rounding(*key, own, other)):
+            if torn or (key[0] > 2 and size > UNSTABLE + self._rounding(*key, own, other)):
                 hopeless.add(key)
         return hopeless
 
@@ -133,39 +118,15 @@ class Rounds(NamedTuple):
             return math.inf
 
 
-def _sides(maps: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Sides and products of the cycles of up to `most` rounds; see `orbits.cycles.rounds.sides_of_cycles`."""
-    return sides_of_cycles(maps, _table(most))
-
-
 def _lasts(near: float, further: float) -> bool:
     """Whether a determinant that is positive near the border is so all the way to it: it grows, or stays as it is."""
     return near > ROUNDING.decided and further - near <= ROUNDING.decided * near
-
-
-def _radius(product: np.ndarray) -> float:
-    """Largest modulus of the eigenvalues of a matrix; NaN of one that is not finite."""
-    if len(product) != 2:
-        known = bool(np.isfinite(product).all())
-        return float(np.abs(np.linalg.eigvals(product)).max()) if known else math.nan
-    (a, b), (c, d) = product.tolist()
-    mean, half = 0.5 * (a + d), 0.5 * (a - d)
-    square = half * half + b * c
-    if square < 0.0:
-        return math.sqrt(mean * mean - square)
-    return abs(mean) + math.sqrt(square) if square < math.inf else math.nan
 
 
 @cache
 def choices(most: int) -> list[tuple[int, int]]:
     """Numbers of rounds, and of changed ones among them, of the cycles that are looked at."""
     return [(n, changed) for n in range(2, most + 1) for changed in dict.fromkeys((1, n - 1))]
-
-
-@cache
-def _table(most: int) -> np.ndarray:
-    """`choices` as an array."""
-    return np.array(choices(most), np.int64)
 
 
 def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds | None:
@@ -190,23 +151,13 @@ def judged(kinds: Sequence[Sequence[tuple[np.ndarray, float] | None]]) -> Rounds
 
 def _agree(plain: np.ndarray, changed: np.ndarray) -> bool:
     """Whether two derivatives differ by a matrix of rank one: on the border the maps are the same."""
-    first, second = _two_largest(changed - plain)
+    first, second = [*np.linalg.svd(changed - plain, compute_uv=False).tolist(), 0.0][:2]
     return second <= BOUNDED * max(first, float(np.abs(plain).max()))
 
 
-def _two_largest(matrix: np.ndarray) -> tuple[float, float]:
-    """The two largest singular values; the second of a single number is 0."""
-    if len(matrix) != 2:
-        first, second, *_ = *np.linalg.svd(matrix, compute_uv=False).tolist(), 0.0
-        return first, second
-    (a, b), (c, d) = matrix.tolist()
-    squares, determinant = a * a + b * b + c * c + d * d, abs(a * d - b * c)
-    first = math.sqrt(0.5 * (squares + math.sqrt(max(squares * squares - 4.0 * determinant**2, 0.0))))
-    return first, determinant / first if first > 0.0 else 0.0
-
-
+@np.errstate(all="ignore")
 def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, float] | None:
-    """The derivative of a round, and its rounding; None where it is no number.
+    """The derivative of a round, the product of those of its flights, and its rounding; None where it is no number.
 
     Parameters
     ----------
@@ -215,10 +166,13 @@ def derived(A: np.ndarray, D: np.ndarray | None = None) -> tuple[np.ndarray, flo
     D : ndarray, shape (l, n, n), optional
         If given, both are derivatives of the equations of each flight: by the node before it, and after it.
     """
-    found = through_flights(A, D)
-    if found is None:
+    try:
+        factors = A if D is None else -np.linalg.solve(D, A)
+    except np.linalg.LinAlgError:
         return None
-    whole, sizes = found
+    whole = sizes = np.eye(A.shape[1])
+    for factor in factors:
+        whole, sizes = factor @ whole, np.abs(factor) @ sizes
     error = SOLVING.rounding * float(sizes.max())
     return (whole, error) if np.isfinite(whole).all() and math.isfinite(error) else None
 

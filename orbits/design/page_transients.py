@@ -10,7 +10,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,15 +18,15 @@ from orbits.contacts.dry_friction import DryFriction
 from orbits.contacts.letters import HIT
 from orbits.contacts.wall import Wall
 from orbits.design.record import settled
-from orbits.flows.page.loads import Impacts, friction_work
+from orbits.flows.catalogue import simulator_of
+from orbits.flows.page.measures import Impacts, farthest, friction_work
+from orbits.flows.page.simulator import PageTrajectory
 from orbits.flows.page.stepper import TWO_PI
 from orbits.flows.protocol import SimulationError
 from orbits.machines.names import usual
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.page import Named, States
 from orbits.machines.page.run_up import phase_at_end, run_up
-from orbits.simulation.page import PageTrajectory
-from orbits.simulation.runs import simulator_of
 from orbits.symbols import cos, sin
 
 if TYPE_CHECKING:
@@ -161,7 +160,7 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
                 impact = Impacts(own, wall, run.states[i : i + 1], clock, run.params[None])
                 hits.append((begin / speed + shift, float(impact.speeds[0]), float(impact.impulses[0])))
                 lost = float(impact.losses[0])
-            sizes = _sizes(own, run.modes[i], run.states[i], *here, run.params)
+            sizes = np.abs(farthest(own, run.modes[i], run.states[i], *here, run.params)).max(axis=0)
             largest = np.maximum(largest, sizes[: machine.size])
             rubbed = (
                 friction_work(own, run.modes[i], run.states[i], *here, run.params)
@@ -194,21 +193,6 @@ def _transient(machine: Machine, legs: list[tuple[Machine, PageTrajectory, float
         np.cumsum(parts[:, 1]),
         np.cumsum(parts[:, 2]),
     )
-
-
-def _sizes(
-    machine: Machine, mode: tuple[int, ...], state: np.ndarray, begin: float, end: float, params: np.ndarray
-) -> np.ndarray:
-    """Largest size of every state on a flight, shape (n,): at its ends, and where a rate is zero in between."""
-    watch = machine.compiled.extremes(machine.equations.pattern_key(mode))
-    numbers = machine.compiled.numbers(params, mode)
-    found = np.abs(state)
-    clocks = np.linspace(begin, end, max(1, math.ceil((end - begin) / TWO_PI)) + 1)
-    for one, other in pairwise(clocks.tolist() if end > begin else ()):
-        rows = [row for _, _, row in watch(state, one, other, numbers)]
-        state = watch.final
-        found = np.maximum(found, np.abs([*rows, state]).max(axis=0))
-    return found
 
 
 def _motion(state: States, phase: Plain, p: Named, contact: Named) -> tuple[Plain, ...]:

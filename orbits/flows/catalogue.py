@@ -1,11 +1,13 @@
-"""The flows by the names that machines call them; one is imported when a machine asks for it."""
+"""The flow and the simulator of a machine; those of its sort are imported when a machine asks for them."""
 
 from __future__ import annotations
 
 from functools import cache
 from typing import TYPE_CHECKING, TypeVar
 
-from orbits.flows.protocol import Flow
+import numpy as np
+
+from orbits.flows.protocol import Flow, Simulator
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
@@ -18,6 +20,11 @@ def flow_of(model: Model) -> Flow[Model]:
     return _flow(model.flow)
 
 
+def simulator_of(model: Varying, params: np.ndarray) -> Simulator:
+    """The simulator of a machine at these parameters."""
+    return _simulator(model.flow)(model, params)
+
+
 @cache
 def _flow(name: str) -> Flow:
     if name == "page":
@@ -27,3 +34,14 @@ def _flow(name: str) -> Flow:
     from orbits.flows.native.flow import NativeFlow
 
     return NativeFlow()
+
+
+@cache
+def _simulator(name: str) -> type:
+    if name == "page":
+        from orbits.flows.page.simulator import PageSimulator
+
+        return PageSimulator
+    from orbits.flows.native.simulator import NativeSimulator
+
+    return NativeSimulator

@@ -45,35 +45,33 @@ A *simulator* moves one motion of a machine on at given parameters, from event t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
-from contvines.core.table import KernelFunctions
 from contvines.shared.near_names import did_you_mean
-from orbits.contacts.letters import Change, Site
-from orbits.flows.trajectory import ModelOf, Trajectory
+from orbits.contacts.letters import Change, Site, Spot
+from orbits.flows.equations import Equations, ModelOf
+from orbits.flows.trajectory import TWO_PI, Trajectory
+from orbits.numbers import SMALLEST
+from orbits.settings import GROWING
 
 if TYPE_CHECKING:
     from orbits.contacts.letters import Mode
     from orbits.machines.varying import Varying
     from orbits.words import Word
 
-ModelFor = TypeVar("ModelFor", bound="Varying", contravariant=True)
+ModelSeen = TypeVar("ModelSeen", bound="Varying", covariant=True)
 Run = TypeVar("Run", bound=Trajectory)
-Data = TypeVar("Data")
-Work = TypeVar("Work")
-DataFor = TypeVar("DataFor", contravariant=True)
-WorkFor = TypeVar("WorkFor", contravariant=True)
 
 
-class Motion(Protocol[ModelOf]):
+class Motion(Protocol[ModelSeen]):
     """What a flow is asked about: word, nodes and parameters of a cycle (`orbits.cycles.cycle.Cycle`)."""
 
     @property
-    def model(self) -> ModelOf: ...
+    def model(self) -> ModelSeen: ...
     @property
     def word(self) -> Word: ...
     @property
@@ -200,61 +198,63 @@ class Batch(NamedTuple):
 class Simulator(Protocol[ModelOf, Run]):
     """A motion on its way; the contract is at the top of this module."""
 
-    @property
-    def model(self) -> ModelOf: ...
-    @property
-    def params(self) -> np.ndarray: ...
-    @property
-    def names(self) -> tuple[str, ...]: ...
-    @property
-    def forced(self) -> bool: ...
-    @property
-    def mirrored(self) -> bool: ...
-    @property
-    def hard(self) -> np.ndarray: ...
-    @property
-    def watched(self) -> tuple[float, int]: ...
-    @property
-    def waiting(self) -> Waiting: ...
-    @property
-    def observed(self) -> tuple[float, float]: ...
-    @property
-    def modulated(self) -> float: ...
+    model: ModelOf
+    params: np.ndarray
+    names: tuple[str, ...]
+    forced: bool
+    hard: np.ndarray
+    watched: ClassVar[tuple[float, int]]
+    waiting: ClassVar[Waiting]
+    observed: ClassVar[tuple[float, float]]
+    modulated: ClassVar[float]
+    resting: ClassVar[str]
+    wandering: ClassVar[str]
+    roomy: bool
+    count: float
+    state: np.ndarray
+
     @property
     def modes(self) -> Mode: ...
-    @property
-    def resting(self) -> str: ...
-    @property
-    def wandering(self) -> str: ...
-    @property
-    def roomy(self) -> bool: ...
-    @property
-    def count(self) -> float: ...
     @property
     def time(self) -> float: ...
     @property
     def point(self) -> np.ndarray: ...
+    @property
+    def mirrored(self) -> bool:
+        """Whether the machine equals its mirror image."""
+        return self.model.has_mirror(self.params)
 
-    def image(self, point: np.ndarray) -> np.ndarray: ...
+    def image(self, point: np.ndarray) -> np.ndarray:
+        """A point mirrored about the middle between the walls."""
+        image = -point
+        image[0] += 2.0 * float(self.model.middle(self.params))
+        return image
 
     def start(self, point: np.ndarray, time: float = 0.0, modes: tuple[int, ...] | None = None) -> None: ...
 
-    @property
-    def state(self) -> np.ndarray: ...
+    def put(self, start: Mapping[str, float] | np.ndarray | None) -> None:
+        """Begin at a start by names, or at a state."""
+        ...
 
-    def put(self, start: Mapping[str, float] | np.ndarray | None) -> None: ...
+    def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray:
+        """The state of a start."""
+        ...
 
-    def state_of(self, start: Mapping[str, float] | np.ndarray | None) -> np.ndarray: ...
+    def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
+        """Begin where another simulation has ended, changed a little."""
+        ...
 
-    def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None: ...
-
-    def run(self, periods: float, most: int) -> Run: ...
+    def run(self, periods: float, most: int) -> Run:
+        """Move on and keep the motion."""
+        ...
 
     def begin(self, word: Word, node: np.ndarray) -> None:
         """Put the motion just after the first event of a cycle with this word, of which `node` are the unknowns."""
         ...
 
-    def follow(self, until: float) -> None: ...
+    def follow(self, until: float) -> None:
+        """Move on."""
+        ...
 
     def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Move on by a period of a cycle: so many forcing periods, of a self-excited machine until its word has passed.
@@ -266,15 +266,19 @@ class Simulator(Protocol[ModelOf, Run]):
         by_value : float array (d,)
             By the parameter with this index; both NaN where no index is given, or the simulator does not know them.
         """
-        ...
+        self.follow(self.time + periods)
+        n = len(self.names)
+        return np.full((n, n), np.nan), np.full(n, np.nan)
 
-    def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None: ...
+    def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Of a point at a wall the other one there, just after the impact or just before it, and the direction away from the wall; None elsewhere."""
+        ...
 
     def skip(self, count: float) -> bool:
         """Move on by so many forcing periods, of a self-excited machine so many events; whether there were as many."""
         ...
 
-    def look(self, longest: int) -> Trajectory:
+    def look(self, longest: int) -> Run:
         """The run in which a recurrence of up to so many forcing periods (25 times as many events) is looked for."""
         ...
 
@@ -284,15 +288,15 @@ class Simulator(Protocol[ModelOf, Run]):
 
     def move_on(self, run: Run, longest: int) -> bool:
         """Move a motion that creeps to where that ends; whether it does."""
-        ...
+        return False
 
     def push(self) -> None:
         """Help a motion to leave another one that repels, on which only rounding keeps it."""
-        ...
 
     def section(self) -> tuple[str, np.ndarray]:
         """Move on to the next whole forcing period, of a self-excited machine to the next event: that event, and the point there."""
-        ...
+        self.follow(math.floor(self.time) + 1.0)
+        return "", self.point
 
     def box(self) -> np.ndarray:
         """Smallest and largest value of phase and coordinates among which starts are drawn, shape (n, 2); no phase of a self-excited machine."""
@@ -300,11 +304,11 @@ class Simulator(Protocol[ModelOf, Run]):
 
     def free(self, points: np.ndarray) -> np.ndarray:
         """Which starts lie outside the walls, bool array (m,)."""
-        ...
+        return np.ones(len(points), dtype=bool)
 
     def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> Batch | None:
         """Run starts, all at once, until they recur after at most so many forcing periods; None where nothing is gained by that."""
-        ...
+        return None
 
     def growth(self) -> tuple[float, float]:
         """Largest Lyapunov exponent of the motion, per forcing period, and its standard error."""
@@ -326,10 +330,6 @@ def later(
     return simulator.point
 
 
-PLAIN = (1.0, 1.0)
-"""Length and rate of unknowns that are counted in the machine's own units."""
-
-
 class Vanishing(NamedTuple):
     """What vanishes at a border.
 
@@ -340,7 +340,7 @@ class Vanishing(NamedTuple):
     watched : int
         Index of the contact that is met in the flight after the event, or one of `orbits.words.alphabet.Watch`.
     touch : (float, ndarray) or None
-        Where in the flight: clock ahead of the event before, and the flow's own coordinates there.
+        Where in the flight: clock ahead of the event before, and the other entries of a node there.
     """
 
     site: Site
@@ -348,126 +348,26 @@ class Vanishing(NamedTuple):
     touch: tuple[float, np.ndarray] | None = None
 
 
-class Approach(NamedTuple):
-    """The speed with which an impact leaves its wall, in units of the unknowns, and how it depends on them.
-
-    Attributes
-    ----------
-    speed : float
-    slopes : ndarray, shape (n,)
-        By the entries of the node.
-    by_parameter : float
-    push : ndarray, shape (n,)
-        Direction of the node in which it is changed.
-    """
-
-    speed: float
-    slopes: np.ndarray
-    by_parameter: float
-    push: np.ndarray
-
-
-class Kernels(KernelFunctions, Protocol[DataFor, WorkFor]):
-    """What is worked out of equations: Newton's method, and a look at one solution; in full `contvines.problems.protocol`."""
-
-    def newton(
-        self,
-        data: DataFor,
-        u: np.ndarray,
-        p: float,
-        work: WorkFor,
-        border: np.ndarray,
-        step: np.ndarray,
-        tangent: np.ndarray,
-        tolerance: float,
-        limit: int,
-    ) -> tuple[float, int, float]: ...
-    def examine(self, data: DataFor, u: np.ndarray, p: float, work: WorkFor, row: np.ndarray) -> float: ...
-
-
-class Equations(Protocol[Data, Work]):
-    """The equations of the cycles with one word, against one parameter.
-
-    Attributes
-    ----------
-    length, dimension, n_multipliers, n_margins : int
-        Unknown nodes (half the word's, of a symmetric cycle), unknowns, multipliers, margins.
-    twist, shift : float
-        Closure: the first node returns with its phase plus `shift`, all else times `twist`.
-    movable : bool
-        Whether solutions may be shifted as a whole, but for the mirror that holds them.
-    period_shift : float array (N,) or None
-        What a turn of the forcing adds to the unknowns.
-    path : float array (2, P)
-        How the numbers follow the parameter (`orbits.machines.path`).
-    units : (float, float)
-        Length and rate in which the unknowns are counted; `unit` is what one of each entry of the nodes is, shape (L, n).
-    began : float
-        The value of the parameter in the parameter vector.
-    data, kernels
-        What a continuation is handed.
-    """
-
-    @property
-    def length(self) -> int: ...
-    @property
-    def dimension(self) -> int: ...
-    @property
-    def n_multipliers(self) -> int: ...
-    @property
-    def n_margins(self) -> int: ...
-    @property
-    def twist(self) -> float: ...
-    @property
-    def shift(self) -> float: ...
-    @property
-    def movable(self) -> bool: ...
-    @property
-    def period_shift(self) -> np.ndarray | None: ...
-    @property
-    def path(self) -> np.ndarray: ...
-    @property
-    def units(self) -> tuple[float, float]: ...
-    @property
-    def unit(self) -> np.ndarray: ...
-    @property
-    def params(self) -> np.ndarray: ...
-    @property
-    def data(self) -> Data: ...
-    @property
-    def kernels(self) -> Kernels[Data, Work]: ...
-    @property
-    def began(self) -> float: ...
-    @property
-    def scratch(self) -> Work: ...
-    def workspace(self) -> Work: ...
-    def values(self, p: float | np.ndarray) -> np.ndarray: ...
-    def value(self, params: np.ndarray) -> float: ...
-    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray: ...
-    def reduce(self, nodes: np.ndarray) -> np.ndarray: ...
-    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray: ...
-    def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach: ...
-    def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray | None] | None: ...
-
-
-class Flow(Protocol[ModelFor]):
+class Flow(Protocol[ModelOf]):
     """What a flow answers; see the top of this module."""
 
-    @property
-    def angles(self) -> tuple[str, ...]: ...
-    @property
-    def closed_form(self) -> bool: ...
-    @property
-    def resolution(self) -> float: ...
+    angles: ClassVar[tuple[str, ...]]
+    closed_form: ClassVar[bool]
+    resolution: ClassVar[float]
+    seconds: ClassVar[str]
+    """What a sample calls the time."""
+    measure_names: Callable[[ModelOf], tuple[str, ...]]
+    measures: Callable[[ModelOf, Word, int, np.ndarray, np.ndarray, Sequence[str]], dict[str, np.ndarray]]
+    """Of model, word, periods, nodes (m, L, n), params (m, P) and the names that are wanted."""
 
-    def census(self, model: ModelFor) -> Census: ...
-    def coordinates(self, model: ModelFor) -> tuple[str, ...]: ...
-    def position_entries(self, model: ModelFor) -> tuple[int, ...]: ...
-    def points(self, motion: Motion[ModelFor]) -> np.ndarray: ...
+    def census(self, model: ModelOf) -> Census: ...
+    def coordinates(self, model: ModelOf) -> tuple[str, ...]: ...
+    def position_entries(self, model: ModelOf) -> tuple[int, ...]: ...
+    def points(self, motion: Motion[ModelOf]) -> np.ndarray: ...
 
     def equations(
         self,
-        model: ModelFor,
+        model: ModelOf,
         word: Word,
         periods: int,
         parameter: str,
@@ -476,30 +376,80 @@ class Flow(Protocol[ModelFor]):
         units: tuple[float, float] | None = None,
     ) -> Equations: ...
 
-    def loose(self, model: ModelFor, word: Word) -> tuple[int, ...]: ...
-    def sample(self, motion: Motion[ModelFor], points: int) -> dict[str, np.ndarray]: ...
-    def positions(self, motion: Motion[ModelFor], instants: int) -> np.ndarray: ...
-    def image(self, motion: Motion[ModelFor]) -> np.ndarray: ...
-    def strobed(self, motion: Motion[ModelFor]) -> np.ndarray: ...
-    def measure_names(self, model: ModelFor) -> tuple[str, ...]: ...
-    def default_measure(self, model: ModelFor) -> str: ...
-    def measures(
-        self,
-        model: ModelFor,
-        word: Word,
-        periods: int,
-        nodes: np.ndarray,
-        params: np.ndarray,
-        wanted: Sequence[str],
-    ) -> dict[str, np.ndarray]: ...
-    def simulated_names(self, model: ModelFor) -> tuple[str, ...]: ...
-    def swept(self, model: ModelFor) -> tuple[str, ...]: ...
-    def in_units(self, model: ModelFor, params: np.ndarray, values: dict[str, float]) -> dict[str, float]: ...
-    def described(self, motion: Motion[ModelFor]) -> dict[str, Any]: ...
-    def kind(self, motion: Motion[ModelFor]) -> str: ...
-    def vanishing(self, motion: Motion[ModelFor], index: int, unit: int) -> Vanishing | None: ...
-    def placed(
-        self, motion: Motion[ModelFor], found: Vanishing, place: int, change: Change
-    ) -> np.ndarray: ...
-    def restitution(self, motion: Motion[ModelFor], place: int) -> float: ...
-    def without_events(self, motion: Motion[ModelFor]) -> np.ndarray | None: ...
+    def loose(self, model: ModelOf, word: Word) -> tuple[int, ...]: ...
+    def strobed(self, motion: Motion[ModelOf]) -> np.ndarray: ...
+    def default_measure(self, model: ModelOf) -> str: ...
+    def simulated_names(self, model: ModelOf) -> tuple[str, ...]: ...
+    def swept(self, model: ModelOf) -> tuple[str, ...]: ...
+    def in_units(self, model: ModelOf, params: np.ndarray, values: dict[str, float]) -> dict[str, float]: ...
+    def described(self, motion: Motion[ModelOf]) -> dict[str, Any]: ...
+    def kind(self, motion: Motion[ModelOf]) -> str: ...
+    def restitution(self, motion: Motion[ModelOf], place: int) -> float: ...
+    def without_events(self, motion: Motion[ModelOf]) -> np.ndarray | None: ...
+
+    # ------------------------------------------------------------------ between the events
+    def flown(self, motion: Motion[ModelOf], places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+        """Coordinates, shape (m, d), so long (clock, shape (m,)) after the events `places`, whatever happens on the way."""
+        ...
+
+    def columns(self, motion: Motion[ModelOf], table: np.ndarray) -> dict[str, np.ndarray]:
+        """By name what a sample has of coordinates (m, d)."""
+        return dict(zip(self.coordinates(motion.model), table.T))
+
+    def sample(self, motion: Motion[ModelOf], points: int = 400) -> dict[str, np.ndarray]:
+        """About so many instants of one period, at least two per flight: events are included with what is before and after them."""
+        lasting = motion.durations
+        durations = np.maximum(lasting, 0.0)
+        counts = np.maximum(2, np.rint(points * durations / max(float(lasting.sum()), SMALLEST))).astype(int)
+        ends = np.cumsum(counts)
+        segment = np.repeat(np.arange(len(counts)), counts)
+        ahead = (np.arange(ends[-1]) - (ends - counts)[segment]) * (durations / (counts - 1))[segment]
+        ahead[ends - 1] = durations
+        forced = motion.model.forced
+        begins = motion.nodes[:, 0] if forced else np.cumsum(lasting) - lasting
+        clock = begins[segment] + ahead
+        return {
+            self.seconds: (clock - clock[0]) / motion.model.phase_speed(motion.params),
+            **({"phase": clock} if forced else {}),
+            **self.columns(motion, self.flown(motion, segment, ahead)),
+            "segment": segment,
+        }
+
+    def at_phases(self, motion: Motion[ModelOf], phases: np.ndarray) -> np.ndarray:
+        """Coordinates of a forced motion at phases from 0 on, shape (m, d)."""
+        whole, first = TWO_PI * motion.periods, motion.nodes[0, 0]
+        wanted = (phases - first) % whole
+        wanted[wanted >= whole] = 0.0  # of a phase just below zero
+        begins = np.maximum.accumulate(motion.nodes[:, 0] - first)
+        places = np.searchsorted(begins, wanted, side="right") - 1
+        return self.flown(motion, places, wanted - begins[places])
+
+    def positions(self, motion: Motion[ModelOf], instants: int) -> np.ndarray:
+        """What no impulse moves, at so many equal phases of each forcing period, shape (periods * instants, c)."""
+        count = instants * motion.periods
+        phases = np.arange(count) * (TWO_PI * motion.periods / count)
+        return self.at_phases(motion, phases)[:, [entry - 1 for entry in self.position_entries(motion.model)]]
+
+    # ------------------------------------------------------------------ at borders
+    def vanishing(self, motion: Motion[ModelOf], index: int, unit: int) -> Vanishing | None: ...
+
+    def placed(self, motion: Motion[ModelOf], found: Vanishing, place: int, change: Change) -> np.ndarray:
+        """The nodes of a change's new events: at the border the old and the new description are the same motion, so they are where the margin vanished."""
+        rows = [self.node_at(motion, place, spot, found) for spot in change.spots]
+        return np.array(rows) if rows else motion.nodes[:0]
+
+    def node_at(self, motion: Motion[ModelOf], place: int, spot: Spot, found: Vanishing) -> np.ndarray:
+        """The node of a spot; an event that is inserted into a self-excited motion has the clock from the flight's start."""
+        forced, nodes = motion.model.forced, motion.nodes
+        if spot.node is None:
+            assert found.touch is not None
+            ahead, row = found.touch
+            row = np.append((float(nodes[place, 0]) if forced else 0.0) + ahead, row)
+        else:
+            row = nodes[spot.node].copy()
+            if spot.clock is not None:
+                row[0] = nodes[spot.clock, 0]
+            if spot.between:
+                row[0] = (0.5 if forced else 1.0) * (row[0] + nodes[spot.node + 1, 0])
+        row[0] += spot.later * GROWING.first
+        return row

@@ -12,6 +12,7 @@ import numpy as np
 
 from orbits.contacts.letters import HIT, HOLD, RELEASE
 from orbits.machines.stepping import REST, STATUS, TIME_REACHED
+from orbits.settings import SIMULATING
 from orbits.words import Word
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ class Trajectory(ABC, Generic[ModelOf]):
         """Whether nothing will ever happen again."""
         return self.status == REST
 
-    @property
+    @cached_property
     @abstractmethod
     def letters(self) -> Sequence[str]:
         """The events as they are written."""
@@ -83,8 +84,35 @@ class Trajectory(ABC, Generic[ModelOf]):
         return STATUS[self.status]
 
     @abstractmethod
+    def flown(self, places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+        """What a flow knows, shape (m, c), so long (clock) after the start (place 0) and the events (from 1 on): coordinates first."""
+
+    def at(self, clocks: np.ndarray) -> np.ndarray:
+        """The same at clocks within the run.
+
+        Raises
+        ------
+        ValueError
+            If a clock lies outside the run.
+        """
+        first, last = float(self.clocks[0]), self.finish
+        slack = SIMULATING.whole * max(1.0, abs(last))
+        if clocks.size and (clocks.min() < first - slack or clocks.max() > last + slack):
+            raise ValueError(
+                f"phases from {clocks.min():g} to {clocks.max():g} leave the run, which lasts "
+                f"from {first:g} to {last:g}; simulate more periods"
+            )
+        places = np.clip(np.searchsorted(self.clocks, clocks, side="right") - 1, 0, len(self.kinds))
+        return self.flown(places, np.maximum(clocks - self.clocks[places], 0.0))
+
     def coordinates(self, times: np.ndarray) -> np.ndarray:
-        """The simulator's coordinates at increasing times (forcing periods, or time over 2 pi), shape (m, d)."""
+        """The simulator's coordinates at times within the run (forcing periods, or time over 2 pi), shape (m, d)."""
+        return self.at(TWO_PI * times)[:, : self.points.shape[1]]
+
+    @property
+    @abstractmethod
+    def nodes(self) -> np.ndarray:
+        """What continuation solves for, at every event of a forced machine, shape (m, n)."""
 
     @abstractmethod
     def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:

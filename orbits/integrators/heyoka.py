@@ -7,10 +7,10 @@ with sensitivities only.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Sequence
+from functools import cache, cached_property
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,30 +25,6 @@ if TYPE_CHECKING:
 
 LANES = 4  # flights that are integrated side by side
 FEW = 2  # points up to which plain Python works formulas out faster than a call of compiled code
-
-
-class Compiled(Protocol):
-    """Formulas that heyoka has compiled."""
-
-    nparams: int
-
-    def __call__(
-        self, states: np.ndarray, *, pars: np.ndarray, time: np.ndarray, outputs: np.ndarray
-    ) -> np.ndarray: ...
-
-
-class Dense(Protocol):
-    """An integrator that knows the states inside its last step."""
-
-    d_output: np.ndarray
-
-    def update_d_output(self, clock: float) -> np.ndarray: ...
-
-
-class System(Protocol):
-    """A flow with its variations."""
-
-    sys: Sequence[object]
 
 
 @cache
@@ -83,27 +59,25 @@ def _variables(layout: Layout) -> list[Any]:
 class Values(expressions.Values):
     """Functions of states, clock and numbers, compiled for many points at once."""
 
-    _compiled: Compiled | None = None
+    @cached_property
+    def _compiled(self) -> Any:
+        return _heyoka().cfunc(lowered(self.layout, self.values), vars=_variables(self.layout))
 
     def __call__(self, states: np.ndarray, clock: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """Values, shape (m, count), at `states` (m, n), `clock` (m,), `numbers` (m, P)."""
         if len(states) <= FEW:
             return np.array([self.one(*row) for row in zip(states, clock, numbers)])
-        compiled = self._compiled
-        if compiled is None:
-            made = _heyoka().cfunc(lowered(self.layout, self.values), vars=_variables(self.layout))
-            self._compiled = compiled = made
         out = np.empty((self.count, len(states)))
-        compiled(
+        self._compiled(
             np.ascontiguousarray(states.T),
-            pars=np.ascontiguousarray(numbers.T[: int(compiled.nparams)]),
+            pars=np.ascontiguousarray(numbers.T[: int(self._compiled.nparams)]),
             time=np.ascontiguousarray(clock),
             outputs=out,
         )
         return out.T
 
 
-class Flight:
+class _Variations:
     """A flow with its derivatives by the initial state and by some of the numbers.
 
     Parameters
@@ -116,15 +90,24 @@ class Flight:
     """
 
     def __init__(self, layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> None:
-        heyoka = _heyoka()
-        self.n = len(layout.states)
-        variational = _variational(layout, rates, active)
-        self._integrator = heyoka.taylor_adaptive(
-            variational, [0.0] * self.n, compact_mode=_many(variational)
-        )
+        heyoka, variables = _heyoka(), _variables(layout)
+        asked = variables + [heyoka.par[i] for i in active]
+        system = heyoka.var_ode_sys(list(zip(variables, lowered(layout, rates))), asked, order=1)
+        self.n = n = len(variables)
+        self._begin = np.concatenate([np.zeros(n), np.eye(n, n + len(active)).ravel()])
+        self._integrator = self._made(system, {"compact_mode": len(system.sys) >= MANY})
         self._numbers = len(self._integrator.pars)
-        self._begin = np.array(self._integrator.state)
         self._done = heyoka.taylor_outcome.time_limit
+
+    def _made(self, system: Any, how: dict[str, bool]) -> Any:
+        raise NotImplementedError
+
+
+class Flight(_Variations):
+    """One flight at a time."""
+
+    def _made(self, system: Any, how: dict[str, bool]) -> Any:
+        return _heyoka().taylor_adaptive(system, [0.0] * self.n, **how)
 
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray, out: np.ndarray
@@ -140,20 +123,11 @@ class Flight:
         return outcome == self._done
 
 
-class Flights:
+class Flights(_Variations):
     """The same for several flights at once, `LANES` of them side by side in the processor's vectors; each takes its own steps."""
 
-    def __init__(self, layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> None:
-        heyoka = _heyoka()
-        self.n = len(layout.states)
-        variational = _variational(layout, rates, active)
-        self._begin = np.zeros((self.n * (1 + self.n + len(active)), 1))
-        self._begin[self.n :].reshape(self.n, -1)[:, : self.n] = np.eye(self.n)
-        self._integrator = heyoka.taylor_adaptive_batch(
-            variational.sys, np.repeat(self._begin, LANES, axis=1), compact_mode=_many(variational)
-        )
-        self._numbers = len(self._integrator.pars)
-        self._done = heyoka.taylor_outcome.time_limit
+    def _made(self, system: Any, how: dict[str, bool]) -> Any:
+        return _heyoka().taylor_adaptive_batch(system.sys, np.tile(self._begin[:, None], LANES), **how)
 
     def __call__(
         self, states: np.ndarray, begin: np.ndarray, end: np.ndarray, numbers: np.ndarray, out: np.ndarray
@@ -165,7 +139,7 @@ class Flights:
                 np.arange(first, first + LANES), count - 1
             )  # the last one fills the lanes left over
             ta.set_time(begin[lanes])
-            ta.state[:] = self._begin
+            ta.state[:] = self._begin[:, None]
             ta.state[: self.n] = states[lanes].T
             ta.pars[:] = numbers[lanes, : self._numbers].T
             ta.propagate_until(end[lanes], max_steps=MOST_STEPS)
@@ -175,63 +149,76 @@ class Flights:
         return True
 
 
-class Watch:
-    """A flow that reports every rise through zero of given functions on its way."""
+class _Events:
+    """A flow with functions whose zeros are events of heyoka's integrator.
+
+    The functions are moved by nothing: heyoka 7.13 loses the later roots in a step that begins exactly on one.
+    """
+
+    kind: str  # of events: `t_events` end a flight, `nt_events` do not
 
     def __init__(self, layout: Layout, rates: Sequence[Symbol], functions: Sequence[Symbol]) -> None:
         heyoka = _heyoka()
-        self._found: list[Crossing] = []
-        variables = _variables(layout)
-        system = list(zip(variables, lowered(layout, rates)))
-        found = self._found
-
-        def note(place: int) -> Callable:
-            def callback(ta: Dense, clock: float, sign: int) -> None:
-                ta.update_d_output(clock)
-                found.append((clock, place, ta.d_output.copy()))
-
-            return callback
-
-        events = [  # moved by nothing: heyoka 7.13 loses the later roots in a step that begins exactly on one
-            heyoka.nt_event(f + COMPLEX_STEP, note(i), direction=heyoka.event_direction.positive)
-            for i, f in enumerate(lowered(layout, functions))
-            if variables_of(functions[i])
-        ]
+        system = list(zip(_variables(layout), lowered(layout, rates)))
+        self._places = [i for i, f in enumerate(functions) if variables_of(f)]
+        found = lowered(layout, [functions[i] for i in self._places])
+        events = [self._event(i, f + COMPLEX_STEP) for i, f in zip(self._places, found)]
         self._integrator = heyoka.taylor_adaptive(
-            system,
-            [0.0] * len(variables),
-            nt_events=events,
-            compact_mode=_large(system),
+            system, [0.0] * len(system), compact_mode=len(system) >= LARGE, **{self.kind: events}
         )
-        self._numbers = len(self._integrator.pars)
-        self._done = heyoka.taylor_outcome.time_limit
+        self._state, self._pars = self._integrator.state, self._integrator.pars  # views of what it works on
+        self._numbers = len(self._pars)
+        self._done, self._stopped = heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit
+
+    def _event(self, place: int, function: Any) -> Any:
+        raise NotImplementedError
+
+    def _put(self, state: np.ndarray, clock: float, numbers: np.ndarray) -> Any:
+        """The integrator, at a state."""
+        ta = self._integrator
+        ta.time = clock
+        self._state[:] = state
+        self._pars[:] = numbers[: self._numbers]
+        return ta
+
+
+class Watch(_Events):
+    """A flow that reports every rise through zero of given functions on its way."""
+
+    kind = "nt_events"
+
+    def __init__(self, layout: Layout, rates: Sequence[Symbol], functions: Sequence[Symbol]) -> None:
+        self._found: list[Crossing] = []
+        super().__init__(layout, rates, functions)
+
+    def _event(self, place: int, function: Any) -> Any:
+        heyoka, found = _heyoka(), self._found
+
+        def note(ta: Any, clock: float, sign: int) -> None:
+            ta.update_d_output(clock)
+            found.append((clock, place, ta.d_output.copy()))
+
+        return heyoka.nt_event(function, note, direction=heyoka.event_direction.positive)
 
     def __call__(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> list[Crossing]:
         """(clock, which function, state) of every rise through zero between `begin` and `end`."""
-        ta = self._integrator
         self._found.clear()
-        ta.time = begin
-        ta.state[:] = state
-        ta.pars[:] = numbers[: self._numbers]
-        ta.propagate_until(end, max_steps=MOST_STEPS)
+        self._put(state, begin, numbers).propagate_until(end, max_steps=MOST_STEPS)
         return list(self._found)
 
     def move(self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray) -> None:
         """Move `state` on, in place, whatever the functions do."""
         self(state, begin, end, numbers)
-        state[:] = self._integrator.state
+        state[:] = self._state
 
     @property
     def final(self) -> np.ndarray:
         """The state at the end of the last flight."""
-        return np.array(self._integrator.state)
+        return np.array(self._state)
 
     def path(self, state: np.ndarray, clocks: np.ndarray, numbers: np.ndarray) -> np.ndarray:
         """States, shape (m, n), at the increasing `clocks` (equal ones allowed), the first of which is where `state` is."""
-        ta = self._integrator
-        ta.time = float(clocks[0])
-        ta.state[:] = state
-        ta.pars[:] = numbers[: self._numbers]
+        ta = self._put(state, float(clocks[0]), numbers)
         grid, back = np.unique(np.maximum.accumulate(clocks), return_inverse=True)
         if len(grid) == 1:
             return np.tile(state, (len(clocks), 1))
@@ -249,27 +236,14 @@ class Watch:
         return rows[back]
 
 
-class Run:
+class Run(_Events):
     """A flow that ends at the first fall through zero of one of its functions."""
 
-    def __init__(self, layout: Layout, rates: Sequence[Symbol], functions: Sequence[Symbol]) -> None:
+    kind = "t_events"
+
+    def _event(self, place: int, function: Any) -> Any:
         heyoka = _heyoka()
-        variables = _variables(layout)
-        system = list(zip(variables, lowered(layout, rates)))
-        self._places = [i for i, f in enumerate(functions) if variables_of(f)]
-        events = [  # moved by nothing, as above
-            heyoka.t_event(f + COMPLEX_STEP, direction=heyoka.event_direction.negative)
-            for f in lowered(layout, [functions[i] for i in self._places])
-        ]
-        self._integrator = heyoka.taylor_adaptive(
-            system,
-            [0.0] * len(variables),
-            t_events=events,
-            compact_mode=_large(system),
-        )
-        self._state, self._pars = self._integrator.state, self._integrator.pars  # views of what it works on
-        self._numbers = len(self._pars)
-        self._done, self._stopped = heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit
+        return heyoka.t_event(function, direction=heyoka.event_direction.negative)
 
     def __call__(
         self, state: np.ndarray, begin: float, end: float, numbers: np.ndarray
@@ -278,10 +252,7 @@ class Run:
 
         None: the end was reached; -1: the flow blew up.
         """
-        ta = self._integrator
-        ta.time = begin
-        self._state[:] = state
-        self._pars[:] = numbers[: self._numbers]
+        ta = self._put(state, begin, numbers)
         if self._places:
             ta.reset_cooldowns()
         while True:
@@ -304,19 +275,3 @@ RUNAWAY = (
 )
 LARGE = 12  # states from which compact code compiles much faster and runs nearly as fast,
 MANY = 40  # and equations of states with their variations: six states compile in 0.5 s in place of 3, and fly half as fast
-
-
-def _variational(layout: Layout, rates: Sequence[Symbol], active: tuple[int, ...]) -> System:
-    """The flow with its first variations by the states and by some of the numbers."""
-    heyoka = _heyoka()
-    variables = _variables(layout)
-    asked = variables + [heyoka.par[i] for i in active]
-    return heyoka.var_ode_sys(list(zip(variables, lowered(layout, rates))), asked, order=1)
-
-
-def _large(system: Sequence[Any]) -> bool:
-    return len(system) >= LARGE
-
-
-def _many(variational: System) -> bool:
-    return len(variational.sys) >= MANY

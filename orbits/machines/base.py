@@ -299,13 +299,12 @@ class Model(Varying):
         left, right = self.walls(params)
         return 0.5 * (left + right)
 
-    def image(self, codes: np.ndarray, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-        """Nodes (..., L, n) of events `codes` mirrored about the middle between the walls, at the same phases."""
-        image = -nodes
-        image[..., 0] = nodes[..., 0]
-        middle = np.asarray(self.middle(params))
+    def image(self, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Mirrored about the middle between the walls."""
+        image, middle = super().image(word, nodes, params), np.asarray(self.middle(params))
         if middle.any():
-            image[..., 1] += np.where(codes < 2, 0.0, 2.0 * middle[..., np.newaxis])
+            hits = word.codes[: nodes.shape[-2]] < 2
+            image[..., 1] += np.where(hits, 0.0, 2.0 * middle[..., np.newaxis])
         return image
 
     @classmethod

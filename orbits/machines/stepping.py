@@ -166,3 +166,8 @@ class Stepper(ABC):
         out = np.empty((len(states), 4))
         self.sample(states, params, np.zeros(len(states)), out)
         return out[:, 3]
+
+
+def buffers(engine: Stepper, size: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Empty event arrays for `size` events."""
+    return np.empty(size, np.int8), np.empty(size, np.int8), np.empty((size, engine.row))

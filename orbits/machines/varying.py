@@ -151,6 +151,12 @@ class Varying:
         """The position about which mirror images are taken."""
         return 0.0
 
+    def image(self, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
+        """Nodes (..., L, n) of the first events of a word mirrored, at the same phases or with the same durations."""
+        image = -nodes
+        image[..., 0] = nodes[..., 0]
+        return image
+
     def natural_units(self, params: np.ndarray) -> tuple[float, float]:
         """A length and a rate of the machine's own size; orbits are solved for in these, so that no unit makes a difference.
 

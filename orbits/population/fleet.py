@@ -240,8 +240,8 @@ class Fleet:
 
     def _equilibrium(self, run: Trajectory) -> tuple[Problem | None, np.ndarray | None]:
         """The solution near the end of a self-excited motion without events; None where none is known."""
+        from orbits.flows.page.simulator import PageTrajectory
         from orbits.flows.page.smooth import rest_near
-        from orbits.simulation.page import PageTrajectory
 
         if not isinstance(run, PageTrajectory):
             return None, None

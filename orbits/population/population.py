@@ -10,14 +10,13 @@ import numpy as np
 from contvines.shared.even_points import low_discrepancy
 from contvines.shared.motions import Motion
 from contvines.shared.near_names import no_parameter
-from orbits.flows.catalogue import flow_of
+from orbits.flows.catalogue import flow_of, simulator_of
 from orbits.flows.protocol import SimulationError, Simulator
 from orbits.machines.base import Model
 from orbits.machines.measures import STARTS
 from orbits.orbit import Orbit
 from orbits.population.fleet import SOLVED, Fleet, Problem, distinct
 from orbits.problem import rebuild
-from orbits.simulation.runs import simulator_of
 
 if TYPE_CHECKING:
     from orbits.machines.varying import Varying
@@ -187,7 +186,7 @@ class Population:
         return distinct(self._closed(p), self.parameter, p)
 
     def _closed(self, p: float) -> Iterable[Orbit]:
-        from orbits.starts.closed import closed_orbits
+        from orbits.starts.find import closed_orbits
 
         model = self.model
         return closed_orbits(model, self.vector(p), Orbit) if isinstance(model, Model) else ()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from contvines.shared.near_names import no_parameter
-from orbits.cycles.identity import root_orbit
+from orbits.cycles.cycle import root_orbit
 from orbits.flows.catalogue import flow_of
 from orbits.proofs.balls import Given, decimal
 from orbits.proofs.checks import check_symmetry, motif_of

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from contvines.shared.on_demand import on_demand
 
 if TYPE_CHECKING:
+    from orbits.flows.native.trajectory import Balance, Samples
     from orbits.flows.protocol import SimulationError
     from orbits.flows.trajectory import Trajectory
-    from orbits.simulation.native_trajectory import Balance, Samples
     from orbits.simulation.replaying import Replay, replay
     from orbits.simulation.runs import simulate
 
@@ -32,6 +32,6 @@ __getattr__ = on_demand(
         "simulate": "orbits.simulation.runs",
         **dict.fromkeys(("Replay", "replay"), "orbits.simulation.replaying"),
         "Trajectory": "orbits.flows.trajectory",
-        **dict.fromkeys(("Balance", "Samples"), "orbits.simulation.native_trajectory"),
+        **dict.fromkeys(("Balance", "Samples"), "orbits.flows.native.trajectory"),
     },
 )

@@ -1,26 +1,38 @@
-"""Replay: does the simulator, which knows no word, follow a claimed periodic orbit?
+"""Replay: does the simulator, which knows no word, follow a claimed periodic orbit, and how far does it leave it?
 
-Nothing here knows the equations that continuation solves, so it can check them. Derivatives are central differences of the simulated return map,
-from one of the orbit's events to itself.
+Nothing here knows the equations that continuation solves, so it can check them. `replay` says all that a simulation tells of an orbit of a
+forced machine; its derivatives are central differences of the simulated return map, from one of the orbit's events to itself. `deviation` is
+one number for any orbit: by events where they are distinct, by positions at a border. There two events coincide or one has no strength, so
+that the event list of the simulation is a matter of rounding; the motion itself is not.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, TURN
-from orbits.flows.catalogue import flow_of
+from orbits.flows.catalogue import flow_of, simulator_of
 from orbits.flows.protocol import Motion, SimulationError, Simulator
-from orbits.flows.trajectory import TWO_PI
+from orbits.flows.trajectory import TWO_PI, Trajectory
 from orbits.numbers import SMALLEST
 from orbits.settings import REPLAYING, SIMULATING
-from orbits.simulation.runs import simulator_of
 from orbits.words import Word
+from orbits.words.alphabet import Watch
 
 LONGEST = 200_000.0  # forcing periods that are waited for
+BACKWARD = (
+    -TWO_PI * np.finfo(float).eps ** 0.5
+)  # what vanishes at a border like a root has half of the digits: rounding of a flight's duration
+STRETCHES = 32  # at most so many starts
+POINTS = 400  # instants of a period at which positions are compared
+
+Known = Callable[[], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -49,7 +61,7 @@ class Replay:
 
     error: float
     message: str
-    multipliers: np.ndarray
+    multipliers: np.ndarray = field(default_factory=lambda: np.empty(0, complex))
     tracked: int = 0
     expected: float = np.inf
     returned: bool | None = None
@@ -62,15 +74,140 @@ class Replay:
 
 
 class Round(NamedTuple):
-    """Events after the first node, up to and including its return.
+    """A run from the first event of a cycle on: None where there is none; `message` is "" or says what went otherwise than listed."""
 
-    nodes : shape (n, NODE); message : "" or what went otherwise than listed.
-    """
-
-    nodes: np.ndarray
+    run: Trajectory | None
     message: str
 
 
+def go_round(
+    simulator: Simulator, word: Word, node: np.ndarray, wanted: int, periods: float = math.inf
+) -> Round:
+    """Start exactly at the first event of a cycle, of which `node` is the node, and run through `wanted` more events: 1 ... n-1, the return to
+    event 0, and so on. `periods` is the longest run."""
+    try:
+        simulator.begin(word, node)
+        run = simulator.run(periods, wanted)
+    except SimulationError as error:
+        return Round(None, str(error))
+    n = len(word)
+    listed = [(word.events[i % n], word.modes[i % n]) for i in range(1, wanted + 1)]
+    for i, (seen, said) in enumerate(zip(run.occurrences, listed)):
+        if seen[0] != said[0]:
+            return Round(run, f"event {i + 1} is {seen[0]}, listed was {said[0]}")
+        if seen[1] != said[1]:
+            return Round(run, f"event {i + 1} ({seen[0]}) leads into mode {seen[1]}, listed was {said[1]}")
+    if len(run) < wanted:
+        return Round(run, f"after {len(run)} events {run.reason}, where {listed[len(run)][0]} was listed")
+    return Round(run, "")
+
+
+# ---------------------------------------------------------------------- one number
+def deviation(orbit: Motion, known: Known) -> float:
+    """Largest deviation of the simulation over one period of an orbit; `known` tells its margins and multipliers, if that matters.
+
+    Times and states are compared, event by event. At a border, where rounding alone makes events appear or vanish, and on very
+    unstable orbits positions are compared at many instants as well, stretch by stretch, and the smaller
+    deviation counts. Where rounding grows within a period until the events differ, though multipliers are small, each event is
+    reached from the one before. Infinite if the simulation does something else. Lengths and speeds count in units of the machine's own size.
+    """
+    if np.any(orbit.durations < BACKWARD):
+        return math.inf
+    if not len(orbit.word):
+        return by_positions(orbit, known)
+    error = by_events(orbit)
+    if error < REPLAYING.agreed:
+        return error
+    if not math.isfinite(error):
+        margins, multipliers = known()
+        if not (np.any(np.abs(margins) < REPLAYING.close) or np.any(np.abs(multipliers) > REPLAYING.wild)):
+            return max(by_events(orbit, place, 1) for place in range(len(orbit.word)))
+    return min(error, by_positions(orbit, known))
+
+
+def by_events(orbit: Motion, first: int = 0, count: int | None = None) -> float:
+    """Largest difference of the times and states of so many events (all of a period) after one at which the simulation starts; infinite if they are others."""
+    wanted = count or len(orbit.word)
+    longest = 2.0 * float(orbit.durations.sum()) / TWO_PI + 1.0
+    simulator, word = simulator_of(orbit.model, orbit.params), orbit.word.rotate(first)
+    run, message = go_round(simulator, word, orbit.nodes[first], wanted, longest)
+    if run is None or message:
+        return math.inf
+    late = run.clocks[1:] - run.clocks[0] - np.cumsum(np.roll(orbit.durations, -first)[:wanted])
+    apart = run.points - np.roll(flow_of(orbit.model).points(orbit), -first - 1, axis=0)[:wanted]
+    length, rate = orbit.model.natural_units(orbit.params)
+    return float(max(np.abs(late).max(), np.abs(apart).max() / max(1.0, length, length * rate)))
+
+
+def by_positions(orbit: Motion, known: Known) -> float:
+    """Largest difference of the positions at many instants of a period.
+
+    The simulation is started at every definite event and followed to the next one: an impact of vanishing speed has
+    infinite derivatives, and a very unstable orbit large ones, so that rounding would grow out of bounds over a period.
+    """
+    n, model, flow = len(orbit.word), orbit.model, flow_of(orbit.model)
+    motion, names = flow.sample(orbit, POINTS), flow.coordinates(model)
+    columns = _positions(orbit)
+    claimed = np.tile(np.column_stack([motion[names[k]] for k in columns]), (2, 1))
+    clock = motion["phase"] if model.forced else motion["time"]
+    clock = np.append(clock, clock + orbit.durations.sum() if n else clock)
+    first = np.searchsorted(motion["segment"], np.arange(max(n, 1) + 1))
+    first = np.append(first[:-1], first + len(motion["segment"]))  # twice through the cycle
+    places = _definite(orbit, known()[0]) if n else [0]
+    simulator, worst = simulator_of(model, orbit.params), 0.0
+    for place, end in zip(places, [*places[1:], places[0] + max(n, 1)]):
+        part = slice(first[place], first[end])
+        since = np.maximum(
+            clock[part] - clock[part][0], 0.0
+        )  # a segment of no length may end before it begins
+        if n:
+            begin = partial(simulator.begin, orbit.word.rotate(place), orbit.nodes[place])
+        else:
+            here = np.array([motion[name][0] for name in names])
+            begin = partial(simulator.start, here, float(clock[0]) / TWO_PI)
+        worst = max(worst, _apart(simulator, begin, since, claimed[part], columns, 100 * n + 1000))
+    return worst / model.natural_units(orbit.params)[0]
+
+
+def _positions(orbit: Motion) -> list[int]:
+    """The places of positions among the coordinates."""
+    return [entry - 1 for entry in flow_of(orbit.model).position_entries(orbit.model)]
+
+
+def _apart(
+    simulator: Simulator,
+    begin: Callable[[], None],
+    since: np.ndarray,
+    claimed: np.ndarray,
+    columns: list[int],
+    most: int,
+) -> float:
+    """Largest difference of the positions, shape (m, c), from those claimed so long (clock) after a beginning; infinite where it does not go on for so long."""
+    try:
+        begin()
+        begun = simulator.time
+        run = simulator.run(float(since[-1]) / TWO_PI + SIMULATING.whole, most)
+        there = run.coordinates(begun + since / TWO_PI)[:, columns]
+    except (SimulationError, ValueError):
+        return math.inf
+    return float(np.abs(there - claimed).max())
+
+
+def _definite(orbit: Motion, margins: np.ndarray) -> list[int]:
+    """Events of some strength, between flights that are not short; all between such flights where every impact is soft."""
+    n, columns = len(orbit.word), orbit.word.alphabet.columns
+    strong = np.resize(margins[columns.index(Watch.STRENGTH) :: len(columns)], n) > REPLAYING.definite
+    long = np.minimum(orbit.durations, np.roll(orbit.durations, 1)) > REPLAYING.close
+    hits = np.array([orbit.word.letter(i).kind == HIT for i in range(n)])
+    if not strong[hits].any():
+        strong = strong | hits.any()
+    places = np.flatnonzero(strong & long)
+    if not places.size:
+        places = np.flatnonzero(long) if long.any() else np.arange(n)
+    return places[:: -(-len(places) // STRETCHES)].tolist()
+
+
+# ---------------------------------------------------------------------- all that a simulation tells
 def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
     """Replay an orbit of a forced machine: start exactly at its first node and compare events and nodes over one period.
 
@@ -88,22 +225,19 @@ def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
     -------
     Replay
     """
-    nothing = np.empty(0, complex)
     simulator, word, nodes = simulator_of(orbit.model, orbit.params), orbit.word, orbit.nodes
     if not len(word):
         return _without_events(simulator, orbit)
-    there = go_round(simulator, word, nodes[0])
-    if there.message:
-        return Replay(np.inf, there.message, nothing, motion=_motion(simulator, orbit))
-    error = float(np.abs(there.nodes - _following(nodes, orbit.periods)).max())
+    run, message = go_round(simulator, word, nodes[0], len(word))
+    if run is None or message:
+        return Replay(np.inf, message, motion=_motion(simulator, orbit))
+    error = float(np.abs(run.nodes - _following(nodes, orbit.periods)).max())
     if not thorough:
-        return Replay(error, "", nothing)
+        return Replay(error, "")
     word, nodes = _from_freest(word, nodes, orbit.periods)
     matrix = monodromy(simulator, word, nodes[0])
     if matrix is None:
-        return Replay(
-            error, "the return map is not smooth here: a displaced start takes other events", nothing
-        )
+        return Replay(error, "the return map is not smooth here: a displaced start takes other events")
     multipliers = np.linalg.eigvals(matrix).astype(complex)
     free = len(flow_of(orbit.model).loose(orbit.model, word))  # such a motion may be moved as a whole
     growth = float(np.sort(np.abs(multipliers))[::-1][free])
@@ -116,46 +250,15 @@ def replay(orbit: Motion, *, thorough: bool = False, most: int = 200) -> Replay:
 
 def _without_events(simulator: Simulator, orbit: Motion) -> Replay:
     """A period without an event; the absorber must not slip."""
-    model, params, nothing = orbit.model, orbit.params, np.empty(0, complex)
+    model, params = orbit.model, orbit.params
     if model.in_cavity:
         held = model.rest.reserve(params, model.rest.solved(params)) >= 0.0
-        return (
-            Replay(0.0, "", nothing)
-            if held
-            else Replay(np.inf, "friction does not hold the absorber", nothing)
-        )
+        return Replay(0.0, "") if held else Replay(np.inf, "friction does not hold the absorber")
     simulator.begin(orbit.word, orbit.nodes[0])
     run = simulator.run(orbit.periods, 1)
     if len(run):
-        return Replay(np.inf, f"event 1 is {run.letters[0]}, none was listed", nothing)
-    return Replay(float(np.abs(simulator.point - orbit.nodes[0, 1:]).max()), "", nothing)
-
-
-def go_round(simulator: Simulator, word: Word, node: np.ndarray, times: int = 1) -> Round:
-    """Start exactly at the first event of a cycle, of which `node` is the node, and simulate it `times` times.
-
-    Returns
-    -------
-    Round
-        `nodes` has shape (times * n, NODE): events 1 ... n-1, the return to event 0, and so on.
-    """
-    wanted = times * len(word)
-    try:
-        simulator.begin(word, node)
-        run = simulator.run(np.inf, wanted)
-    except SimulationError as error:
-        return Round(np.empty((0, len(node))), str(error))
-    listed = (*zip(word.events[1:], word.modes[1:]), (word.events[0], word.modes[0])) * times
-    for i, (seen, said) in enumerate(zip(run.occurrences, listed)):
-        if seen[0] != said[0]:
-            return Round(run.nodes[: i + 1], f"event {i + 1} is {seen[0]}, listed was {said[0]}")
-        if seen[1] != said[1]:
-            leads = f"event {i + 1} ({seen[0]}) leads into mode {seen[1]}, listed was {said[1]}"
-            return Round(run.nodes[: i + 1], leads)
-    if len(run) < wanted:
-        missing = listed[len(run)][0]
-        return Round(run.nodes, f"after {len(run)} events {run.reason}, where {missing} was listed")
-    return Round(run.nodes, "")
+        return Replay(np.inf, f"event 1 is {run.letters[0]}, none was listed")
+    return Replay(float(np.abs(simulator.point - orbit.nodes[0, 1:]).max()), "")
 
 
 def monodromy(
@@ -191,10 +294,10 @@ def _slope(simulator: Simulator, word: Word, node: np.ndarray, j: int, size: flo
     for sign in (1.0, -1.0):
         moved = np.array(node, dtype=float)
         moved[j] += sign * size
-        there = go_round(simulator, word, moved)
-        if there.message:
+        run, message = go_round(simulator, word, moved, len(word))
+        if run is None or message:
             return None
-        ends.append(there.nodes[-1])
+        ends.append(run.nodes[-1])
     return (ends[0] - ends[1]) / (2.0 * size)
 
 
@@ -207,19 +310,15 @@ def _following(nodes: np.ndarray, periods: int) -> np.ndarray:
 
 def _motion(simulator: Simulator, orbit: Motion) -> float:
     """Largest difference of the positions at the phases of the nodes, the return of the first included."""
-    flow, phases = flow_of(orbit.model), orbit.nodes[:, 0]
-    last = phases[0] + TWO_PI * orbit.periods
-    if phases.min() < phases[0] or phases.max() > last:
+    since = np.append(orbit.nodes[:, 0] - orbit.nodes[0, 0], TWO_PI * orbit.periods)
+    if since.min() < 0.0 or since.max() > since[-1]:
         return np.inf  # time does not run forward through these nodes
-    columns = [entry - 1 for entry in flow.position_entries(orbit.model)]
-    claimed = flow.points(orbit)[:, columns]
-    try:
-        simulator.begin(orbit.word, orbit.nodes[0])
-        run = simulator.run(orbit.periods, 100 * len(orbit.word) + 1000)
-        seen = run.coordinates(np.append(phases, last) / TWO_PI)[:, columns]
-    except (SimulationError, ValueError):
-        return np.inf
-    return float(np.abs(seen - np.concatenate([claimed, claimed[:1]])).max())
+    columns, word = _positions(orbit), orbit.word
+    claimed = flow_of(orbit.model).points(orbit)[:, columns]
+    begin = partial(simulator.begin, word, orbit.nodes[0])
+    return _apart(
+        simulator, begin, since, np.append(claimed, claimed[:1], axis=0), columns, 100 * len(word) + 1000
+    )
 
 
 def _from_freest(word: Word, nodes: np.ndarray, periods: int) -> tuple[Word, np.ndarray]:
@@ -233,14 +332,16 @@ def _from_freest(word: Word, nodes: np.ndarray, periods: int) -> tuple[Word, np.
 
 
 def _tracked(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, wanted: int) -> int:
-    there = go_round(simulator, word, nodes[0], wanted)
+    """Of so many rounds that are simulated those that stay with the orbit."""
     n, claimed = len(word), _following(nodes, periods)
-    for c in range(len(there.nodes) // n):
-        piece = there.nodes[c * n : (c + 1) * n].copy()
+    run = go_round(simulator, word, nodes[0], wanted * n).run
+    found = nodes[:0] if run is None else run.nodes
+    for c in range(len(found) // n):
+        piece = found[c * n : (c + 1) * n].copy()
         piece[:, 0] -= TWO_PI * periods * c
         if np.abs(piece - claimed).max() > REPLAYING.loss:
             return c
-    return len(there.nodes) // n
+    return len(found) // n
 
 
 def _returns(simulator: Simulator, word: Word, nodes: np.ndarray, periods: int, growth: float) -> bool:

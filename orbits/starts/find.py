@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from orbits.cycles.deviation import BACKWARD
 from orbits.flows.catalogue import flow_of
+from orbits.flows.equations import solved_nodes
 from orbits.flows.protocol import SimulationError
-from orbits.flows.solving import solved_nodes
 from orbits.orbit import Orbit
+from orbits.simulation.replaying import BACKWARD
+from orbits.words import Word, WordError
 
 if TYPE_CHECKING:
+    from orbits.machines.base import Model
     from orbits.machines.varying import Varying
-    from orbits.words import Word
+
 
 NEARBY = 0.1  # residual of a guess that may be read from another event than its word
 BETTER = 0.1  # part of the residual with which another reading is believed
@@ -116,12 +119,7 @@ def find(
         nodes = check_guess(reading, model.node_names, guess)
         centred(model, reading, nodes)
         if reading.alphabet.alone is not None:
-            from orbits.starts.reading import DirectionError, directed
-
-            try:
-                reading = directed(word, reading, nodes)
-            except DirectionError as error:
-                raise StartError(str(error)) from None
+            reading = directed(word, reading, nodes)
         orbit = _from_guess(Orbit(model, reading, periods, nodes, params))
         if orbit is not None:
             _warn_virtual(orbit)
@@ -177,7 +175,6 @@ def centred(model: Varying, word: Word, nodes: np.ndarray) -> None:
 def _from_guess(first: Orbit) -> Orbit | None:
     """Newton's method from a guess of the nodes; they may begin at another event, or be those of the mirror image."""
     mirrored = first.model.has_mirror(first.params, first.model.default_parameter)
-    from orbits.starts.reading import readings
 
     others = [replace(first, word=reading) for reading in readings(first.word, mirrored)]
     better = [orbit for orbit in others if orbit.residual < min(NEARBY, BETTER * first.residual)]
@@ -308,3 +305,87 @@ def _random(model: Varying, word: Word, periods: int, params: np.ndarray) -> Orb
             return orbit
         fallback = fallback or orbit
     return fallback
+
+
+def directed(text: str | Word, reading: Word, nodes: np.ndarray) -> Word:
+    """The word with the directions of the guess, where its letters leave them open.
+
+    Parameters
+    ----------
+    text : str or Word
+        As it was given.
+    reading : Word
+        The same, directions that nothing fixes taken by default.
+    nodes : float array (L, n)
+        The guess: (Psi, B+) at impacts and (Psi, w) elsewhere.
+
+    Raises
+    ------
+    StartError
+        If directions are stated, with ``s+`` or ``s-``, and the guess goes the other way.
+    """
+    if reading.frictionless:
+        return reading
+    places = np.array(
+        [{"L": 1.0, "R": -1.0}.get(letter, w) for letter, w in zip(reading.events, nodes[:, 1])]
+    )
+    ways = np.sign(np.roll(places, -1) - places)
+    found = max((reading, *_others(reading, ways)), key=lambda word: _agreement(word, ways))
+    if found.modes == reading.modes or _agreement(found, ways) < np.count_nonzero(found.modes):
+        return reading
+    stated = not isinstance(text, str) or "+" in text or "-" in text or "−" in text
+    if stated:
+        raise StartError(
+            f"guess moves the other way than the word {reading.text!r} says: its positions w belong to {found.text!r}; "
+            "give that word, or the mirror image of the guess (w with the opposite sign, half a forcing period later)"
+        )
+    return found
+
+
+def _agreement(word: Word, ways: np.ndarray) -> float:
+    return float(np.dot(word.modes, ways))
+
+
+def _others(reading: Word, ways: np.ndarray) -> list[Word]:
+    """Words with the same letters whose flights go other ways."""
+    found = [reading.mirror()] if reading.impact_free else []
+    slips = [
+        f"{letter}{'+' if way > 0.0 else '-'}" if letter == "u" and way else letter
+        for letter, way in zip(reading.events, ways)
+    ]
+    with suppress(WordError):
+        found.append(Word.parse("".join(slips)))
+    return found
+
+
+def readings(word: Word, mirror: bool) -> list[Word]:
+    """The other rotations of a word, and those of its mirror image, each once."""
+    images = (word, word.mirror()) if mirror else (word,)
+    found: list[Word] = []
+    for image in images:
+        for place in range(len(word)):
+            turned = image.rotate(place)
+            if turned != word and turned not in found:
+                found.append(turned)
+    return found
+
+
+def closed_orbits(model: Model, params: np.ndarray, made: type[Orbit]) -> Iterator[Orbit]:
+    """The real ones among rest and the orbits of `Model.closed_words`, stable or not.
+
+    Parameters
+    ----------
+    model : Model
+    params : float array (P,)
+    made : type
+        Of what is yielded: a kind of `orbits.orbit.Orbit`.
+    """
+    rest = made.at_rest(model, params)
+    if rest.real:
+        yield rest
+    for text in model.closed_words:
+        word = Word.parse(text, frictionless=model.frictionless(params))
+        for nodes in model.start_nodes(word, 1, params):
+            orbit = polish(made(model, word, 1, nodes, params))
+            if orbit is not None and orbit.real:
+                yield orbit

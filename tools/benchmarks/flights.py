@@ -6,9 +6,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from orbits import Absorber
+from orbits.flows.native.simulator import first_state
 from orbits.machines.coupled import Coupled
 from orbits.machines.native_stepper import stepper as machine
-from orbits.simulation.driver import buffers, first_state
+from orbits.machines.stepping import buffers
 
 from .floor import PLAIN, library
 

@@ -3,10 +3,10 @@
 import numpy as np
 
 from orbits import Absorber
+from orbits.flows.native.batches import Settling
+from orbits.flows.native.simulator import skip
 from orbits.machines.native_stepper import stepper as machine
 from orbits.machines.stepping import PSI, RATE, TURNS, V, W
-from orbits.simulation.batches import Settling
-from orbits.simulation.driver import skip
 
 PERIODS = 100  # forcing periods of a start at amplitude 0.6, where the motion hits twice in each: 200 impacts
 AMPLITUDE = 0.6

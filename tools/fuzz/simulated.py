@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from orbits.attractors import find_attractor
+from orbits.flows.catalogue import simulator_of
 from orbits.flows.protocol import SimulationError
 from orbits.simulation import replay
 from orbits.simulation.replaying import monodromy
-from orbits.simulation.runs import simulator_of
 from orbits.starts.find import polish
 from tools.fuzz.between import Between
 from tools.fuzz.many_digits import exact

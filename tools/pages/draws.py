@@ -12,8 +12,8 @@ import numpy as np
 
 import contvines as cv
 from orbits.contacts.letters import HOLD, RELEASE
+from orbits.flows.page.simulator import collect, outside
 from orbits.flows.page.stepper import TWO_PI, SimulationError, Stepper
-from orbits.simulation.page import collect, outside
 from tools.pages.pages import page
 
 # parameters that are drawn, uniformly; the others stay as the page has them

@@ -1,54 +1,53 @@
-"""The equations of the cycles with one word: what the compiled kernels need, and how unknowns and nodes go together.
+"""The equations of the built-in machines' cycles: what the compiled kernels need, or their reference in plain Python and numpy.
 
-A symmetric cycle is solved for on half its word, closed by the mirror. The empty word has linear equations of its own
-(`orbits.flows.native.rest_equations`), with the same members.
+The empty word has linear equations of its own (`orbits.flows.native.rest_equations`).
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from orbits.arguments import Workspace, cycle_data, workspace
-from orbits.flows.against import Against
-from orbits.flows.native.kernels import assemble
-from orbits.flows.protocol import PLAIN, Approach
+from contvines.core.table import TableKernels, native_table
+from orbits.arguments import Workspace, cycle_data, jacobian, workspace
+from orbits.flows.equations import PLAIN, Approach, Equations
 from orbits.machines.base import Model
+from orbits.machines.native_stepper import number
 from orbits.words import Word
 from orbits.words.alphabet import LEFT
 
 if TYPE_CHECKING:
-    from orbits.flows.native.kernels import NativeKernels
     from orbits.flows.native.reference_kernels import ReferenceKernels
-    from orbits.flows.native.rest_equations import RestEquations
 
 _shared = lru_cache(maxsize=64)(workspace)
 
 
-class Equations(Against[Model]):
-    """Closed chains of elementary maps, against one parameter.
+class NativeKernels(TableKernels):
+    """Cycles of one model, in the native core. Both cores work on the same data and arrays (`orbits.arguments`)."""
 
-    Attributes
-    ----------
-    length : int
-        Number of nodes that are unknown; half the word's if `symmetric`.
-    dimension, n_multipliers, n_margins : int
-    twist, shift : float
-        Closure: the first node returns with its phase plus `shift` and all else times `twist`.
-    movable : bool
-        Whether solutions may be shifted as a whole; of those that are not symmetric the mean position is pinned.
-    units : (float, float)
-        Length and rate in which the unknowns are counted; see `Model.natural_units`.
-    data : CycleData
-        First argument of the kernels.
+    natural = True
+    matrix = staticmethod(jacobian)
 
-    Raises
-    ------
-    ValueError
-        If the parameter is unknown, or `symmetric` is asked where there is no symmetry.
-    """
+
+@cache
+def _assembled(name: str, machine: int | None) -> NativeKernels | ReferenceKernels:
+    if machine is not None:
+        return NativeKernels(native_table("core_machine_table", machine))
+    from orbits.flows.native.reference_kernels import ReferenceKernels
+    from orbits.machines.reference.machine import reference
+
+    return ReferenceKernels(reference(name))
+
+
+def assemble(model: Model) -> NativeKernels | ReferenceKernels:
+    """The kernels for `model`, made once per process."""
+    return _assembled(model.name, number(model.name))
+
+
+class NativeEquations(Equations[Model]):
+    """Closed chains of elementary maps, against one parameter. Of motions without impacts that are not symmetric the mean position is pinned."""
 
     def __init__(
         self,
@@ -57,35 +56,22 @@ class Equations(Against[Model]):
         periods: int,
         parameter: str,
         params: np.ndarray,
-        symmetric: bool,
+        symmetric: bool = False,
         units: tuple[float, float] | None = None,
     ) -> None:
-        if symmetric and not model.has_mirror(params, parameter):
-            raise ValueError(
-                f"the model {model.name!r} has no mirror image along {parameter}, so no symmetric orbits"
-            )
-        if symmetric and not (word.mirror_symmetric_halves and periods % 2 == 1):
-            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
-        self.model, self.params, self.parameter = model, params, parameter
-        frame = _frame(_Itself(model), parameter, params.tobytes(), units)
+        super().__init__(model, word, periods, parameter, params, symmetric, len(word))
+        frame = _frame(_Itself(model), parameter, self.params.tobytes(), units)
         self.path, self.units = frame.path.copy(), frame.units
-        length = len(word) // 2 if symmetric else len(word)
-        n = model.node
-        self.length, self.dimension = length, length * n
-        self.twist = -1.0 if symmetric else 1.0
-        self.shift = np.pi * periods * (1 if symmetric else 2)
-        self.word = word
         pinned = 0 if not word.impact_free else (2 if symmetric else 1)
         self.movable = pinned == 2  # a symmetric motion without impacts
-        self.n_multipliers = n - 1 if pinned else n
-        self.n_margins = len(word.alphabet.columns) * length
-        self.period_shift = np.zeros(self.dimension)
-        self.period_shift[::n] = 2.0 * np.pi
-        self.codes = word.codes[:length]
-        self.unit = unit_nodes(word, n, self.units)
+        self.n_multipliers = model.node - 1 if pinned else model.node
+        if self.units != PLAIN:  # phases have no unit, then B or w, v and v'
+            length, rate = self.units
+            self.unit[:, 1] = np.where(word.codes < 2, length * rate, length)
+            self.unit[:, 2::2], self.unit[:, 3::2] = length, length * rate
         self.data = cycle_data(
-            self.codes,
-            word.mode_codes[:length],
+            word.codes[: self.length],
+            word.mode_codes[: self.length],
             frame.own,
             frame.path if self.units == PLAIN else frame.own_path,
             self.twist,
@@ -107,34 +93,10 @@ class Equations(Against[Model]):
         """Arrays for the kernels."""
         return workspace(self.length, self.model.node, self.params.size)
 
-    @property
+    @cached_property
     def scratch(self) -> Workspace:
         """A workspace for single calls, whose contents nobody relies on; cycles of one length share it."""
         return _shared(self.length, self.model.node, self.params.size)
-
-    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
-        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N).
-
-        The image of half a cycle is taken about the middle between the walls at the parameter values `p`, shape (...); without
-        them at the one in the parameter vector.
-        """
-        u = np.asarray(u, dtype=float)
-        nodes = u.reshape(*u.shape[:-1], self.length, self.model.node)
-        if self.units != PLAIN:
-            nodes = nodes * self.unit[: self.length]
-        if self.twist > 0.0:
-            return nodes
-        params = self.params if p is None else self.values(p)
-        image = self.model.image(self.codes, nodes, params)
-        image[..., 0] += self.shift
-        return np.concatenate([nodes, image], axis=-2)
-
-    def reduce(self, nodes: np.ndarray) -> np.ndarray:
-        """Unknowns, shape (N,), from the nodes of the whole cycle."""
-        own = np.array(nodes[: self.length], dtype=float, order="C")
-        if self.units != PLAIN:
-            own /= self.unit[: self.length]
-        return own.ravel()
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
         """Of the impact at a place; the dependence on the parameter from a difference of size `near`."""
@@ -154,7 +116,7 @@ class Equations(Against[Model]):
             sign * (float(u[place * n + 1]) - cavity), by_node, -sign * (beside - cavity) / near, push
         )
 
-    def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray] | None:
+    def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of each flight's equations by the node before it and after it, the mirror in the last."""
         row = np.empty(2 * self.n_multipliers + self.n_margins)
         self.kernels.examine(self.data, u, p, self.scratch, row)
@@ -203,31 +165,3 @@ def _frame(itself: _Itself, parameter: str, values: bytes, units: tuple[float, f
         law[0] /= factors
     amounts = np.array(model.amounts(params), dtype=float)
     return _Frame(path, units, own, own_path, model.place_of(parameter), amounts, law)
-
-
-def unit_nodes(word: Word, node: int, units: tuple[float, float]) -> np.ndarray:
-    """What one dimensionless node is, shape (L, n): phases have no unit, then B or w, v and v'."""
-    length, rate = units
-    unit = np.ones((len(word), node))
-    if units == PLAIN:
-        return unit
-    unit[:, 1] = np.where([letter in "LR" for letter in word.events], length * rate, length)
-    unit[:, 2::2], unit[:, 3::2] = length, length * rate
-    return unit
-
-
-def equations(
-    model: Model,
-    word: Word,
-    periods: int,
-    parameter: str,
-    params: np.ndarray,
-    symmetric: bool = False,
-    units: tuple[float, float] | None = None,
-) -> Equations | RestEquations:
-    """The equations of the cycles with this word."""
-    if not len(word):
-        from orbits.flows.native.rest_equations import RestEquations
-
-        return RestEquations(model, parameter, params)
-    return Equations(model, word, int(periods), parameter, params, symmetric, units)

@@ -2,32 +2,40 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import math
+from typing import Any
 
 import numpy as np
 
+from contvines.core.library import NOTHING, NUMBER, POINTER, WHOLE, address, function
 from contvines.shared.motions import BAND, SILENT
-from orbits.flows.native import cycle_equations, measures, sampling, vanishing
-from orbits.flows.protocol import Census, Motion
+from orbits.contacts.dry_friction import STUCK
+from orbits.contacts.letters import HIT, SLIP, Change, Site
+from orbits.flows.equations import Equations
+from orbits.flows.native import measures
+from orbits.flows.native.cycle_equations import NativeEquations
+from orbits.flows.native.measures import gauged
+from orbits.flows.protocol import Census, Flow, Motion, Vanishing
 from orbits.machines.base import Model
 from orbits.machines.events import events_of
-from orbits.settings import SIMULATING
+from orbits.machines.native_stepper import bytes_of, floats, number, stepper
+from orbits.settings import EVENTS, GROWING, SIMULATING
 from orbits.words import Word
+from orbits.words.alphabet import FLOOR, LEFT, RIGHT, Watch
+from orbits.words.margins import place_of
 
-if TYPE_CHECKING:
-    pass
+FLIGHT = 0  # column of the margin that watches a flight
+GRID = np.arange(41.0)  # places of a bracket in which a flight's slowest one is looked for
 
 
-class NativeFlow:
+class NativeFlow(Flow[Model]):
     """See `orbits.flows.protocol`; a node is (Psi, B+) at an impact, (Psi, w) elsewhere, and what the machine adds."""
 
     angles = measures.ANGLES
-    points, sample = staticmethod(sampling.points), staticmethod(sampling.sample)
-    equations = staticmethod(cycle_equations.equations)
-    in_units, measures = staticmethod(measures.gauged), staticmethod(measures.measure)
-    placed, vanishing = staticmethod(vanishing.placed), staticmethod(vanishing.vanishing)
     closed_form = True
     resolution = SIMULATING.one  # two borders whose values agree to 1e-12 may be 5e-6 apart
+    seconds = "tau"
+    measures = staticmethod(measures.measure)
 
     def census(self, model: Model) -> Census:
         """Many at once, in closed form."""
@@ -35,23 +43,36 @@ class NativeFlow:
 
     def coordinates(self, model: Model) -> tuple[str, ...]:
         """Position and velocity in the cavity, and of a machine with an oscillator those of the centre of mass."""
-        return ("w", "w_rate", "v", "v_rate") if model.moving_cavity else ("w", "w_rate")
+        return stepper(model.name).coordinates
 
     def position_entries(self, model: Model) -> tuple[int, ...]:
         """w."""
         return (1,)
 
+    def points(self, motion: Motion[Model]) -> np.ndarray:
+        """w, w' (, v, v')."""
+        return self._states(motion)[:, list(stepper(motion.model.name).places)]
+
+    def equations(
+        self,
+        model: Model,
+        word: Word,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool = False,
+        units: tuple[float, float] | None = None,
+    ) -> Equations:
+        """Those of the absorber at rest are linear."""
+        if len(word):
+            return NativeEquations(model, word, periods, parameter, params, symmetric, units)
+        from orbits.flows.native.rest_equations import RestEquations
+
+        return RestEquations(model, parameter, params)
+
     def loose(self, model: Model, word: Word) -> tuple[int, ...]:
         """The position, where no wall is hit."""
         return (1,) if word.impact_free and len(word) else ()
-
-    def positions(self, motion: Motion[Model], instants: int) -> np.ndarray:
-        """w; see `orbits.flows.native.sampling.positions`."""
-        return sampling.positions(motion, instants)[:, None]
-
-    def image(self, motion: Motion[Model]) -> np.ndarray:
-        """Mirrored about the middle between the walls."""
-        return motion.model.image(motion.word.codes, motion.nodes, motion.params)
 
     def strobed(self, motion: Motion[Model]) -> np.ndarray:
         """Nothing to be seen: at rest there are no unknowns."""
@@ -73,6 +94,10 @@ class NativeFlow:
     def swept(self, model: Model) -> tuple[str, ...]:
         """As the machine says."""
         return (model.default_measure,)
+
+    def in_units(self, model: Model, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
+        """Those of a machine that has some."""
+        return gauged(model, params, values)
 
     def described(self, motion: Motion[Model]) -> dict[str, Any]:
         """Velocities and positions at the events, in the units that are shown."""
@@ -103,3 +128,154 @@ class NativeFlow:
 
     def without_events(self, motion: Motion[Model]) -> None:
         """That is the absorber at rest, whose border has rules of its own."""
+
+    # ------------------------------------------------------------------ between the events
+    def _states(self, motion: Motion[Model]) -> np.ndarray:
+        """The stepper's states just after the events, shape (L, S)."""
+        word, engine = motion.word, stepper(motion.model.name)
+        return engine.states_of(motion.params, word.codes, word.mode_codes, motion.nodes)
+
+    def flown(self, motion: Motion[Model], places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+        """w, w', v, v', shape (m, 4)."""
+        out = np.empty((len(ahead), 4))
+        stepper(motion.model.name).sample(self._states(motion)[places], motion.params, ahead, out)
+        return out
+
+    def columns(self, motion: Motion[Model], table: np.ndarray) -> dict[str, np.ndarray]:
+        """The absolute positions ``cavity`` (q1) and ``absorber`` (q2) as well, in units of b."""
+        w, w_rate, v, v_rate = table.T
+        cavity, absorber = motion.model.bodies(w, v, motion.params)
+        return {
+            "w": w,
+            "w_rate": w_rate,
+            "v": v,
+            "v_rate": v_rate,
+            "cavity": cavity,
+            "absorber": absorber,
+        }
+
+    def sample(self, motion: Motion[Model], points: int = 400) -> dict[str, np.ndarray]:
+        """Of the absorber at rest, which rides with its cavity, at equal phases."""
+        if len(motion.word):
+            return super().sample(motion, points)
+        phase = np.linspace(0.0, 2.0 * np.pi, points)
+        rest = motion.model.rest
+        v, v_rate = rest.cavity_motion(motion.params, rest.solved(motion.params), phase)
+        nothing = np.zeros_like(phase)
+        return {
+            self.seconds: phase / motion.model.phase_speed(motion.params),
+            "phase": phase,
+            **self.columns(motion, np.array([nothing, nothing, v, v_rate]).T),
+            "segment": np.zeros(points, int),
+        }
+
+    def positions(self, motion: Motion[Model], instants: int) -> np.ndarray:
+        """w; in the native core, if there is one."""
+        machine, count = number(motion.model.name), instants * motion.periods
+        if not len(motion.nodes):
+            return np.zeros((count, 1))
+        if machine is None:
+            return super().positions(motion, instants)
+        left, right = motion.model.walls(motion.params)
+        codes, modes = bytes_of(motion.word.codes), bytes_of(motion.word.mode_codes)
+        nodes, params, w = floats(motion.nodes), floats(motion.params), np.empty((count, 1))
+        work = function(
+            "simulation_positions", NOTHING, WHOLE, POINTER, WHOLE, POINTER, POINTER, POINTER, NUMBER, NUMBER, NUMBER, WHOLE, POINTER
+        )  # fmt: skip
+        events, length = (address(codes), address(modes), address(nodes)), 2.0 * np.pi * motion.periods
+        work(machine, address(params), len(codes), *events, left, right, length, count, address(w))
+        return w
+
+    def _flight(self, motion: Motion[Model], place: int, ahead: np.ndarray) -> np.ndarray:
+        """w, w', v, v' so long after event `place`, shape (m, 4)."""
+        return self.flown(motion, np.full(len(ahead), place), ahead)
+
+    # ------------------------------------------------------------------ at borders
+    def vanishing(self, motion: Motion[Model], index: int, unit: int) -> Vanishing | None:
+        """What vanishes with margin `index` of a border orbit, over its whole cycle."""
+        word = motion.word
+        place, watched = place_of(word, index)
+        in_flight = index % len(word.alphabet.columns) == FLIGHT
+        site = Site(word, place, motion.durations, unit)
+        if word.frictionless and in_flight:
+            soft = self._soft(motion, place)
+            if soft is not None:
+                return Vanishing(site._replace(place=soft), Watch.STRENGTH)
+            ahead = np.linspace(0.0, float(motion.durations[place]), 20002)[1:-1]
+            return self._touching(motion, site, ahead)
+        if watched in (Watch.STRENGTH, Watch.DURATION):
+            return None if word.frictionless and watched == Watch.DURATION else Vanishing(site, watched)
+        if not in_flight:
+            if word.frictionless:
+                return None
+            at = place - 1 if word.letter(place).kind == SLIP else place
+            return Vanishing(site._replace(place=at, at=at), self._nearer(motion, motion.nodes[at, 1]))
+        if (
+            word.modes[place] == STUCK
+        ):  # the time to the slip jumps where the reserve of friction vanishes in the stick
+            return Vanishing(site, Watch.STRENGTH)
+        return Vanishing(site, FLOOR, self._slowest(motion, place))
+
+    def _soft(self, motion: Motion[Model], place: int) -> int | None:
+        """The event at either end of a flight that is an impact of vanishing speed."""
+        places = (place, (place + 1) % len(motion.word))
+        speed = EVENTS.touch * math.prod(motion.model.natural_units(motion.params))
+        rates = events_of(motion).rate_post
+        return next((k for k in places if abs(rates[k]) < speed), None)
+
+    def _touching(self, motion: Motion[Model], site: Site, ahead: np.ndarray) -> Vanishing | None:
+        """Where a flight that reverses freely is closest to a wall."""
+        path = self._flight(motion, site.place, ahead)
+        inner = np.flatnonzero(np.diff(np.sign(path[:, 1])) != 0)
+        if not inner.size:
+            return None
+        left, right = motion.model.walls(motion.params)
+        touch = inner[np.argmin(np.minimum(left - path[inner, 0], path[inner, 0] - right))]
+        wall = self._nearer(motion, path[touch, 0])
+        return Vanishing(site, wall, self._touch(motion, float(ahead[touch]), path[touch]))
+
+    def _slowest(self, motion: Motion[Model], place: int) -> tuple[float, np.ndarray]:
+        """Where s w' is smallest inside a flight."""
+        mode = float(motion.word.mode_codes[place])
+        ahead = np.linspace(0.0, float(motion.durations[place]), 402)[1:-1]
+        speed = mode * self._flight(motion, place, ahead)[:, 1]
+        inner = np.flatnonzero((speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])) + 1
+        k = int(inner[speed[inner].argmin()] if inner.size else speed.argmin())
+        low, high = float(ahead[max(k - 1, 0)]), float(ahead[min(k + 1, ahead.size - 1)])
+        for _ in range(6):  # finer grids round the minimum: 1/20 of the bracket each time
+            ahead = low + (high - low) / 40.0 * GRID
+            k = int((mode * self._flight(motion, place, ahead)[:, 1]).argmin())
+            low, high = float(ahead[max(k - 1, 0)]), float(ahead[min(k + 1, 40)])
+        where = 0.5 * (low + high)
+        return self._touch(motion, where, self._flight(motion, place, np.array([where]))[0])
+
+    def _touch(self, motion: Motion[Model], ahead: float, here: np.ndarray) -> tuple[float, np.ndarray]:
+        """A place in a flight as the node of an event off the walls has it: w (, v, v')."""
+        return ahead, here[[0, 2, 3]][: motion.nodes.shape[1] - 1]
+
+    def _nearer(self, motion: Motion[Model], w: float) -> int:
+        """The nearer wall."""
+        left, right = motion.model.walls(motion.params)
+        return LEFT if left - w < w - right else RIGHT
+
+    def placed(self, motion: Motion[Model], found: Vanishing, place: int, change: Change) -> np.ndarray:
+        """Where impacts are among them the second entry is B+, else w."""
+        model, word, letters = motion.model, motion.word, motion.word.alphabet.letters
+        rows = super().placed(motion, found, place, change)
+        length, rate = model.natural_units(motion.params)
+        hit_before = 0  # side of a new impact among the events so far
+        for row, text, spot in zip(rows, change.events, change.spots):
+            hit = letters[text].kind == HIT
+            side = (1 if letters[text].contact == LEFT else -1) if hit else 0
+            was = None if spot.node is None else word.letter(spot.node)
+            was_hit = was is not None and was.kind == HIT
+            if hit and not was_hit:
+                here = row if spot.node is None else motion.nodes[spot.node]
+                row[1] = model.cavity_speed(here, motion.params)[0]  # B+ = v' - w'+
+                row[1] += side * GROWING.first * length * rate
+            elif was is not None and was_hit and not hit:
+                row[1] = model.walls(motion.params)[0 if was.contact == LEFT else 1]
+            elif hit_before and not hit:
+                row[1] -= hit_before * 0.1 * GROWING.first**2 * length  # a little off the wall
+            hit_before = side
+        return rows

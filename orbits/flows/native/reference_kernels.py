@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from contvines.core.multipliers.periodic_schur import reference as multipliers
-from orbits.arguments import CycleData, Workspace
-from orbits.flows.native import rearranged
+from orbits.arguments import CycleData, Workspace, jacobian
 from orbits.flows.plain_kernels import PlainKernels
 from orbits.machines import path
 from orbits.machines.reference import maps
@@ -29,9 +28,8 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
 
     natural = True
     column = 3
-    matrix = staticmethod(rearranged.matrix)
+    matrix = staticmethod(jacobian)
     assign = staticmethod(path.assign)
-    transpose = staticmethod(rearranged.transpose)
 
     def __init__(self, machine: Reference) -> None:
         self.machine = machine
@@ -46,12 +44,28 @@ class ReferenceKernels(PlainKernels[CycleData, Workspace]):
 
     def fill(self, data: CycleData, work: Workspace, matrix: np.ndarray) -> None:
         """The whole Jacobian."""
-        matrix[:] = rearranged.matrix(data, work)
+        matrix[:] = jacobian(data, work)
 
     def flip(self, data: CycleData, work: Workspace, sign: float) -> None:
-        """Turn the linearisation's closure round."""
+        """Turn the closure x_L = T x_0 of the linearisation into x_L = -T x_0 (sign = -1), and back (sign = 1).
+
+        T is the closure's own twist. The shift of an impact-free motion is put back before: turned round, the closure needs no pin.
+        """
         maps.unpin(data, work)
-        rearranged.flip(data, work, sign)
+        np.negative(work.D[-1], out=work.D[-1])
+
+    def transpose(self, data: CycleData, work: Workspace, column: np.ndarray, other: Workspace) -> None:
+        """Write the transposed system into another workspace, with `column` (L n,) as its last column.
+
+        Row k of J ties nodes k and k + 1 by A_k and D_k. Column k + 1 therefore ties the left unknowns of rows k and k + 1 by
+        D_k^T and A_{k+1}^T: block k of the new system, which is block-cyclic again. The closure's twist, which scales columns of D_{L-1},
+        scales rows here; in the last block it is taken out of the place where the elimination puts it.
+        """
+        other.A[:] = work.D.transpose(0, 2, 1)
+        other.A[-1, 1:] *= data.twist
+        other.D[:] = np.roll(work.A, -1, axis=0).transpose(0, 2, 1)
+        other.D[-1, :, 1:] *= data.twist
+        other.Q[:] = np.roll(column.reshape(other.Q.shape), -1, axis=0)
 
     def inspect(self, data: CycleData, u: np.ndarray, p: float, work: Workspace, row: np.ndarray) -> None:
         """Multipliers of the closure map as (re, im) pairs, then four margins per node, into `row`."""

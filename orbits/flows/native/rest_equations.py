@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from orbits.flows.against import Against
+from orbits.flows.equations import Equations
 from orbits.flows.plain_kernels import PlainKernels
-from orbits.flows.protocol import PLAIN, Approach
 from orbits.machines.base import Model
 from orbits.machines.path import assign
 from orbits.settings import SOLVING
@@ -15,14 +14,14 @@ RestWork = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Residual, Jacobian and derivative by the parameter."""
 
 
-class RestEquations(Against[Model]):
-    """What `orbits.flows.native.cycle_equations.Equations` is for the other words; the unknowns are those of the machine's `rest`."""
+class RestEquations(Equations[Model]):
+    """The unknowns are those of the machine's `rest`; there are no nodes, no flights and no impacts."""
 
     length, n_margins = 0, 1
     twist, shift = 1.0, 2.0 * np.pi
-    movable, units = False, PLAIN
+    movable = False
     period_shift = None
-    unit = np.ones((0, 1))  # there are no nodes
+    unit = np.ones((0, 1))
 
     def __init__(self, model: Model, parameter: str, params: np.ndarray) -> None:
         self.model, self.params, self.parameter = model, params.copy(), parameter
@@ -43,17 +42,8 @@ class RestEquations(Against[Model]):
         n = self.dimension
         return np.zeros(n), np.zeros((n, n)), np.zeros(n)
 
-    @property
-    def scratch(self) -> RestWork:
-        """A workspace for single calls."""
-        return self.workspace()
-
-    def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
-        """There are no impacts."""
-        raise TypeError("at rest there are no impacts")
-
     def through_flights(self, u: np.ndarray, p: float) -> None:
-        """There are no flights."""
+        """None."""
 
     def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
         """No nodes."""

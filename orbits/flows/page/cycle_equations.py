@@ -1,47 +1,247 @@
-"""The equations F(u, p) = 0 of a declared machine's orbits with one word: unknowns, data, kernels in plain Python round compiled flights."""
+"""The equations of a declared machine's cycles, flight by flight, their linear algebra, and the kernels round it.
+
+Node i = (c_i, x_i): the clock and the states just after event i; of a self-excited machine c_i is the duration of the flight that
+follows. Flight i leads from x_i to y_i; with g the function that is zero at event i + 1 and J what the event does to the states,
+
+    g(y_i) = 0,    J(y_i) - x_{i+1} = 0,
+
+n + 1 equations for n + 1 unknowns. The clock of the forcing is the phase psi: dx/dpsi = f/Omega, so that y_i depends on c_i and
+c_{i+1} through its ends only: dy/dc_{i+1} = F(y), dy/dc_i = -(dy/dx) F(x).
+"""
 
 from __future__ import annotations
 
-from functools import cached_property
+import math
 
 import numpy as np
 
+from contvines.core.block_cyclic import eliminate
 from contvines.core.library import native
-from orbits.flows.page import flights, sampling
+from contvines.core.multipliers.periodic_schur import periodic_multipliers
+from orbits.flows.equations import Approach
 from orbits.flows.page.margins import fill_margins
-from orbits.flows.page.pieces import TURN_OF_PHASE, Pieces
+from orbits.flows.page.pieces import Pieces, Work, strobed
 from orbits.flows.plain_kernels import PlainKernels
-from orbits.flows.protocol import Approach
+from orbits.flows.trajectory import TWO_PI
+from orbits.integrators.engine import engine
 from orbits.settings import SOLVING
 
+CYCLIC = 120  # unknowns from which elimination by blocks is faster
+AHEAD = 2.0  # periods of a forced machine: in a flight that is longer Newton's method has lost its way
 
-class PageKernels(PlainKernels[Pieces, flights.Work]):
-    """The functions that a continuation calls; plain Python round integrated flights."""
+
+def _fly(data: Pieces, nodes: np.ndarray, begin: np.ndarray, end: np.ndarray, work: Work) -> bool:
+    """Integrate every flight, into `work.flown`; False if one blows up."""
+    numbers, flown = work.numbers, work.flown
+    for flight, many, places in data.flight_groups:
+        alone = places
+        if many is not None:
+            spare = len(places) % engine().LANES
+            alone = places[-1:] if spare == 1 else places[:0]
+            together = places[: len(places) - len(alone)]
+            found = np.empty((len(together), flown.shape[1]))
+            if not many(nodes[together, 1:], begin[together], end[together], numbers[together], found):
+                return False
+            flown[together] = found
+        for i in alone:
+            if not flight(nodes[i, 1:], float(begin[i]), float(end[i]), numbers[i], flown[i]):
+                return False
+    return True
+
+
+def closing(data: Pieces, work: Work) -> tuple[np.ndarray, np.ndarray]:
+    """The blocks of the last row, closed by the mirror."""
+    own, following = work.own[-1], work.following[-1] * data.turned
+    for row, _ in data.still:
+        own = own.copy()
+        own[1 + row], following[1 + row] = 0.0, work.still[row]
+    for j in data.resting:
+        own = own.copy()
+        own[1 + j] = following[1 + j] = 0.0
+        following[1 + j, 1 + j] = 1.0
+    return own, following
+
+
+def by_blocks(
+    data: Pieces, work: Work, border: np.ndarray, target: float, step: np.ndarray, tangent: np.ndarray
+) -> float:
+    """The bordered system by blocks, as the cycle has them; returns the determinant's sign."""
+    length, d = data.length, data.size + 1
+    blocks = np.empty((length, d, 2 * d))
+    blocks[:-1, :, :d], blocks[:-1, :, d:] = work.own[:-1], work.following[:-1]
+    blocks[-1, :, :d], blocks[-1, :, d:] = closing(data, work)
+    columns = np.empty((length, d, 3))
+    columns[:, :, 0], columns[:, :, 1], columns[:, :, 2] = work.derivative, -work.residual, 0.0
+    rows, foot = border[:-1].reshape(length, 1, d), np.array([[border[-1], target, 1.0]])
+    back = slice(None, None, -1) if work.turned[0] else slice(None)
+    if work.turned[0]:  # each column of blocks becomes a row; backwards its neighbour follows again
+        before = np.roll(blocks[:, :, d:], 1, axis=0)
+        blocks = np.concatenate([blocks[:, :, :d], before], axis=1).transpose(0, 2, 1)[back]
+        columns, rows = columns[back], rows[back]
+    if not (np.isfinite(blocks).all() and np.isfinite(columns).all() and np.isfinite(rows).all()):
+        return 0.0
+    found = eliminate(blocks, columns, rows, foot, d)
+    for k, place in enumerate((step, tangent)):
+        place[:-1], place[-1] = found.states[back, :, k].ravel(), found.shared[0, k]
+    return -found.sign if d % 2 and length % 2 == 0 else found.sign  # the first node is eliminated last
+
+
+def factors(data: Pieces, work: Work) -> np.ndarray:
+    """Derivatives of node i + 1 by node i, shape (L, m, m): with the clock for a forced machine, states alone otherwise."""
+    own, following = work.own, work.following
+    with np.errstate(all="ignore"):
+        if data.forced:
+            clock = -own[:, :1, :] / following[:, 0, 0][:, None, None]
+            states = own[:, 1:, :] + following[:, 1:, :1] * clock
+            result = np.concatenate([clock, states], axis=1)
+        else:
+            through = own[:, :, 1:]
+            duration = -through[:, :1, :] / own[:, 0, 0][:, None, None]
+            result = through[:, 1:, :] + own[:, 1:, :1] * duration
+    if data.twist < 0.0:  # the mirror, after the last flight: the clock stays, the states turn
+        result = result.copy()
+        result[-1, (1 if data.forced else 0) :, :] *= -1.0
+    return result
+
+
+def multipliers(data: Pieces, work: Work) -> np.ndarray:
+    """Multipliers of the closed map between event surfaces, largest first; the one that is always zero is left out."""
+    chain = factors(data, work)
+    if not np.all(np.isfinite(chain)):
+        return np.full(data.n_multipliers, np.nan, complex)
+    size = chain.shape[1]
+    norms = np.abs(chain).sum(axis=2).max(axis=1)
+    if np.log(np.maximum(norms, 1.0)).sum() < np.log(SOLVING.safe_product) or len(chain) == 1:
+        product = chain[0]
+        for factor in chain[1:]:
+            product = factor @ product
+        values = np.linalg.eigvals(product).astype(complex)
+    else:
+        values = _periodic(chain, size)
+    values = values[np.argsort(-np.abs(values), kind="stable")]
+    for _ in range(data.trivial):  # a motion that may be shifted as a whole, a friction that sticks for ever
+        values = np.delete(values, int(np.argmin(np.abs(values - data.twist))))
+    return values[: data.n_multipliers]
+
+
+def _periodic(chain: np.ndarray, size: int) -> np.ndarray:
+    re, im = np.zeros(size), np.zeros(size)
+    periodic_multipliers(chain, np.tile(-np.eye(size), (len(chain), 1, 1)), 1.0, re, im)
+    return re + 1j * im
+
+
+class PageKernels(PlainKernels[Pieces, Work]):
+    """The functions that a continuation calls; plain Python round integrated"""
 
     column = 3
     accepted = SOLVING.residual
     patience = 0.5
 
-    def linearise(self, data: Pieces, u: np.ndarray, p: float, work: flights.Work) -> float:
-        """See `orbits.flows.page.flights.linearise`."""
-        return flights.linearise(data, u, p, work)
+    def linearise(self, data: Pieces, u: np.ndarray, p: float, work: Work) -> float:
+        """F, its blocks and its parameter derivative, into `work`; returns the largest absolute residual (inf: not evaluable)."""
+        n, length = data.size, data.length
+        nodes = np.asarray(u).reshape(length, n + 1)
+        if not (np.all(np.isfinite(nodes)) and math.isfinite(p)) or not data.allowed(p):
+            return math.inf
+        work.turned[0] = 0.0
+        numbers = work.numbers
+        numbers[:] = data.base_numbers
+        numbers[:, data.index] = p
+        begin, end = data.clocks(nodes)
+        spans = end - begin
+        if np.abs(spans).max() > (AHEAD * data.shift if data.forced else SOLVING.longest_flight):
+            return math.inf
+        if not _fly(data, nodes, begin, end, work):
+            return math.inf
+        flown = work.flown
+        arrival = work.arrival
+        arrival[:] = flown[:, :n]
+        sensitivity = flown[:, n:].reshape(length, n, -1)
+        by_state, by_number = sensitivity[:, :, :n], sensitivity[:, :, n]
+        for values, places in data.rate_groups:
+            rates = values(
+                np.concatenate([nodes[places, 1:], arrival[places]]),
+                np.concatenate([begin[places], end[places]]),
+                np.concatenate([numbers[places], numbers[places]]),
+            )
+            work.first_rates[places], work.last_rates[places] = rates[: len(places)], rates[len(places) :]
+        work.end[:] = end
+        onward = np.empty((length, n))  # x_{i+1}
+        onward[:-1] = nodes[1:, 1:]
+        onward[-1] = data.twist * nodes[0, 1:]
+        residual, own, following, derivative = work.residual, work.own, work.following, work.derivative
+        slopes, explicit, along = (
+            np.zeros((length, n + 1, n)),
+            np.zeros((length, n + 1)),
+            np.zeros((length, n + 1)),
+        )
+        slopes[:, 1:] = data.identity
+        value = np.empty((length, n + 1))
+        value[:, 1:] = arrival
+        for values, places, jumps in data.event_groups:
+            if values is None:  # the strobes of a motion without events: at phase zero
+                value[:, 0], explicit[:, 0] = end - data.shift * np.arange(1, length + 1) / length, 1.0
+                continue
+            # columns of `table`: value, by states, by clock, by the parameter; rows: g, then J
+            table = values(arrival[places], end[places], numbers[places]).reshape(len(places), -1, n + 3)
+            rows = slice(None) if jumps else slice(0, 1)
+            value[places, rows], slopes[places, rows] = table[:, :, 0], table[:, :, 1 : n + 1]
+            explicit[places, rows], along[places, rows] = table[:, :, n + 1], table[:, :, n + 2]
+        residual[:] = value
+        residual[:, 1:] -= onward
+        through = slopes @ by_state
+        by_end = (slopes @ work.last_rates[:, :, None])[:, :, 0]
+        own[:, :, 1:] = through
+        following[:] = data.minus
+        if data.forced:
+            own[:, :, 0] = -(through @ work.first_rates[:, :, None])[:, :, 0]
+            following[:, :, 0] = by_end + explicit
+        else:
+            own[:, :, 0] = by_end
+        derivative[:] = (slopes @ by_number[:, :, None])[:, :, 0] + along
+        for j in data.pinned:  # the motion may be shifted along this state: the mean over the nodes is zero
+            work.drift[j] = residual[-1, 1 + j]
+            residual[-1, 1 + j] = nodes[:, 1 + j].mean()
+            derivative[-1, 1 + j] = 0.0
+        for j in data.resting:
+            residual[-1, 1 + j] = derivative[-1, 1 + j] = 0.0
+        for row, values in data.still:  # what sticks for ever has no velocity
+            table = values(nodes[:1, 1:], begin[:1], numbers[:1])[0]
+            residual[-1, 1 + row], derivative[-1, 1 + row] = table[0], table[n + 2]
+            work.still[row, 0], work.still[row, 1:] = table[n + 1], table[1 : n + 1]
+        size = float(np.abs(residual).max())
+        return size if math.isfinite(size) else math.inf
 
-    def fill(self, data: Pieces, work: flights.Work, matrix: np.ndarray) -> None:
-        """See `orbits.flows.page.flights.fill`."""
-        flights.fill(data, work, matrix)
+    def fill(self, data: Pieces, work: Work, matrix: np.ndarray) -> None:
+        """The blocks of F_u in a dense matrix."""
+        d, length = data.size + 1, data.length
+        last_own, last_following = closing(data, work)
+        for i in range(length - 1):
+            rows = slice(i * d, (i + 1) * d)
+            matrix[rows, i * d : (i + 1) * d] += work.own[i]
+            matrix[rows, (i + 1) * d : (i + 2) * d] += work.following[i]
+        rows = slice((length - 1) * d, length * d)
+        matrix[rows, rows] += last_own
+        matrix[rows, :d] += last_following
+        for j in data.pinned:
+            row = (length - 1) * d + 1 + j
+            matrix[row, : length * d] = 0.0
+            matrix[row, 1 + j : length * d : d] = 1.0 / length
+        if work.turned[0]:
+            matrix[: length * d, : length * d] = matrix[: length * d, : length * d].T.copy()
 
     def bordered(
         self,
         data: Pieces,
-        work: flights.Work,
+        work: Work,
         border: np.ndarray,
         target: float,
         step: np.ndarray,
         tangent: np.ndarray,
     ) -> float:
         """Of a long cycle by blocks."""
-        if data.dimension > flights.CYCLIC and not data.pinned and native():
-            return flights.by_blocks(data, work, border, target, step, tangent)
+        if data.dimension > CYCLIC and not data.pinned and native():
+            return by_blocks(data, work, border, target, step, tangent)
         return super().bordered(data, work, border, target, step, tangent)
 
     def assign(self, data: Pieces, other: Pieces, value: float) -> None:
@@ -49,27 +249,27 @@ class PageKernels(PlainKernels[Pieces, flights.Work]):
         data.params[other.index] = value
         data.base_numbers[:, other.index] = value
 
-    def flip(self, data: Pieces, work: flights.Work, sign: float) -> None:
+    def flip(self, data: Pieces, work: Work, sign: float) -> None:
         """Turn F_u to perturbations that change sign over the period (sign = -1), and back (sign = 1)."""
         work.following[-1] *= -1.0
 
-    def transpose(self, data: Pieces, work: flights.Work, column: np.ndarray, other: flights.Work) -> None:
+    def transpose(self, data: Pieces, work: Work, column: np.ndarray, other: Work) -> None:
         """The transposed F_u, with another last column, into another workspace."""
         for name in ("own", "following", "drift", "still", "numbers"):
             getattr(other, name)[:] = getattr(work, name)
         other.derivative.reshape(-1)[:] = column
         other.turned[0] = 1.0
 
-    def matrix(self, data: Pieces, work: flights.Work) -> np.ndarray:
+    def matrix(self, data: Pieces, work: Work) -> np.ndarray:
         """F_u as it stands in a workspace, shape (N, N)."""
         found = np.zeros((data.dimension, data.dimension))
-        flights.fill(data, work, found)
+        self.fill(data, work, found)
         return found
 
-    def inspect(self, data: Pieces, u: np.ndarray, p: float, work: flights.Work, row: np.ndarray) -> None:
+    def inspect(self, data: Pieces, u: np.ndarray, p: float, work: Work, row: np.ndarray) -> None:
         """Multipliers as (re, im) pairs, then the margins, into `row`."""
         m = data.n_multipliers
-        row[: 2 * m].view(np.complex128)[:] = flights.multipliers(data, work)
+        row[: 2 * m].view(np.complex128)[:] = multipliers(data, work)
         fill_margins(data, u, work, row[2 * m :])
 
 
@@ -77,32 +277,26 @@ KERNELS = PageKernels()
 
 
 class PageEquations(Pieces):
-    """Periodic orbits with a given word, against one parameter of a declared machine; made as `Pieces` are."""
+    """Flight by flight, in numpy; made as `Pieces` are."""
 
-    kernels = KERNELS
-
+    # ------------------------------------------------------------------ numerics
     @property
-    def data(self) -> PageEquations:
+    def data(self) -> PageEquations:  # type: ignore[override]
         """Itself."""
         return self
 
-    # ------------------------------------------------------------------ numerics
-    @cached_property
-    def scratch(self) -> flights.Work:
-        """A workspace for single calls, whose contents nobody relies on."""
-        return self.workspace()
-
-    def workspace(self) -> flights.Work:
-        """Arrays for the kernels."""
-        return flights.workspace(self.length, self.size, self.base_numbers.shape[1])
+    @property
+    def kernels(self) -> PageKernels:
+        """In plain Python."""
+        return KERNELS
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
         """Of the impact at a place: the rate of its wall's gap; the wall's push changes it."""
-        compiled, d = self.machine.compiled, self.size + 1
+        compiled, d = self.model.compiled, self.size + 1
         node = u[place * d : (place + 1) * d]
         numbers = compiled.numbers(self.values(p), self.word.entries(place))
-        clock = node[:1] if self.forced else np.zeros(1)
-        row = compiled.approach(self.letters[place].contact)(node[None, 1:], clock, numbers[None])[0]
+        clock = float(node[0]) if self.forced else 0.0
+        row = compiled.approach(self.letters[place].contact).one(node[1:], clock, numbers)
         return Approach(float(row[0]), np.append(0.0, row[1:d]), 0.0, np.append(0.0, row[d:]))
 
     def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, None] | None:
@@ -110,28 +304,14 @@ class PageEquations(Pieces):
         if not np.isfinite(self.kernels.linearise(self, u, p, self.scratch)):
             return None
         with np.errstate(all="ignore"):
-            return flights.factors(self, self.scratch), None
-
-    # ------------------------------------------------------------------ shapes
-    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
-        """Nodes of the whole cycle, shape (..., L, n + 1)."""
-        u = np.asarray(u, dtype=float)
-        nodes = u.reshape(*u.shape[:-1], self.length, self.size + 1)
-        if not self.symmetric:
-            return nodes
-        return np.concatenate([nodes, self._image(nodes)], axis=-2)
-
-    def _image(self, nodes: np.ndarray) -> np.ndarray:
-        image = -nodes
-        image[..., 0] = nodes[..., 0] + self.shift
-        return image
+            return factors(self, self.scratch), None
 
     def reduce(self, nodes: np.ndarray) -> np.ndarray:
         """Unknowns, shape (N,), from the nodes of the whole cycle; of a motion without events the first node tells the others."""
         often = self.length * (2 if self.symmetric else 1) // self.periods
         apart = (
-            float(np.ptp(nodes[:2, 0])) * often / TURN_OF_PHASE
+            float(np.ptp(nodes[:2, 0])) * often / TWO_PI
         )  # 1 where they are as far from one another as here
         if not len(self.word) and self.length > 1 and abs(apart - 1.0) > 0.1:
-            nodes = sampling.strobed(self.machine, self.word, self.periods, nodes[0], self.params, often)
-        return np.array(nodes[: self.length], dtype=float, order="C").ravel()
+            nodes = strobed(self.model, self.word, self.periods, nodes[0], self.params, often)
+        return super().reduce(nodes)

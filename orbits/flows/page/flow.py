@@ -7,28 +7,30 @@ from typing import Any
 import numpy as np
 
 from contvines.shared.motions import BAND, SILENT
+from orbits.contacts.letters import Site
 from orbits.contacts.wall import Wall
-from orbits.flows.page import measures, sampling, vanishing
+from orbits.flows.page import measures
 from orbits.flows.page.cycle_equations import PageEquations
-from orbits.flows.page.pieces import loose_states
-from orbits.flows.protocol import Census, Motion
+from orbits.flows.page.pieces import flown, loose_states, strobed
+from orbits.flows.protocol import Census, Flow, Motion, Vanishing
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.si import OF_A_STATE
+from orbits.numbers import SMALLEST
 from orbits.settings import EVENTS, SIMULATING
 from orbits.words import Word
+from orbits.words.margins import place_of
 
 LARGE = 5  # states
 
 
-class PageFlow:
+class PageFlow(Flow[Machine]):
     """See `orbits.flows.protocol`; a node is the phase, or the duration of the flight that follows, and the states after the event."""
 
     angles = ("phase",)
-    sample = staticmethod(sampling.sample)
-    measure_names, default_measure = staticmethod(measures.names), staticmethod(measures.shown_first)
+    seconds = "time"
+    measure_names = staticmethod(measures.names)
     measures = staticmethod(measures.measure)
-    placed, vanishing = staticmethod(vanishing.placed), staticmethod(vanishing.vanishing)
     closed_form = False
     resolution = SIMULATING.same
 
@@ -66,22 +68,16 @@ class PageFlow:
         """States that no rate and no event of the word knows."""
         return tuple(1 + j for j in loose_states(model, word))
 
-    def positions(self, motion: Motion[Machine], instants: int) -> np.ndarray:
-        """States that no wall pushes; see `orbits.flows.page.sampling.states_at`."""
-        phases = np.linspace(0.0, 2.0 * np.pi * motion.periods, instants * motion.periods, endpoint=False)
-        return sampling.states_at(motion, phases)[:, unmoved(motion.model)]
-
-    def image(self, motion: Motion[Machine]) -> np.ndarray:
-        """All states with the other sign."""
-        image = -motion.nodes
-        image[:, 0] = motion.nodes[:, 0]
-        return image
-
     def strobed(self, motion: Motion[Machine]) -> np.ndarray:
-        """See `orbits.flows.page.sampling.strobed`."""
-        return sampling.strobed(motion.model, motion.word, motion.periods, motion.nodes[0], motion.params)[
-            :, 1:
-        ]
+        """The states."""
+        nodes = strobed(motion.model, motion.word, motion.periods, motion.nodes[0], motion.params)
+        return nodes[:, 1:]
+
+    def default_measure(self, model: Machine) -> str:
+        """What the page says, impact speeds, or how far the first state goes."""
+        if model.response is not None:
+            return model.response
+        return "approach_speed" if model.alphabet.walled else f"max_{model.states[0]}"
 
     def simulated_names(self, model: Machine) -> tuple[str, ...]:
         """How far the first state goes, the fastest impact and how many there are; where it is forced a band, too."""
@@ -118,28 +114,81 @@ class PageFlow:
         """A motion without events is one, too, unless no state changes."""
         if len(motion.word):
             return "periodic"
-        table = sampling.sample(motion, 50)
+        table = self.sample(motion, 50)
         moves = any(np.ptp(table[name]) > EVENTS.still for name in motion.model.states)
         return "periodic" if moves else "stuck"
 
     def restitution(self, motion: Motion[Machine], place: int) -> float:
         """Of the wall that is hit, as its formula has it there."""
         model, node = motion.model, motion.nodes[place]
-        clock = node[:1] if model.forced else np.zeros(1)
         numbers = model.compiled.numbers(motion.params, motion.word.entries(place))
         rebound = model.compiled.rebound(motion.word.letter(place).contact)
-        return float(rebound(node[None, 1:], clock, numbers[None])[0, 1])
+        return float(rebound.one(node[1:], float(node[0]) if model.forced else 0.0, numbers)[1])
 
     def without_events(self, motion: Motion[Machine]) -> np.ndarray:
         """The nodes at phase zero; of a self-excited motion at the extreme of the first state that moves."""
         if not motion.model.forced:
-            table = sampling.sample(motion, 4000)
+            table = self.sample(motion, 4000)
             states = np.column_stack([table[name] for name in motion.model.states])
             e = motion.model.equations
             first = moving(e, e.pattern(e.pattern_key(motion.word.entries(-1))).rates)
             return np.array([[motion.durations.sum(), *states[int(np.argmax(states[:, first]))]]])
         phases = 2.0 * np.pi * np.arange(motion.periods)
-        return np.column_stack([phases, sampling.states_at(motion, phases)])
+        return np.column_stack([phases, self.at_phases(motion, phases)])
+
+    # ------------------------------------------------------------------ between the events, and at borders
+    def flown(self, motion: Motion[Machine], places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+        """States."""
+        clocks, states = motion.nodes[:, 0], motion.nodes[:, 1:]
+        return flown(motion.model, motion.params, motion.word.contact_modes, states, clocks, places, ahead)
+
+    def vanishing(self, motion: Motion[Machine], index: int, unit: int) -> Vanishing:
+        """What vanishes with margin `index` of a border orbit, over its whole cycle."""
+        place, watched = place_of(motion.word, index)
+        spans = motion.durations
+        site = Site(motion.word, place, spans, unit)
+        if watched < 0:
+            return Vanishing(site, watched)
+        ahead, state, sign = self._closest(motion, place, watched)
+        share = ahead / max(spans[place], SMALLEST)
+        site = site._replace(sign=sign, at=self._end(motion, place, share), ahead=share < EVENTS.at_end)
+        return Vanishing(site, watched, (ahead, state))
+
+    def _end(self, motion: Motion[Machine], place: int, share: float) -> int:
+        """The event at that end of a flight at which a guard vanishes; -1 inside it."""
+        if not len(motion.word) or EVENTS.at_end <= share <= 1.0 - EVENTS.at_end:
+            return -1
+        return (place if share < EVENTS.at_end else place + 1) % len(motion.word)
+
+    def _closest(self, motion: Motion[Machine], place: int, contact: int) -> tuple[float, np.ndarray, int]:
+        """Where the guards of a contact come closest to zero in a flight: clock from its start, state, sign of the guard's event."""
+        compiled, e = motion.model.compiled, motion.model.equations
+        mode = motion.word.entries(place)
+        key = e.pattern_key(mode)
+        numbers = compiled.numbers(motion.params, mode)
+        guards, values, watch = e.pattern(key).guards, compiled.guards(key), compiled.watch(key)
+        begin = float(motion.nodes[place, 0]) if motion.model.forced else 0.0
+        length = float(motion.durations[place])
+        state = motion.nodes[place, 1:]
+        candidates = [(begin, g, state) for g, guard in enumerate(guards) if guard.contact == contact]
+        candidates += [
+            c for c in watch(state, begin, begin + length, numbers) if guards[c[1]].contact == contact
+        ]
+        final = watch.final
+        candidates += [
+            (begin + length, g, final) for g, guard in enumerate(guards) if guard.contact == contact
+        ]
+        own_start = len(motion.word) and motion.word.letter(place).contact == contact
+        own_end = len(motion.word) and motion.word.letter(place + 1).contact == contact
+        best, found = np.inf, (0.0, state, 0)
+        for clock, g, there in candidates:
+            share = (clock - begin) / max(length, SMALLEST)
+            if (own_start and share < EVENTS.at_end) or (own_end and share > 1.0 - EVENTS.at_end):
+                continue
+            value = abs(values(there[None], np.array([clock]), numbers[None])[0, g])
+            if value < best:
+                best, found = value, (clock - begin, np.array(there), guards[g].sign)
+        return found
 
 
 def unmoved(machine: Machine) -> list[int]:

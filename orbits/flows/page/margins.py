@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from orbits.contacts.letters import HIT, SLIP, STICK, SWITCH, TURN
-from orbits.flows.page.flights import Work
 from orbits.settings import EVENTS
 
 if TYPE_CHECKING:
-    from orbits.flows.page.pieces import Pieces
+    from orbits.flows.page.pieces import Pieces, Work
 
 
 def fill_margins(data: Pieces, u: np.ndarray, work: Work, row: np.ndarray) -> None:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
-from orbits.contacts.letters import HIT
-from orbits.flows.page.loads import Impacts, friction_work
+from orbits.contacts.letters import HIT, Letter
+from orbits.flows.page.pieces import flown
 from orbits.machines.measures import loads, way_out
+from orbits.machines.page.machine import Machine
 from orbits.machines.page.si import CONTACT, OF_A_STATE
 from orbits.settings import EVENTS, SOLVING
 from orbits.words import Word
-
-if TYPE_CHECKING:
-    from orbits.machines.page.machine import Machine
 
 
 def names(model: Machine) -> tuple[str, ...]:
@@ -34,13 +35,6 @@ def names(model: Machine) -> tuple[str, ...]:
     )
 
 
-def shown_first(model: Machine) -> str:
-    """The measure that a diagram shows when none is asked for: what the page says, impact speeds, or how far the first state goes."""
-    if model.response is not None:
-        return model.response
-    return "approach_speed" if "approach_speed" in names(model) else f"max_{model.states[0]}"
-
-
 def measure(
     model: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray, wanted: Sequence[str]
 ) -> dict[str, np.ndarray]:
@@ -55,12 +49,11 @@ def measure(
     for name in wanted:
         if name not in known:
             raise KeyError(f"there is no measure {name!r}{way_out(name)}; choose from {', '.join(known)}")
-    result: dict[str, np.ndarray] = {}
-    period = _periods(model, periods, nodes, params)
+    solutions = Solutions(model, word, periods, nodes, params)
     states = {f"{kind}_{state}": (kind, i) for i, state in enumerate(model.states) for kind in OF_A_STATE}
-    extremes = None
+    result: dict[str, np.ndarray] = {}
     if not _LOADS.isdisjoint(name.partition("_")[0] for name in wanted):
-        result |= _loads(model, word, periods, nodes, params, period, wanted)
+        result |= solutions.loads({"friction_loss", "work_rate"}.intersection(wanted) != set())
     for name in wanted:
         kind, place = states.get(name, ("", 0))
         if name in result:
@@ -68,19 +61,18 @@ def measure(
         if name == "phase":
             result[name] = np.mod(nodes[:, 0, 0], 2.0 * np.pi)
         elif name == "period":
-            result[name] = period
+            result[name] = solutions.period
         elif name == "rate":
-            result[name] = 2.0 * np.pi / period
+            result[name] = 2.0 * np.pi / solutions.period
         elif name == "approach_speed":
-            result[name] = _approach_speeds(model, word, nodes, params)
+            speeds = [impacts.speeds for impacts in solutions.impacts]
+            result[name] = np.max([np.zeros(len(nodes)), *speeds], axis=0)
         elif kind == "first":
             result[name] = nodes[:, 0, 1 + place].copy()
         elif kind == "strobe":
-            result[name] = _strobed(model, word, periods, nodes, params)[:, place]
+            result[name] = solutions.strobed[:, place]
         else:
-            if extremes is None:
-                extremes = _extremes(model, word, periods, nodes, params)
-            high, low = (side[:, place] for side in extremes)
+            high, low = (side[:, place] for side in solutions.extremes)
             result[name] = {"max": high, "min": low, "max_abs": np.maximum(high, -low)}[kind]
     return {name: result[name] for name in wanted}
 
@@ -88,111 +80,146 @@ def measure(
 _LOADS = frozenset(("impact", "impulse", "friction", "mean", "work", "peak"))  # how their names begin
 
 
-def _loads(
-    machine: Machine,
-    word: Word,
-    periods: int,
-    nodes: np.ndarray,
-    params: np.ndarray,
-    period: np.ndarray,
-    wanted: Sequence[str],
-) -> dict[str, np.ndarray]:
-    """Measures of `machine.load_names`; the sums of impacts are taken wall by wall."""
-    zero, walls = np.zeros(len(nodes)), [machine.contacts[j].letter for j in machine.equations.gap]
-    letters = [(i, word.letter(i)) for i in range(nodes.shape[1] if len(word) else 0)]
-    hits = [(i, letter) for i, letter in letters if letter.kind == HIT]
-    each = [
-        Impacts(
-            machine,
-            letter.contact,
-            nodes[:, i, 1:],
-            nodes[:, i, 0].copy() if machine.forced else zero,
-            params,
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """Solutions with one word, as `measure` is given them, and what several measures need."""
+
+    machine: Machine
+    word: Word
+    periods: int
+    nodes: np.ndarray
+    params: np.ndarray
+
+    @cached_property
+    def period(self) -> np.ndarray:
+        """In the machine's time, shape (m,)."""
+        if not self.machine.forced:
+            return self.nodes[:, :, 0].sum(axis=1)
+        return 2.0 * np.pi * self.periods / np.asarray(self.machine.phase_speed(self.params))
+
+    @cached_property
+    def impacts(self) -> list[Impacts]:
+        """An entry for each impact of the word."""
+        clocks = self.nodes[:, :, 0] if self.machine.forced else np.zeros(self.nodes.shape[:2])
+        return [
+            Impacts(self.machine, letter.contact, self.nodes[:, i, 1:], clocks[:, i].copy(), self.params)
+            for i, letter in self._hits
+        ]
+
+    @property
+    def _hits(self) -> list[tuple[int, Letter]]:
+        letters = [(i, self.word.letter(i)) for i in range(len(self.word))]
+        return [(i, letter) for i, letter in letters[: self.nodes.shape[1]] if letter.kind == HIT]
+
+    def flights(self, k: int) -> Iterator[tuple[tuple[int, ...], np.ndarray, float, float]]:
+        """Mode, first state, clock at the beginning and at the end of every flight of solution k."""
+        nodes, begin = self.nodes[k], np.zeros(self.nodes.shape[1])
+        end = nodes[:, 0]
+        if self.machine.forced:
+            begin, end = end, np.append(end[1:], end[0] + 2.0 * np.pi * self.periods)
+        for i in range(len(nodes)):
+            yield self.word.entries(i), nodes[i, 1:], float(begin[i]), float(end[i])
+
+    def loads(self, rubbing: bool) -> dict[str, np.ndarray]:
+        """Measures of `machine.load_names`, those of friction if it is asked; the sums of impacts are taken wall by wall."""
+        machine, params = self.machine, self.params
+        walls, held = [machine.contacts[j].letter for j in machine.equations.gap], None
+        if "peak_force" in machine.load_names:
+            held = params[:, machine.parameter_names.index(CONTACT)] * machine.equations.factors.get(
+                CONTACT, 1.0
+            )
+        speeds, restitution, mass = (
+            np.array([getattr(one, name) for one in self.impacts]).reshape(-1, len(self.nodes)).T
+            for name in ("speeds", "restitution", "mass")
         )
-        for i, letter in hits
-    ]
-    held = None
-    if "peak_force" in machine.load_names:
-        held = params[:, machine.parameter_names.index(CONTACT)] * machine.equations.factors.get(CONTACT, 1.0)
-    speeds, restitution, mass = (
-        np.array([getattr(one, name) for one in each]).reshape(-1, len(nodes)).T
-        for name in ("speeds", "restitution", "mass")
-    )
-    found = loads(speeds, restitution, mass, [letter.text for _, letter in hits], walls, period, held)
-    if {"friction_loss", "work_rate"}.intersection(wanted):
-        rubbed = zero.copy()
-        for k, rows in enumerate(nodes if machine.equations.limit else ()):
-            for i, (begin, end) in enumerate(zip(*_spans(machine, periods, rows))):
-                mode = word.entries(i)
-                rubbed[k] += friction_work(machine, mode, rows[i, 1:], begin, end, params[k])
-        found |= {"friction_loss": rubbed, "work_rate": (found["impact_loss"] + rubbed) / period}
-    return found
+        at = [letter.text for _, letter in self._hits]
+        found = loads(speeds, restitution, mass, at, walls, self.period, held)
+        if rubbing:
+            rubbed = np.zeros(len(self.nodes))
+            for k in range(len(self.nodes) if machine.equations.limit else 0):
+                rubbed[k] = sum(friction_work(machine, *flight, params[k]) for flight in self.flights(k))
+            found |= {"friction_loss": rubbed, "work_rate": (found["impact_loss"] + rubbed) / self.period}
+        return found
+
+    @cached_property
+    def extremes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Largest and smallest value of every state over the period, shape (m, n): at the events, and where a rate is zero between them."""
+        largest, smallest = self.nodes[:, :, 1:].max(axis=1), self.nodes[:, :, 1:].min(axis=1)
+        for k in range(len(self.nodes)):
+            for mode, state, begin, end in self.flights(k):
+                if 0.0 < end - begin < SOLVING.longest_flight:
+                    rows = farthest(self.machine, mode, state, begin, end, self.params[k])
+                    largest[k] = np.maximum(largest[k], rows.max(axis=0))
+                    smallest[k] = np.minimum(smallest[k], rows.min(axis=0))
+        return largest, smallest
+
+    @cached_property
+    def strobed(self) -> np.ndarray:
+        """States at the first passage of phase zero (a multiple of 2 pi) after the first event, shape (m, n)."""
+        out, modes = np.empty((len(self.nodes), self.machine.size)), self.word.contact_modes
+        for k, nodes in enumerate(self.nodes):
+            begins = nodes[:, 0]
+            target = 2.0 * np.pi * np.ceil(begins[0] / (2.0 * np.pi) - EVENTS.zero)
+            place = np.clip(np.searchsorted(begins, [target], side="right") - 1, 0, len(begins) - 1)
+            ahead = np.maximum(target - begins[place], 0.0)
+            out[k] = flown(self.machine, self.params[k], modes, nodes[:, 1:], begins, place, ahead)[0]
+        return out
 
 
-def _periods(machine: Machine, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-    if not machine.forced:
-        return nodes[:, :, 0].sum(axis=1)
-    return 2.0 * np.pi * periods / np.asarray(machine.phase_speed(params))
+def farthest(
+    machine: Machine, mode: tuple[int, ...], state: np.ndarray, begin: float, end: float, params: np.ndarray
+) -> np.ndarray:
+    """States on a flight, shape (k, n): its ends, and where a rate is zero in between."""
+    watch = machine.compiled.extremes(machine.equations.pattern_key(mode))
+    numbers = machine.compiled.numbers(params, mode)
+    rows = [state]
+    clocks = np.linspace(begin, end, max(1, math.ceil((end - begin) / (2.0 * math.pi))) + 1)
+    for one, other in pairwise(clocks.tolist() if end > begin else ()):
+        rows += [row for _, _, row in watch(rows[-1], one, other, numbers)]
+        rows.append(watch.final)
+    return np.array(rows)
 
 
-def _spans(machine: Machine, periods: int, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Clock at the beginning and the end of every flight of one solution."""
-    if not machine.forced:
-        return np.zeros(len(nodes)), nodes[:, 0]
-    return nodes[:, 0], np.append(nodes[1:, 0], nodes[0, 0] + 2.0 * np.pi * periods)
+PLACES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+PIECE = 0.5 * math.pi  # of the clock: as much of a flight is integrated at once
 
 
-def _extremes(
-    machine: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Largest and smallest value of every state over the period: at the events, and where a rate is zero between them."""
-    compiled, e = machine.compiled, machine.equations
-    keys = [e.pattern_key(word.entries(i)) for i in range(nodes.shape[1])]
-    watches = [compiled.extremes(key) for key in keys]
-    largest, smallest = nodes[:, :, 1:].max(axis=1), nodes[:, :, 1:].min(axis=1)
-    for k in range(len(nodes)):
-        begin, end = _spans(machine, periods, nodes[k])
-        for i, watch in enumerate(watches):
-            if not 0.0 < end[i] - begin[i] < SOLVING.longest_flight:
-                continue
-            numbers = compiled.numbers(params[k], word.entries(i))
-            found = [state for _, _, state in watch(nodes[k, i, 1:], begin[i], end[i], numbers)]
-            found.append(watch.final)
-            table = np.array(found)
-            largest[k] = np.maximum(largest[k], table.max(axis=0))
-            smallest[k] = np.minimum(smallest[k], table.min(axis=0))
-    return largest, smallest
+class Impacts:
+    """Impacts on one wall: arrays of speeds before them [m/s], the wall's restitution, and masses of the relative motion [kg]."""
+
+    def __init__(
+        self, machine: Machine, wall: int, after: np.ndarray, clocks: np.ndarray, params: np.ndarray
+    ) -> None:
+        """After impacts in states (m, n) at `clocks` (m,) with parameters (m, P); a page without energy has masses of 1."""
+        numbers = np.hstack([params, np.zeros((len(params), len(machine.equations.signed)))])
+        known = machine.equations.energy is not None
+        rows = (machine.compiled.loads if known else machine.compiled.rebound)(wall)(after, clocks, numbers)
+        self.speeds, self.restitution = rows[:, 0] / rows[:, 1], rows[:, 1]
+        self.mass = rows[:, 2] if known else np.ones(len(rows))
+
+    @property
+    def impulses(self) -> np.ndarray:
+        """(1 + r) m s [N s]."""
+        return (1.0 + self.restitution) * self.mass * self.speeds
+
+    @property
+    def losses(self) -> np.ndarray:
+        """Energy of the relative motion that each takes, (1 - r^2) m s^2/2 [J]."""
+        return (1.0 - self.restitution**2) * (0.5 * self.mass * self.speeds**2)
 
 
-def _strobed(machine: Machine, word: Word, periods: int, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-    """States at the first passage of phase zero (a multiple of 2 pi) after the first event."""
-    compiled, e = machine.compiled, machine.equations
-    out = np.empty((len(nodes), machine.size))
-    for k in range(len(nodes)):
-        begin, end = _spans(machine, periods, nodes[k])
-        target = 2.0 * np.pi * np.ceil(begin[0] / (2.0 * np.pi) - EVENTS.zero)
-        i = int(np.clip(np.searchsorted(begin, target, side="right") - 1, 0, len(begin) - 1))
-        mode = word.entries(i)
-        state = nodes[k, i, 1:].copy()
-        compiled.extremes(e.pattern_key(mode)).move(
-            state, begin[i], max(target, begin[i]), compiled.numbers(params[k], mode)
-        )
-        out[k] = state
-    return out
-
-
-def _approach_speeds(machine: Machine, word: Word, nodes: np.ndarray, params: np.ndarray) -> np.ndarray:
-    """Fastest approach at an impact: the gap's rate before it, from the one after it and the restitution."""
-    compiled = machine.compiled
-    best = np.zeros(len(nodes))
-    if not len(word):
-        return best
-    numbers = np.hstack([params, np.zeros((len(params), len(machine.equations.signed)))])
-    for i in range(nodes.shape[1]):
-        letter = word.letter(i)
-        if letter.kind != HIT:
-            continue
-        clock = np.ascontiguousarray(nodes[:, i, 0]) if machine.forced else np.zeros(len(nodes))
-        rows = compiled.rebound(letter.contact)(nodes[:, i, 1:], clock, numbers)
-        best = np.maximum(best, rows[:, 0] / rows[:, 1])
-    return best
+def friction_work(
+    machine: Machine, mode: tuple[int, ...], state: np.ndarray, begin: float, end: float, params: np.ndarray
+) -> float:
+    """Energy that frictions take on a flight [J], by Gauss-Legendre quadrature on pieces of it."""
+    key = machine.equations.pattern_key(mode)
+    if not end > begin:
+        return 0.0
+    pieces = math.ceil((end - begin) / PIECE)
+    half = 0.5 * (end - begin) / pieces
+    middles = begin + half * (2.0 * np.arange(pieces) + 1.0)
+    clocks = (middles[:, None] + half * PLACES).ravel()
+    numbers = machine.compiled.numbers(params, mode)
+    states = machine.compiled.watch(key).path(state, np.concatenate([[begin], clocks]), numbers)[1:]
+    power = machine.compiled.friction_power(key)(states, clocks, np.tile(numbers, (len(clocks), 1)))[:, 0]
+    return float(power @ np.tile(WEIGHTS, pieces)) * half / float(machine.phase_speed(params))

@@ -1,17 +1,17 @@
-"""The flights of the orbits with one word of a declared machine: what starts, flies and ends each of them, compiled."""
+"""The flights of the cycles with one word of a declared machine: what starts, flies and ends each of them, compiled, and states on the way."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from orbits.contacts.dry_friction import SLIDE_BACK, SLIDE_ON, STUCK, DryFriction
 from orbits.contacts.letters import HIT, STICK, STROBE, Letter
-from orbits.flows.against import Against
-from orbits.flows.protocol import PLAIN
+from orbits.flows.equations import Equations
+from orbits.flows.trajectory import TWO_PI
 from orbits.integrators.expressions import variables_of
 from orbits.machines.page.machine import Machine
 from orbits.numbers import Reals
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from orbits.integrators.protocol import Watch
     from orbits.machines.page.patterns import Guard
 
-TURN_OF_PHASE = 2.0 * np.pi
 STROBED = Letter("", -1, STROBE)
 TOGETHER = 4
 """Flights in one mode from which they are integrated side by side: a flight of two states then takes 11 to 15 us in place of 35 to 40, of four
@@ -67,27 +66,78 @@ def loose_states(machine: Machine, word: Word) -> tuple[int, ...]:
     return tuple(j for j, name in enumerate(names) if name not in known)
 
 
-class Pieces(Against[Machine]):
-    """Periodic orbits with a given word, against one parameter of a declared machine.
+def flown(
+    machine: Machine,
+    params: np.ndarray,
+    modes: Sequence[Sequence[int]],
+    states: np.ndarray,
+    begins: np.ndarray,
+    places: np.ndarray,
+    ahead: np.ndarray,
+) -> np.ndarray:
+    """States, shape (m, n), so long (clock, shape (m,)) after the beginnings of flights `places`: flight i begins in states[i] at begins[i], in modes[i]."""
+    compiled, e, out = machine.compiled, machine.equations, np.empty((len(ahead), machine.size))
+    for i in np.unique(places).tolist():
+        here = np.flatnonzero(places == i)
+        here = here[np.argsort(ahead[here], kind="stable")]
+        mode = modes[i % len(modes)]
+        begin = begins[i] % TWO_PI if machine.forced else 0.0
+        grid = begin + np.append(0.0, ahead[here])
+        watch = compiled.watch(e.pattern_key(mode))
+        out[here] = watch.path(states[i], grid, compiled.numbers(params, mode))[1:]
+    return out
 
-    Parameters
-    ----------
-    machine : Machine
-    word : Word
-        Of the whole cycle.
-    periods : int
-        Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
-    parameter : str
-    params : float array (P,)
-        The entry of `parameter` is the starting value only.
-    symmetric : bool
-        Solve for symmetric orbits, on half the word.
 
-    Raises
-    ------
-    ValueError
-        If the parameter is unknown, or `symmetric` is asked of a word whose halves are not mirror images.
-    """
+def strobed(
+    machine: Machine, word: Word, periods: int, node: np.ndarray, params: np.ndarray, often: int = 1
+) -> np.ndarray:
+    """Nodes of a motion without events, so often per forcing period from one of them on to its return, shape (often periods + 1, n + 1)."""
+    ahead = TWO_PI / often * np.arange(often * periods + 1)
+    places = np.zeros(len(ahead), int)
+    states = flown(machine, params, word.contact_modes, node[None, 1:], node[:1], places, ahead)
+    return np.column_stack([node[0] + ahead, states])
+
+
+class Work(NamedTuple):
+    """Arrays of one linearisation: F, dF_i/dnode_i, dF_i/dnode_{i+1}, dF/dp; then states and rates at the ends of the flights."""
+
+    residual: np.ndarray
+    own: np.ndarray
+    following: np.ndarray
+    derivative: np.ndarray
+    flown: np.ndarray
+    arrival: np.ndarray
+    first_rates: np.ndarray
+    last_rates: np.ndarray
+    end: np.ndarray
+    numbers: np.ndarray
+    drift: np.ndarray
+    still: np.ndarray
+    turned: np.ndarray  # 1 where F_u stands for its transpose
+
+
+def workspace(length: int, states: int, numbers: int) -> Work:
+    """Arrays for `length` nodes of `states` + 1 unknowns and one active parameter."""
+    L, n, d = length, states, states + 1
+    return Work(
+        np.zeros((L, d)),
+        np.zeros((L, d, d)),
+        np.zeros((L, d, d)),
+        np.zeros((L, d)),
+        np.zeros((L, n + n * (n + 1))),
+        np.zeros((L, n)),
+        np.zeros((L, n)),
+        np.zeros((L, n)),
+        np.zeros(L),
+        np.zeros((L, numbers)),
+        np.zeros(n),
+        np.zeros((n, d)),
+        np.zeros(1),
+    )
+
+
+class Pieces(Equations[Machine]):
+    """Flight by flight, in numpy; a page has no units of its own."""
 
     def __init__(
         self,
@@ -99,34 +149,17 @@ class Pieces(Against[Machine]):
         symmetric: bool = False,
     ) -> None:
         self.index = machine.place_of(parameter)
-        if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not machine.forced)):
-            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
-        if symmetric and not machine.has_mirror(np.array(params, dtype=float), parameter):
-            raise ValueError(
-                f"the machine {machine.name!r} has no mirror image along {parameter}, so no symmetric orbits"
-            )
-        self.model = self.machine = machine
-        self.word, self.periods = word, int(periods)
-        self.parameter, self.params = parameter, np.array(params, dtype=float)
-        self.symmetric, self.forced = bool(symmetric), machine.forced
-        self.mirrored = machine.has_mirror(self.params, parameter)
-        self.size, self.contacts = machine.size, len(machine.contacts)
         # a forced motion without events has a node for each of its forcing periods: doubled it is one with twice as many; for each half of them
         # where that is followed by its image
-        halves = 2 if self.mirrored and word.mirror_symmetric_halves else 1
-        whole = len(word) or (halves * self.periods if self.forced else 1)
-        self.length = whole // 2 if symmetric else whole
-        self.dimension = self.length * (self.size + 1)
-        self.twist = -1.0 if symmetric else 1.0
-        self.shift = (0.5 if symmetric else 1.0) * TURN_OF_PHASE * self.periods if self.forced else 0.0
+        mirrored = machine.has_mirror(np.array(params, dtype=float), parameter)
+        halves = 2 if mirrored and word.mirror_symmetric_halves else 1
+        whole = len(word) or (halves * int(periods) if machine.forced else 1)
+        super().__init__(machine, word, periods, parameter, params, symmetric, whole)
+        self.path = machine.path(parameter, self.params)
+        self.size, self.contacts = machine.size, len(machine.contacts)
         self.loose = loose_states(machine, word)
         self.pinned = () if symmetric else self.loose
         self.movable = self.symmetric and bool(self.loose)
-        self.unit, self.units, self.path = (
-            np.ones((whole, self.size + 1)),
-            PLAIN,
-            machine.path(parameter, self.params),
-        )
         stuck = [
             j
             for j, contact in enumerate(machine.contacts)
@@ -138,10 +171,6 @@ class Pieces(Against[Machine]):
         self.resting = () if symmetric else resting
         self.comes_back = not any(map(self._slips_one_way, range(self.contacts)))
         self.n_multipliers = (self.size if self.forced else self.size - 1) - self.trivial
-        self.n_margins = len(word.alphabet.columns) * self.length
-        self.period_shift = np.zeros(self.dimension) if self.forced else None
-        if self.period_shift is not None:
-            self.period_shift[:: self.size + 1] = TURN_OF_PHASE
         self.turned = np.full(self.size + 1, self.twist)
         self.turned[0] = 1.0
         self.identity = np.eye(self.size)
@@ -151,20 +180,20 @@ class Pieces(Against[Machine]):
 
     def _still(self, frictions: Sequence[int]) -> tuple[tuple[int, Values], ...]:
         """For each friction that sticks for ever: the state whose closing its velocity replaces, and the velocity compiled."""
-        e, found, taken = self.machine.equations, [], set(self.loose)
+        e, found, taken = self.model.equations, [], set(self.loose)
         for j in frictions:
             known = variables_of(e.velocity[j])
             places = [k for k, name in enumerate(e.layout.states) if name in known and k not in taken]
             taken.add(places[-1])
             letter = Letter("", j, STICK)
             key = e.pattern_key(self.word.entries(0))
-            found.append((places[-1], self.machine.compiled.event(letter, 0, key, (self.index,))))
+            found.append((places[-1], self.model.compiled.event(letter, 0, key, (self.index,))))
         return tuple(found)
 
     def _resting(self, frictions: Sequence[int]) -> tuple[int, ...]:
         """The places of what sticks for ever: states whose rate is a velocity that is zero all along. Their closing says nothing, and is
         replaced by that they stay where they are."""
-        e, names = self.machine.equations, self.machine.equations.layout.states
+        e, names = self.model.equations, self.model.equations.layout.states
         patterns = [e.pattern(e.pattern_key(mode)) for mode in dict.fromkeys(self.word.contact_modes)]
         velocities = [variables_of(e.velocity[j]) & set(names) for j in frictions]
         return tuple(
@@ -180,7 +209,7 @@ class Pieces(Against[Machine]):
 
     def _slips_one_way(self, j: int) -> bool:
         """Whether a friction slips, and always to the same side, though its velocity is the rate of a state, which then does not come back."""
-        e = self.machine.equations
+        e = self.model.equations
         modes = {mode[j] for mode in self.word.contact_modes} - {STUCK}
         if j not in e.velocity or modes not in ({SLIDE_BACK}, {SLIDE_ON}):
             return False
@@ -193,7 +222,7 @@ class Pieces(Against[Machine]):
 
     def _assign(self) -> None:
         """Flights, events and guards of the word, grouped so that equal ones are evaluated together."""
-        compiled, e, word = self.machine.compiled, self.machine.equations, self.word
+        compiled, e, word = self.model.compiled, self.model.equations, self.word
         modes = [word.entries(i) for i in range(self.length)]
         keys = [e.pattern_key(mode) for mode in modes]
         active = (self.index,)
@@ -235,7 +264,7 @@ class Pieces(Against[Machine]):
     @cached_property
     def guard_groups(self) -> list[tuple[Values, list[Guard], Watch, list[int]]]:
         """(guards compiled, guards, watch, flights) per pattern."""
-        compiled, e = self.machine.compiled, self.machine.equations
+        compiled, e = self.model.compiled, self.model.equations
         return [
             (
                 compiled.guards(key),
@@ -248,7 +277,7 @@ class Pieces(Against[Machine]):
 
     def allowed(self, p: float) -> bool:
         """Whether there may be such motions at a value of the parameter."""
-        return self.comes_back and not (self.machine.phase_rate == self.parameter and p <= 0.0)
+        return self.comes_back and not (self.model.phase_rate == self.parameter and p <= 0.0)
 
     def clocks(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Clock at the beginning and the end of every flight, from the nodes (L, n + 1)."""
@@ -262,4 +291,8 @@ class Pieces(Against[Machine]):
 
     def clock_rate(self, numbers: np.ndarray) -> Reals:
         """Clock per unit of time, from runtime numbers (L, ...)."""
-        return self.machine.phase_speed(numbers)
+        return self.model.phase_speed(numbers)
+
+    def workspace(self) -> Work:
+        """Arrays for the kernels."""
+        return workspace(self.length, self.size, self.base_numbers.shape[1])

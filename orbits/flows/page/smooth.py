@@ -17,9 +17,10 @@ from contvines.flows.cycles import CycleProblem
 from contvines.flows.equilibria import Equilibria
 from orbits.contacts.dry_friction import STUCK, DryFriction
 from orbits.contacts.wall import HELD, Wall
-from orbits.flows.page import measures, sampling
+from orbits.flows.equations import newton
+from orbits.flows.page import measures
+from orbits.flows.page.flow import PageFlow
 from orbits.flows.protocol import checked_start
-from orbits.flows.solving import newton
 from orbits.integrators.expressions import derivatives, variable, written
 from orbits.machines.page.compiled import moving
 from orbits.machines.page.loading import machine_again
@@ -236,7 +237,7 @@ def on_border(equations: Equations, u: np.ndarray, p: float, margin: int) -> tup
         found, _, residual, _ = newton(equations, u, p)
         if not np.isfinite(residual):
             return found, np.nan
-        equations.kernels.examine(equations, found, p, equations.scratch, row)
+        equations.kernels.examine(equations.data, found, p, equations.scratch, row)
         return found, float(row[2 * equations.n_multipliers + margin])
 
     before, here, q = at(p)[1], np.nan, p + SOLVING.shift * (1.0 + abs(p))
@@ -294,7 +295,7 @@ def cycles_of(orbit: Motion):
     """
     machine = orbit.model
     assert isinstance(machine, Machine)
-    table = sampling.sample(orbit, SAMPLES)
+    table = PageFlow().sample(orbit, SAMPLES)
     states = np.column_stack([table[name] for name in machine.states])
     flow = smooth(machine, orbit.word.entries(0), orbit.params, states[0])
     return flow.cycle_at(orbit.parameters, table["time"], states)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -20,10 +20,17 @@ if TYPE_CHECKING:
     from orbits.integrators.protocol import Run, Watch
     from orbits.machines.page.patterns import Guard
 
-    Tools = tuple[Run, Values, list[Guard], np.ndarray, Watch]
-
 TWO_PI = 2.0 * np.pi
 HALVINGS = 6  # of the way to the top of a hop, where something else happens on it
+
+
+class Tools(NamedTuple):
+    """What is compiled for a mode: flights up to the first guard that falls, flights that go on, and the guards with their rates."""
+
+    run: Run
+    watch: Watch
+    values: Values
+    guards: list[Guard]
 
 
 class Stepper:
@@ -49,7 +56,8 @@ class Stepper:
         self.modes: tuple[int, ...] = ()
         self.count = 0  # events so far
         self._last = -1  # the contact of the event before, where another one may follow at the same instant
-        self._cache: dict[tuple[int, ...], Tools] = {}
+        self._made: dict[tuple[int, ...], Tools] = {}
+        self._numbers: dict[tuple[int, ...], np.ndarray] = {}
         self._pushes: dict[tuple[int, tuple[int, ...]], Values] = {}
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
         self._touched = {  # frictions and switches whose sign an impact may change, and where the impact's map tells it
@@ -76,7 +84,7 @@ class Stepper:
     def renew(self, params: np.ndarray) -> None:
         """Go on with other parameters, on which neither gaps nor surfaces nor velocities of contacts depend; what sticks may begin to slide."""
         self.params = params
-        self._cache.clear()
+        self._numbers.clear()
         if any(self.modes[j] == STUCK for j in self._frictions):
             self.start(self.state, self.base + self.clock)
 
@@ -129,7 +137,7 @@ class Stepper:
         """Gaps, velocities and surfaces at the state: one value per contact."""
         if not self.machine.contacts:
             return np.zeros(0)
-        return self._values.one(self.state, self.clock, self._tools(self.modes)[3])
+        return self._now(self._values)
 
     def _impacts_at_start(self, values: np.ndarray) -> None:
         for j, contact in enumerate(self.machine.contacts):
@@ -137,25 +145,42 @@ class Stepper:
                 self._struck(j)
 
     # ------------------------------------------------------------------ laws
-    def _tools(self, modes: tuple[int, ...]) -> Tools:
-        """(run, guards, list of guards, numbers, watch) of a mode."""
-        found = self._cache.get(modes)
+    @property
+    def _tools(self) -> Tools:
+        """Those of the mode."""
+        found = self._made.get(self.modes)
         if found is None:
-            key = self.equations.pattern_key(modes)
-            found = self._cache[modes] = (
-                self.compiled.run(key),
-                self.compiled.guards(key),
-                self.equations.pattern(key).guards,
-                self.compiled.numbers(self.params, modes),
-                self.compiled.watch(key),
-            )
+            key, compiled = self.equations.pattern_key(self.modes), self.compiled
+            guards = self.equations.pattern(key).guards
+            found = Tools(compiled.run(key), compiled.watch(key), compiled.guards(key), guards)
+            self._made[self.modes] = found
         return found
 
-    def _guards(self, modes: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray, list[Guard]]:
-        """Values and rates of the guards in a mode, at the state, and the guards."""
-        _, values, guards, numbers, _ = self._tools(modes)
-        row = values.one(self.state, self.clock, numbers)
-        return row[: len(guards)], row[len(guards) :], guards
+    @property
+    def numbers(self) -> np.ndarray:
+        """The runtime numbers of the mode."""
+        found = self._numbers.get(self.modes)
+        if found is None:
+            found = self._numbers[self.modes] = self.compiled.numbers(self.params, self.modes)
+        return found
+
+    def _now(self, values: Values) -> np.ndarray:
+        """Functions at the state, in the mode."""
+        return values.one(self.state, self.clock, self.numbers)
+
+    def _guards(self, modes: tuple[int, ...] | None = None) -> list[tuple[float, float, Guard]]:
+        """Value and rate of every guard at the state, in a mode (that one in which it is), and the guard."""
+        kept = self.modes
+        self.modes = kept if modes is None else modes
+        tools = self._tools
+        row, count = self._now(tools.values).tolist(), len(tools.guards)
+        self.modes = kept
+        return list(zip(row[:count], row[count:], tools.guards))
+
+    def _move(self, until: float) -> None:
+        """Move on to a clock, whatever happens."""
+        self._tools.watch.move(self.state, self.clock, until, self.numbers)
+        self.clock = until
 
     def _with(self, contact: int, mode: int) -> tuple[int, ...]:
         changed = list(self.modes)
@@ -164,22 +189,17 @@ class Stepper:
 
     def _at_rest(self, friction: int) -> int:
         """The mode of a friction whose velocity is zero: stuck, or the sign of the motion that begins."""
-        values, _, guards = self._guards(self._with(friction, STUCK))
-        for value, guard in zip(values, guards):
+        for value, _, guard in self._guards(self._with(friction, STUCK)):
             if guard.contact == friction and value < 0.0:
                 return guard.sign
         return STUCK
 
     def _gap_rate(self, wall: int) -> float:
-        return float(
-            self._impacts[wall].one(self.state, self.clock, self._tools(self.modes)[3])[len(self.state)]
-        )
+        return float(self._now(self._impacts[wall])[len(self.state)])
 
     def _impact(self, wall: int) -> int:
         """Newton's law; HOLD where impacts have piled up or leave no speed, else HIT."""
-        numbers = self._tools(self.modes)[3]
-        row = self._impacts[wall].one(self.state, self.clock, numbers)
-        n = len(self.state)
+        row, n = self._now(self._impacts[wall]), len(self.state)
         before = float(row[n])
         self.state[:] = row[:n]
         for j, place in self._touched[wall]:
@@ -231,13 +251,12 @@ class Stepper:
 
     def _rest(self, walls: list[int], near: float) -> None:
         """Take out the rates of gaps of walls that hold, each of which changes the others by as much as the masses differ."""
-        numbers = self.compiled.numbers(self.params, self.modes)
         for _ in range(HALVINGS):
             moving = [wall for wall in walls if abs(self._gap_rate(wall)) > near]
             if not moving:
                 return
             for wall in moving:
-                self.state[:] = self.compiled.settled(wall).one(self.state, self.clock, numbers)
+                self.state[:] = self._now(self.compiled.settled(wall))
 
     def _let_go(self, wall: int, opening: bool = True) -> None:
         """A wall holds no more; frictions that it held slide as its gap opens or closes."""
@@ -250,9 +269,7 @@ class Stepper:
 
     def _off(self, wall: int) -> None:
         """Of a body that sticks at a wall: the gap is opened by roundoff, for it would fall through zero by that again and again."""
-        numbers = self._tools(self.modes)[3]
-        slopes = self.compiled.gap_slopes(wall).one(self.state, self.clock, numbers)
-        gap = float(self._values.one(self.state, self.clock, numbers)[wall])
+        slopes, gap = self._now(self.compiled.gap_slopes(wall)), float(self.contact_values()[wall])
         self.state += (EVENTS.zero * (1.0 + np.abs(self.state).max()) - gap) * slopes / float(slopes @ slopes)
 
     def _push_back(self, wall: int) -> float:
@@ -261,13 +278,11 @@ class Stepper:
         if values is None:
             key = self.equations.pattern_key(self.modes)
             values = self._pushes[wall, self.modes] = self.compiled.gap_acceleration(wall, key)
-        return float(values.one(self.state, self.clock, self._tools(self.modes)[3])[0])
+        return float(self._now(values)[0])
 
     def _hold(self, wall: int) -> int:
         """Rest on a wall: the rate of the gap that is left is taken out."""
-        self.state[:] = self.compiled.settled(wall).one(
-            self.state, self.clock, self.compiled.numbers(self.params, self.modes)
-        )
+        self.state[:] = self._now(self.compiled.settled(wall))
         modes = list(self._with(wall, HELD))
         values = self.contact_values()
         for j, _ in self._touched[wall]:  # the last impact may have turned a velocity that is left as it was
@@ -303,24 +318,23 @@ class Stepper:
                 self.count += 1
                 return event
         while True:
-            run, _, guards, numbers, watch = self._tools(self.modes)
-            before, began = self.state.copy(), self.clock
+            tools, before, began = self._tools, self.state.copy(), self.clock
             if self._fresh:
                 self._fresh = False
-                self._leave(watch, numbers, min(self.clock + EVENTS.leave, end))
+                self._leave(min(self.clock + EVENTS.leave, end))
             elif self._hop:
-                self._rise(watch, numbers, end)
+                self._rise(end)
             self._hop = 0.0
             if not end > self.clock:
                 self._rebase()
                 return None
-            self.clock, place = run(self.state, self.clock, end, numbers)
+            self.clock, place = tools.run(self.state, self.clock, end, self.numbers)
             if place is None:
                 self._rebase()
                 return None
             if place < 0:
                 raise SimulationError(self._lost(before, began))
-            guard = self._first(guards[place])
+            guard = self._first(tools.guards[place])
             event = self._happened(guard)
             if event is not None:
                 self.count += 1
@@ -348,11 +362,10 @@ class Stepper:
 
     def _vanishing(self) -> list[Guard]:
         """Turns and slips that happen now, and walls that would have to pull."""
-        values, rates, guards = self._guards(self.modes)
         touch, together = EVENTS.touch, EVENTS.together
         return [
-            guard  # asked after every event: plain numbers compare faster than those of numpy
-            for value, rate, guard in zip(values.tolist(), rates.tolist(), guards)
+            guard
+            for value, rate, guard in self._guards()
             if (rate < -touch and guard.kind in (SLIP, TURN) and abs(value) < together * (1.0 - rate))
             or (value < -touch and guard.kind in (SLIP, RELEASE))
         ]
@@ -366,46 +379,41 @@ class Stepper:
                 return f"the motion of {name} cannot go on: {found}; start elsewhere, or write the formula so that it is a number there"
         return f"the motion of {name} left the range of numbers: give parameters and a start of moderate size"
 
-    def _leave(self, watch: Watch, numbers: np.ndarray, end: float) -> None:
+    def _leave(self, end: float) -> None:
         """Leave a surface on which a quantity starts without a rate, unless something else happens first."""
         if not end > self.clock:
             return
-        before = self.state.copy()
-        watch.move(self.state, self.clock, end, numbers)
-        begin, self.clock = self.clock, end
-        for value, rate, guard in zip(*self._guards(self.modes)):
+        before, begin = self.state.copy(), self.clock
+        self._move(end)
+        for value, rate, guard in self._guards():
             if value <= 0.0 and rate < 0.0 and guard.kind == HIT:  # a gap that opens is negative by roundoff
                 self.state, self.clock = before, begin
                 if self.contact_values()[guard.contact] <= EVENTS.zero * (1.0 + np.abs(self.state).max()):
                     self._off(guard.contact)
                 return
 
-    def _rise(self, watch: Watch, numbers: np.ndarray, end: float) -> None:
+    def _rise(self, end: float) -> None:
         """Go to the top of a short hop: its end is then looked for from there, for beside a zero at the very beginning another one may be lost."""
         before, begin = self.state.copy(), self.clock
         for _ in range(HALVINGS):
             there = begin + self._hop * self.clock_rate
             if begin < there < end:
-                watch.move(self.state, begin, there, numbers)
-                self.clock = there
-                if np.all(self._guards(self.modes)[0] > 0.0):
+                self._move(there)
+                if all(value > 0.0 for value, _, _ in self._guards()):
                     return
                 self.state[:], self.clock = before, begin
             self._hop *= 0.5
 
     def _settle_touches(self) -> None:
         """A start on the surface of a switch that is only touched is on the side to which the flow leads."""
-        values, rates, guards = self._guards(self.modes)
         near = EVENTS.touch * (1.0 + np.abs(self.state).max())
-        for value, rate, guard in zip(values, rates, guards):
+        for value, rate, guard in self._guards():
             if guard.kind == SWITCH and abs(value) < near and abs(rate) < near:
-                _, _, _, numbers, watch = self._tools(self.modes)
-                moved = self.state.copy()
-                watch.move(moved, self.clock, self.clock + EVENTS.leave, numbers)
-                kept, self.state = self.state, moved
-                there = self._guards(self.modes)[0]
-                self.state = kept
-                if next(v for v, g in zip(there, guards) if g is guard) < 0.0:
+                kept = self.state.copy(), self.clock
+                self._move(self.clock + EVENTS.leave)
+                crossed = next(value for value, _, g in self._guards() if g is guard) < 0.0
+                self.state, self.clock = kept
+                if crossed:
                     self.modes = self._with(guard.contact, -self.modes[guard.contact])
 
     def _rebase(self) -> None:
@@ -420,18 +428,14 @@ class Stepper:
 
     def _touches(self, switch: int) -> bool:
         """Whether the surface of a switch is only touched; the state has then moved past it."""
-        values, rates, guards = self._guards(self.modes)
-        place = next(k for k, g in enumerate(guards) if g.contact == switch)
-        if abs(rates[place]) > EVENTS.touch * (1.0 + np.abs(self.state).max()):
+        place, rate = next((k, r) for k, (_, r, g) in enumerate(self._guards()) if g.contact == switch)
+        if abs(rate) > EVENTS.touch * (1.0 + np.abs(self.state).max()):
             return False
-        _, _, _, numbers, watch = self._tools(self.modes)
-        before = self.state.copy()
-        watch.move(self.state, self.clock, self.clock + EVENTS.leave, numbers)
-        self.clock += EVENTS.leave
-        values, _, _ = self._guards(self.modes)
-        if values[place] > 0.0:
+        kept = self.state.copy(), self.clock
+        self._move(self.clock + EVENTS.leave)
+        if self._guards()[place][0] > 0.0:
             return True
-        self.state, self.clock = before, self.clock - EVENTS.leave
+        self.state, self.clock = kept
         return False
 
     def _driven(self, friction: int) -> int | None:
@@ -441,9 +445,8 @@ class Stepper:
         )
         if wall is None:
             return None
-        values, _, guards = self._guards(self._with(friction, STUCK))
         # the reserves to both sides add up to twice the limit, times what a unit of force moves
-        freedom = sum(v for v, g in zip(values, guards) if g.contact == friction)
+        freedom = sum(v for v, _, g in self._guards(self._with(friction, STUCK)) if g.contact == friction)
         return None if freedom > 0.0 else wall
 
     def _turned_by(self, wall: int, friction: int) -> tuple[int, int, int]:
@@ -452,8 +455,7 @@ class Stepper:
         Where the wall lets go what becomes of the velocity is the next event.
         """
         turned = self._with(friction, -self.modes[friction])
-        values, _, guards = self._guards(turned)
-        if any(v < 0.0 for v, g in zip(values, guards) if g.contact == wall and g.kind == RELEASE):
+        if any(v < 0.0 for v, _, g in self._guards(turned) if g.contact == wall and g.kind == RELEASE):
             self._let_go(wall)
             return wall, RELEASE, 0
         self.modes = turned
@@ -487,8 +489,7 @@ class Stepper:
             return None
         after = -self.modes[j]
         self.modes = self._with(j, after)
-        values, rates, guards = self._guards(self.modes)
-        rate = next(r for r, g in zip(rates, guards) if g.contact == j and g.kind == SWITCH)
+        rate = next(r for _, r, g in self._guards() if g.contact == j and g.kind == SWITCH)
         if rate < 0.0:
             raise SimulationError(
                 f"switch {self.machine.contacts[j].name!r}: both flows lead to its surface, so the motion would slide along it; "

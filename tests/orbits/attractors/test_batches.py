@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from orbits.simulation import batches, simulate
-from orbits.simulation.batches import AT_REST, SETTLED, settle_all
+from orbits.flows.native import batches
+from orbits.flows.native.batches import AT_REST, SETTLED, settle_all
+from orbits.simulation import simulate
 from tests.machines import ABSORBER
 
 

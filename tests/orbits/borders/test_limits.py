@@ -9,8 +9,8 @@ from contvines.continuation.engine import Engine, Solved
 from contvines.continuation.settings import Settings
 from orbits import Absorber, Cavity, Coupled
 from orbits.attractors import find_attractor
+from orbits.flows.catalogue import simulator_of
 from orbits.simulation.replaying import monodromy
-from orbits.simulation.runs import simulator_of
 from orbits.starts.find import polish
 from tests.machines import ABSORBER
 

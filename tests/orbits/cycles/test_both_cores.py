@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from contvines.core.library import native
 from orbits import arguments
-from orbits.flows.native.cycle_equations import Equations
-from orbits.flows.native.kernels import assemble
+from orbits.flows.native.cycle_equations import NativeEquations as Equations
+from orbits.flows.native.cycle_equations import assemble
 from orbits.flows.native.reference_kernels import ReferenceKernels
 from orbits.machines.names import NAMES, NATIVE, usual
 from orbits.machines.reference.machine import reference

@@ -5,9 +5,8 @@ import pytest
 
 import contvines as cv
 from orbits import Absorber
-from orbits.cycles.deviation import by_events
-from orbits.cycles.identity import is_symmetric
-from orbits.simulation.replaying import replay
+from orbits.cycles.cycle import is_symmetric
+from orbits.simulation.replaying import by_events, replay
 from orbits.words import Word
 from tools.fuzz.drawing import draw
 from tools.fuzz.many_digits import exact

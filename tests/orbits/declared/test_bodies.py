@@ -68,7 +68,7 @@ def test_laws(shaking, stiffness, weight, mass, room, restitution, between, belo
         below=below,
         frequency=1.5,
     )
-    clocks = np.linspace(run.clocks[0], run.end, 1500)
+    clocks = np.linspace(run.clocks[0], run.finish, 1500)
     x1, x2, v1, v2 = (states := run.sample(clocks)).T
     small = ROUNDOFF * (1.0 + np.abs(states).max())
     piece = np.searchsorted(run.clocks, clocks, side="right") - 1

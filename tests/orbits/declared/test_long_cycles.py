@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orbits.flows.page import flights
+from orbits.flows.page import cycle_equations as flights
+from orbits.flows.page.pieces import workspace
 
 
 @pytest.mark.parametrize(("states", "length"), [(2, 41), (2, 60), (6, 18), (6, 25)])
@@ -14,7 +15,7 @@ def test_by_blocks_as_the_whole_matrix_has_it(states, length, transposed):
     d, size = states + 1, length * (states + 1)
     assert size > flights.CYCLIC
     draw = np.random.default_rng(length).standard_normal
-    work = flights.workspace(length, states, 3)
+    work = workspace(length, states, 3)
     for part in (work.own, work.following, work.derivative, work.residual):
         part[:] = draw(part.shape)
     mirror, border = np.array([1.0, *[-1.0] * states]), draw(size + 1)

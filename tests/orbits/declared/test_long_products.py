@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from orbits.flows.page.flights import _periodic
+from orbits.flows.page.cycle_equations import _periodic
 
 
 @pytest.mark.parametrize("size", [1, 3, 5])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orbits import Word
-from orbits.flows.page.growth import growth
 from orbits.flows.page.stepper import Stepper
+from orbits.flows.page.variations import growth
 from tests.machines import ABSORBER
 from tools.pages.pages import page
 

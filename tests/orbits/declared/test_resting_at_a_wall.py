@@ -41,7 +41,7 @@ def test_it_stays(rub: float, part: float, restitution: float) -> None:
     run = MACHINE.simulate(
         {"q": 0.0}, periods=10, shaking=0.1 + part * rub, rub=rub, restitution=restitution, frequency=1.5
     )
-    assert np.abs(run.sample(np.linspace(0.1, run.end, 200))).max() < 1e-9
+    assert np.abs(run.sample(np.linspace(0.1, run.finish, 200))).max() < 1e-9
 
 
 def test_starts_of_a_machine_that_rests() -> None:
@@ -68,5 +68,5 @@ def test_a_wall_that_moves_turns_the_friction_of_the_body_it_holds():
     turns = [clock for letter, clock in zip(run.letters, run.clocks[1:]) if letter == "t"]
     np.testing.assert_allclose(turns, np.pi * np.arange(1, 1 + len(turns)), atol=1e-9)
     assert len(turns) == 8 and set(run.letters) <= {"t", "L", "(L"}
-    clocks = np.linspace(run.clocks[0], run.end, 200)
+    clocks = np.linspace(run.clocks[0], run.finish, 200)
     np.testing.assert_allclose(run.sample(clocks)[:, 0], 0.8 * np.cos(clocks), atol=1e-9)

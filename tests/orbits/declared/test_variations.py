@@ -6,8 +6,8 @@ import pytest
 pytest.importorskip("heyoka")
 
 from orbits import DryFriction, Machine, Switch, Wall
-from orbits.simulation.runs import simulator_of
-from orbits.simulation.section import Section
+from orbits.flows.catalogue import simulator_of
+from orbits.simulation.runs import Section
 from orbits.symbols import cos, sin, sqrt
 from orbits.words import Word
 

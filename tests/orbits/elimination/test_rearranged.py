@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from orbits.arguments import workspace
-from orbits.flows.native import rearranged
+from orbits.arguments import jacobian, workspace
 from tests.orbits.elimination.closures import both_cores, closed_by, kernels_of
 
 
@@ -40,7 +39,7 @@ def test_transposed_systems(core, node, twist, length):
     work, draw = drawn(length, node, 10 * node + length)
     data, size = closed_by(twist), node * length
     matrix = written_out(work, twist)
-    np.testing.assert_allclose(rearranged.matrix(data, work), matrix, atol=1e-15)
+    np.testing.assert_allclose(jacobian(data, work), matrix, atol=1e-15)
     other = workspace(length, node, 6)
     b, c = draw.normal(size=(2, size))
     kernels_of(core).transpose(data, work, c, other)

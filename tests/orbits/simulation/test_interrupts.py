@@ -8,10 +8,10 @@ import pytest
 
 from orbits import Absorber, Coupled
 from orbits.design import record
+from orbits.flows.native import batches
+from orbits.flows.native.simulator import first_state, skip
 from orbits.machines.names import usual
 from orbits.machines.native_stepper import stepper
-from orbits.simulation import batches
-from orbits.simulation.driver import first_state, skip
 
 pytestmark = [
     pytest.mark.slow,

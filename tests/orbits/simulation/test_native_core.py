@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contvines.core.library import native
+from orbits.flows.native.simulator import collect
 from orbits.machines.names import model_class
 from orbits.machines.native_stepper import stepper
 from orbits.machines.reference.machine import reference
 from orbits.machines.stepping import MODE, PSI, RATE, REST, TIME_REACHED, TURNS, V_RATE, V, W
-from orbits.simulation.driver import collect
 
 pytestmark = pytest.mark.skipif(not native(), reason="the native core is not loaded")
 NAMES = ("absorber", "cavity", "coupled")

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from orbits.flows.native.simulator import first_state
 from orbits.machines.native_stepper import stepper as machine
 from orbits.machines.physical import physical
 from orbits.machines.reference.machine import reference
-from orbits.simulation.driver import first_state
 
 CASE = {
     "oscillator_mass": "3.8 kg", "natural_frequency": "8 Hz", "damping_ratio": 0.007, "absorber_mass": "32 g", "half_width": "14 mm",

@@ -5,23 +5,38 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.flows.protocol import Batch, SimulationError, Waiting
+from orbits.flows.native.batches import GROWTH, lyapunov, settle_all
+from orbits.flows.native.trajectory import KINDS, NativeTrajectory
+from orbits.flows.protocol import Batch, SimulationError, Simulator, Waiting, checked_start
+from orbits.flows.trajectory import TWO_PI
+from orbits.machines.base import Model
 from orbits.machines.native_stepper import stepper
-from orbits.machines.stepping import FAILED, MODE, PSI, RATE, REST, TURNS, V, W
-from orbits.settings import REPLAYING, SIMULATING
-from orbits.simulation.batches import GROWTH, lyapunov, settle_all
-from orbits.simulation.creeping import move_on
-from orbits.simulation.driver import MOST_EVENTS, buffers, collect, first_state, skip
-from orbits.simulation.native_trajectory import NativeTrajectory
+from orbits.machines.stepping import (
+    EVENTS_FULL,
+    FAILED,
+    HOLD,
+    MODE,
+    PSI,
+    RATE,
+    REST,
+    TURNS,
+    V_RATE,
+    Stepper,
+    V,
+    W,
+    buffers,
+)
+from orbits.settings import EVENTS, REPLAYING, SIMULATING
+from orbits.words import Word
 
-if TYPE_CHECKING:
-    from orbits.machines.base import Model
-    from orbits.words import Word
-
+FIRST, CHUNK = 256, 16384  # events that are kept at once
+ROOM = 1024  # events that are made at once where none is kept
+MOST_EVENTS = 1_000_000
+_KEYS = {"phase": PSI, "w": W, "w_rate": RATE, "v": V, "v_rate": V_RATE}
+_BODIES = ("q1", "q2", "q1_rate", "q2_rate")
 PER_PERIOD = 400  # events
 SPEEDS = 2.5  # a box of starts: relative velocities up to so many times the cavity's, and at least this
 TRANSIENTS = (
@@ -33,7 +48,7 @@ TRANSIENTS = (
 FOREVER = 1_000_000.0  # periods: only a motion that keeps off the walls lasts so long without events
 
 
-class NativeSimulator:
+class NativeSimulator(Simulator[Model, NativeTrajectory]):
     """See the contract at the top of `orbits.flows.protocol`.
 
     Attributes
@@ -56,38 +71,14 @@ class NativeSimulator:
         self.engine = stepper(model.name)
         self.state = np.zeros(self.engine.state)
         self._places = list(self.engine.places)
-        self._scratch = buffers(self.engine, 64)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Position and velocity in the cavity, then those of the centre of mass."""
-        return self.engine.coordinates
-
-    @property
-    def mirrored(self) -> bool:
-        """Whether the machine equals its mirror image."""
-        return self.model.has_mirror(self.params)
-
-    def image(self, point: np.ndarray) -> np.ndarray:
-        """A point mirrored about the middle between the walls."""
-        image = -point
-        image[0] += 2.0 * float(self.model.middle(self.params))
-        return image
+        self.names = self.engine.coordinates
+        self.roomy = self.engine.moving_cavity  # two frequencies need four dimensions
+        self.hard = np.arange(len(self._places)) == 0
 
     @property
     def modes(self) -> int:
         """What the friction does."""
         return int(self.state[MODE])
-
-    @property
-    def roomy(self) -> bool:
-        """Two frequencies need four dimensions."""
-        return self.model.moving_cavity
-
-    @property
-    def hard(self) -> np.ndarray:
-        """The walls limit the position in the cavity."""
-        return np.arange(len(self._places)) == 0
 
     @property
     def time(self) -> float:
@@ -104,11 +95,7 @@ class NativeSimulator:
         self.state = np.zeros(self.engine.state)
         self.state[PSI] = 2.0 * np.pi * time
         self.state[self._places] = point
-        left, right = self.engine.walls(self.params)
-        if not right <= self.state[W] <= left:
-            raise SimulationError(
-                f"w = {self.state[W]:g} lies outside the cavity: give {right:g} <= w <= {left:g}"
-            )
+        _check(self.state, self.engine.walls(self.params))
         self.engine.launch(self.state, self.params)
 
     def put(self, start: Mapping[str, float] | np.ndarray | None) -> None:
@@ -137,17 +124,11 @@ class NativeSimulator:
     def follow(self, until: float) -> None:
         """Move on; `SimulationError` if the motion is not finite or comes to rest for ever."""
         most = int(PER_PERIOD * max(until - self.time + 1.0, 1.0))
-        status = skip(self.engine, self.state, self.params, until, most, self._scratch)
+        status = skip(self.engine, self.state, self.params, until, most)
         if status == FAILED or not abs(self.time - until) < SIMULATING.whole:
             raise SimulationError(
                 f"the motion of {self.model.name!r} does not go on to {until:g} forcing periods"
             )
-
-    def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Move on by a period of a cycle, without derivatives."""
-        self.follow(self.time + periods)
-        n = len(self._places)
-        return np.full((n, n), np.nan), np.full(n, np.nan)
 
     def run(self, periods: float, most: int = MOST_EVENTS) -> NativeTrajectory:
         """Move on and keep the motion; `SimulationError` if it leaves the range of numbers."""
@@ -162,8 +143,9 @@ class NativeSimulator:
         if begin[MODE] == 0.0 and begin[W] not in walls and self.model.frictionless(self.params):
             # off the walls nothing rests without friction, not even at the instant at which nothing pushes
             begin[MODE] = 1.0
-        events = codes, modes, rows, status
-        return NativeTrajectory.of(self.model, self.params, self.engine, begin, state.copy(), events)
+        clocks = np.append(_clock(begin), rows[:, 0] + TWO_PI * rows[:, 1])
+        ends = float(_clock(state)), KINDS[codes], status, self.engine, begin, state.copy()
+        return NativeTrajectory(self.model, self.params, clocks, *ends, codes, modes, rows)
 
     def struck(self, point: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Of a point at a wall the other one there and the direction away from the wall; None elsewhere."""
@@ -219,23 +201,28 @@ class NativeSimulator:
         return True
 
     def move_on(self, run: NativeTrajectory, longest: int) -> bool:
-        """Move a motion that creeps along the cavity to a wall; see `orbits.simulation.creeping`."""
+        """Move a motion that creeps along the cavity to a wall."""
         if self.engine.moving_cavity or not len(run):
             return False
-        return move_on(self.engine, self.params, self.state, run.nodes, run.codes, run.modes, longest)
+        ways = creep(run.nodes, run.codes, run.modes, longest)
+        if ways is None:
+            return False
+        left, right = self.engine.walls(self.params)
+        places, way = run.nodes[-len(ways) :, 1], float(ways[-1])  # the turns and sticks are the furthest
+        room = left - places.max() if way > 0.0 else right - places.min()
+        times = math.floor(room / way) - 1
+        if times < 1:
+            return False
+        self.state[W] += times * way
+        return True
 
     def push(self) -> None:
         """Change its velocity a little."""
         self.state[RATE] *= 1.0 + REPLAYING.displaced
 
     def growth(self) -> tuple[float, float]:
-        """See `orbits.simulation.batches.lyapunov`."""
+        """See `orbits.flows.native.batches.lyapunov`."""
         return lyapunov(self.model.name, self.state, self.params)
-
-    def section(self) -> tuple[str, np.ndarray]:
-        """Move on to the next whole forcing period."""
-        self.follow(math.floor(self.time) + 1.0)
-        return "", self.point
 
     # ------------------------------------------------------------------ many starts
     def box(self) -> np.ndarray:
@@ -249,12 +236,8 @@ class NativeSimulator:
         rows = [[0.0, 2.0 * math.pi], [right, left], [-rate, rate], [-reach, reach], [-reach, reach]]
         return np.array(rows[: 1 + len(self._places)])
 
-    def free(self, points: np.ndarray) -> np.ndarray:
-        """The box lies between the walls."""
-        return np.ones(len(points), dtype=bool)
-
     def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> Batch:
-        """See `orbits.simulation.batches.settle_all`."""
+        """See `orbits.flows.native.batches.settle_all`."""
         states = np.zeros((len(points), self.engine.state))
         states[:, [PSI, *self._places]] = points
         found = settle_all(
@@ -274,3 +257,107 @@ class NativeSimulator:
 def cores() -> int:
     """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _clock(state: np.ndarray) -> float:
+    return state[PSI] + TWO_PI * state[TURNS]
+
+
+def first_state(
+    model: Model, engine: Stepper, params: np.ndarray, start: Mapping[str, float] | np.ndarray | None
+) -> np.ndarray:
+    """The state, shape (S,), that a start describes; `SimulationError` if it cannot be one."""
+    state = np.zeros(engine.state)
+    if isinstance(start, np.ndarray):
+        if start.shape != state.shape:
+            raise SimulationError(
+                f"the start has shape {start.shape}: a state of {model.name!r} has {state.shape}"
+            )
+        state[:] = start
+        _check(state, engine.walls(params))
+        return state
+    given = dict(start or {})
+    allowed = [key for key, place in _KEYS.items() if place < engine.state]
+    if engine.moving_cavity:
+        allowed += _BODIES
+        if any(key in given for key in _BODIES):
+            q1, q2, q1_rate, q2_rate = (float(given.pop(key, 0.0)) for key in _BODIES)
+            w, v = model.relative(q1, q2, params)
+            w_rate, v_rate = model.relative(q1_rate, q2_rate, params)
+            given = {"w": w, "w_rate": w_rate, "v": float(v), "v_rate": float(v_rate)} | given
+    for key, value in checked_start(given, allowed).items():
+        state[_KEYS[key]] = value
+    _check(state, engine.walls(params))
+    engine.launch(state, params)
+    return state
+
+
+def _check(state: np.ndarray, walls: tuple[float, float]) -> None:
+    if not np.all(np.isfinite(state)):
+        raise SimulationError("the start is not finite: give numbers for phase, w and w_rate")
+    left, right = walls
+    rounding = 16.0 * np.finfo(float).eps * (left - right)  # of a motion that begins at a wall
+    if not right - rounding <= state[W] <= left + rounding:
+        raise SimulationError(f"w = {state[W]:g} lies outside the cavity: give {right:g} <= w <= {left:g}")
+    state[W] = min(max(state[W], right), left)
+
+
+def collect(
+    engine: Stepper, state: np.ndarray, params: np.ndarray, until: float, most: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """Run on from `state` (changed in place) for at most `most` events; returns codes, modes, rows and the status."""
+    parts = []
+    status = EVENTS_FULL
+    left = most
+    while left > 0 and status == EVENTS_FULL:
+        size = min(left, CHUNK if parts else FIRST)  # most runs are short
+        codes, modes, rows = buffers(engine, size)
+        count, status = engine.advance(state, params, until, codes, modes, rows)
+        parts.append((codes[:count], modes[:count], rows[:count]))
+        left -= count
+    codes, modes, rows = (np.concatenate(column) for column in zip(*(parts or [buffers(engine, 0)])))
+    return codes, modes, rows, status
+
+
+def skip(engine: Stepper, state: np.ndarray, params: np.ndarray, until: float, most: int) -> int:
+    """Run on from `state` (changed in place) without keeping events; returns the status."""
+    room, status = buffers(engine, ROOM), EVENTS_FULL
+    while most > 0 and status == EVENTS_FULL:
+        count, status = engine.advance(state, params, until, *room)
+        most -= count
+    return status
+
+
+def creep(nodes: np.ndarray, codes: np.ndarray, modes: np.ndarray, max_period: int) -> np.ndarray | None:
+    """The ways from the last events' places to those before them, shape (events of a recurrence,); None where the motion does not creep.
+
+    Creep is a motion without impacts that comes back after some periods but for a little way along the cavity: where friction holds less one way
+    than the other (a slope, unlike walls' frictions) the absorber slips a little further in every period. Between the walls all places are
+    alike as long as the cavity moves as prescribed, so each time the way is the same, and the motion may be moved on by as many of these
+    ways as there is room for: what it settles on is decided at the wall.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n, NODE)
+        Of a motion, phases counted through.
+    codes, modes : ndarray of int, shape (n,)
+    max_period : int
+        Longest recurrence, in forcing periods.
+    """
+    n = len(codes)
+    if n < 2 or codes.min() < 2 or codes.max() >= HOLD:
+        return None
+    for length in range(1, n // 2 + 1):
+        here, before = slice(n - length, n), slice(n - 2 * length, n - length)
+        if not (np.array_equal(codes[here], codes[before]) and np.array_equal(modes[here], modes[before])):
+            continue
+        shift = nodes[here, :2] - nodes[before, :2]
+        periods = round(float(shift[-1, 0]) / TWO_PI)
+        if periods > max_period:
+            return None
+        way = float(shift[-1, 1])
+        late = np.abs(shift[:, 0] - TWO_PI * periods).max()
+        uneven = np.abs(shift[:, 1] - way).max()
+        if periods and abs(way) > EVENTS.zero and max(late, uneven) < SIMULATING.steady * abs(way):
+            return shift[:, 1]
+    return None

@@ -25,9 +25,9 @@ from orbits.machines.stepping import (
     TURNS,
     Stepper,
     W,
+    buffers,
 )
 from orbits.settings import SIMULATING
-from orbits.simulation.driver import buffers
 
 SETTLED, AT_REST, LOST, WANDERING = Outcome.SETTLED, Outcome.AT_REST, Outcome.LOST, Outcome.WANDERING
 GROWTH = 4000  # forcing periods over which the growth of small differences is followed

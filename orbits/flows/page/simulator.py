@@ -1,4 +1,4 @@
-"""Event-driven simulation of declared machines: exact event lists, and the motion between the events."""
+"""A page's motion on its way (`orbits.flows.protocol`), round the stepper, and as it is kept: exact event lists, and the motion between them."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ import numpy as np
 
 from orbits.contacts.letters import HOLD, RELEASE
 from orbits.contacts.wall import HELD, Wall
-from orbits.flows.page.growth import growth
-from orbits.flows.page.sampling import along
+from orbits.flows.page.pieces import flown
 from orbits.flows.page.stepper import TWO_PI, Stepper
-from orbits.flows.page.variations import Variations
-from orbits.flows.protocol import SimulationError, Waiting, checked_start
+from orbits.flows.page.variations import Variations, growth
+from orbits.flows.protocol import SimulationError, Simulator, Waiting, checked_start
 from orbits.flows.trajectory import Trajectory
 from orbits.machines.page.machine import Machine
 from orbits.machines.stepping import EVENTS_FULL, REST, TIME_REACHED
@@ -52,16 +51,6 @@ class PageTrajectory(Trajectory):
     last: np.ndarray
 
     @property
-    def machine(self) -> Machine:
-        """The machine."""
-        return self.model
-
-    @property
-    def end(self) -> float:
-        """Clock at which the run ended."""
-        return self.finish
-
-    @property
     def points(self) -> np.ndarray:
         """The states just after the events."""
         return self.states[1:]
@@ -71,13 +60,9 @@ class PageTrajectory(Trajectory):
         """What continuation solves for, at every event of a forced machine, shape (m, n + 1)."""
         return np.column_stack([self.clocks[1:], self.points])
 
-    @property
+    @cached_property
     def letters(self) -> list[str]:
         """The events as they are written; "(R" and "R)" are where wall R begins and ends to hold."""
-        return self._letters
-
-    @cached_property
-    def _letters(self) -> list[str]:
         return [letter_of(self.model, event) for event in self.events]
 
     @property
@@ -95,10 +80,6 @@ class PageTrajectory(Trajectory):
     def reason(self) -> str:
         """Why the run ended."""
         return f"no further event within {FOREVER:g} of the clock" if self.stopped else super().reason
-
-    def coordinates(self, times: np.ndarray) -> np.ndarray:
-        """The states at these times (forcing periods, or time over 2 pi), shape (m, n)."""
-        return self.sample(TWO_PI * times)
 
     def cycle(self, first: int, last: int) -> tuple[Word, np.ndarray]:
         """Word and nodes; of a self-excited machine the first duration is that since the event before, or the cycle's last one again."""
@@ -137,16 +118,13 @@ class PageTrajectory(Trajectory):
         x, first = self.sample(clocks)[:, 0], self.model.states[0]
         return clocks, np.abs(x) if self.model.response == f"max_abs_{first}" else x
 
-    def onwards(self, clocks: np.ndarray) -> np.ndarray:
-        """States, shape (m, n), so long after the end of a run of a self-excited machine, in its last mode and without events."""
-        compiled, mode = self.model.compiled, self.modes[-1]
-        watch = compiled.watch(self.model.equations.pattern_key(mode))
-        return watch.path(self.last, clocks, compiled.numbers(self.params, mode))
-
     def sample(self, clocks: np.ndarray) -> np.ndarray:
-        """States, shape (m, n), at increasing clocks within the run."""
-        clocks = np.asarray(clocks, dtype=float)
-        return along(self.model, self.params, self.modes, self.states, self.clocks, clocks)
+        """States, shape (m, n), at clocks within the run."""
+        return self.at(np.asarray(clocks, dtype=float))
+
+    def flown(self, places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+        """States."""
+        return flown(self.model, self.params, self.modes, self.states, self.clocks, places, ahead)
 
 
 def letter_of(machine: Machine, event: tuple[int, int, int]) -> str:
@@ -169,13 +147,16 @@ def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
         deep = [j for j, c in enumerate(machine.contacts) if isinstance(c, Wall) and gaps[j] < 0.0]
         if not deep:
             break
-        slopes = machine.compiled.gap_slopes(deep[0])(
-            state[None],
-            np.array([stepper.clock]),
-            machine.compiled.numbers(stepper.params, stepper.modes)[None],
-        )[0]
+        numbers = machine.compiled.numbers(stepper.params, stepper.modes)
+        slopes = machine.compiled.gap_slopes(deep[0]).one(state, stepper.clock, numbers)
         state += (EVENTS.zero - gaps[deep[0]]) * slopes / float(slopes @ slopes)
     return state
+
+
+def follow(mover: Stepper | Variations, until: float) -> None:
+    """Move on to a clock."""
+    while mover.advance(until) is not None:
+        pass
 
 
 def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
@@ -196,23 +177,12 @@ def collect(stepper: Stepper, length: float, most: int) -> PageTrajectory:
         if math.isinf(length):
             until = clocks[-1] + FOREVER
     kinds = np.array([kind for _, kind, _ in events], dtype=int)
-    ends, last = stepper.base + stepper.clock, stepper.state.copy()
-    return PageTrajectory(
-        stepper.machine,
-        stepper.params,
-        np.array(clocks),
-        ends,
-        kinds,
-        status,
-        np.array(states),
-        modes,
-        events,
-        last,
-    )
+    begun = stepper.machine, stepper.params, np.array(clocks), stepper.base + stepper.clock, kinds, status
+    return PageTrajectory(*begun, np.array(states), modes, events, stepper.state.copy())
 
 
-class PageSimulator:
-    """A page's motion on its way; see the contract at the top of `orbits.flows.protocol`."""
+class PageSimulator(Simulator[Machine, PageTrajectory]):
+    """See the contract at the top of `orbits.flows.protocol`."""
 
     watched = (3000.0, 3000)
     waiting = Waiting(100.0, 4, 0, 2, SIMULATING.returned_page, 5, 0.0, 50_000.0)
@@ -220,7 +190,7 @@ class PageSimulator:
     resting, wandering = "rest", "aperiodic"
 
     def __init__(self, machine: Machine, params: np.ndarray) -> None:
-        self.model = self.machine = machine
+        self.model = machine
         self.params = params
         self.stepper = Stepper(machine, params)
         self.forced, self.names = machine.forced, machine.states
@@ -228,21 +198,12 @@ class PageSimulator:
         self.hard = np.zeros(machine.size, dtype=bool)  # a start within a wall is refused
 
     @property
-    def mirrored(self) -> bool:
-        """Whether the machine equals its mirror image."""
-        return self.machine.has_mirror(self.params)
-
-    def image(self, point: np.ndarray) -> np.ndarray:
-        """A point mirrored about the origin."""
-        return -point
-
-    @property
     def modes(self) -> tuple[int, ...]:
         """What the contacts do."""
         return self.stepper.modes
 
     @property
-    def count(self) -> float:
+    def count(self) -> float:  # type: ignore[override]
         """Events so far."""
         return float(self.stepper.count)
 
@@ -269,21 +230,21 @@ class PageSimulator:
         """Clock and states of a start, shape (n + 1,); it may lie within a wall."""
         if isinstance(start, np.ndarray):
             return start
-        names = self.machine.states
+        names = self.model.states
         given = checked_start(dict(start or {}), [*names, *(["phase"] if self.forced else [])])
         return np.array([given.get("phase", 0.0), *(given.get(name, 0.0) for name in names)])
 
     @property
-    def state(self) -> np.ndarray:
+    def state(self) -> np.ndarray:  # type: ignore[override]
         """Clock and states, shape (n + 1,), from which another simulation goes on."""
         return np.append(self.stepper.clock, self.stepper.state)
 
     def go_on(self, state: np.ndarray, nudge: float = 0.0) -> None:
         """Begin where another simulation has ended, moved out of walls that are elsewhere now, its last state changed a little."""
         clock = (
-            float(state[0]) if len(state) > self.machine.size else 0.0
+            float(state[0]) if len(state) > self.model.size else 0.0
         )  # older files have no clock of a self-excited machine
-        self.stepper.start(outside(self.stepper, state[-self.machine.size :], clock), clock)
+        self.stepper.start(outside(self.stepper, state[-self.model.size :], clock), clock)
         self.stepper.state[-1] += nudge
 
     def begin(self, word: Word, node: np.ndarray) -> None:
@@ -292,17 +253,14 @@ class PageSimulator:
 
     def follow(self, until: float) -> None:
         """Move on."""
-        while self.stepper.advance(TWO_PI * until) is not None:
-            pass
+        follow(self.stepper, TWO_PI * until)
 
     def go_round(self, word: Word, periods: int, index: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Move on by a period of a cycle, with derivatives; NaN where a wall has held the body."""
-        stepper, n = self.stepper, self.machine.size
+        stepper, n = self.stepper, self.model.size
         mover = stepper if index is None else Variations(stepper, index)
         if self.forced:
-            until = stepper.base + stepper.clock + TWO_PI * periods
-            while mover.advance(until) is not None:
-                pass
+            follow(mover, stepper.base + stepper.clock + TWO_PI * periods)
         else:
             letters = [word.letter(i) for i in range(len(word))]
             first = (letters[0].contact, letters[0].kind)
@@ -327,7 +285,7 @@ class PageSimulator:
         """
         if not self.forced:
             return None
-        machine, here = self.machine, np.array(point, dtype=float)
+        machine, here = self.model, np.array(point, dtype=float)
         compiled = machine.compiled
         numbers = compiled.numbers(self.params, machine.rest_mode(self.params, here, 0.0))
         gaps = compiled.contact_values().one(here, 0.0, numbers)
@@ -371,33 +329,29 @@ class PageSimulator:
             return False
         if run.held or self.forced:
             return run.held
-        states = run.onwards(np.linspace(0.0, TWO_PI, LATE))
+        clocks, place = np.linspace(0.0, TWO_PI, LATE), np.zeros(LATE, dtype=int)
+        states = flown(self.model, self.params, run.modes[-1:], run.last[None], clocks[:1], place, clocks)
         size = 1.0 + np.abs(states).max(axis=0)
         return bool((np.ptp(states, axis=0) <= self.waiting.returned * size).all())
-
-    def move_on(self, run: PageTrajectory, longest: int) -> bool:
-        """Creep is not told apart from motion."""
-        return False
 
     def push(self) -> None:
         """What sticks must not be moved: it leaves by itself."""
 
     def growth(self) -> tuple[float, float]:
-        """See `orbits.flows.page.growth`."""
+        """See `orbits.flows.page.variations.growth`."""
         return growth(self.stepper)
 
     def section(self) -> tuple[str, np.ndarray]:
         """Move on to the next whole forcing period, or event."""
         if self.forced:
-            self.follow(math.floor(self.time) + 1.0)
-            return "", self.point
+            return super().section()
         event = self.stepper.advance(self.stepper.base + self.stepper.clock + SIMULATING.wait)
-        return "" if event is None else letter_of(self.machine, event), self.point
+        return "" if event is None else letter_of(self.model, event), self.point
 
     # ------------------------------------------------------------------ many starts
     def box(self) -> np.ndarray:
         """What the page says, else twice what the motion from rest reaches in sixty periods."""
-        given, names = self.machine.starts, self.machine.states
+        given, names = self.model.starts, self.model.states
         reached = self._reached() if any(name not in given for name in names) else np.zeros(len(names))
         rows = [[0.0, TWO_PI]] if self.forced else []
         rows += [list(given.get(name, (-REACH * far, REACH * far))) for name, far in zip(names, reached)]
@@ -405,7 +359,7 @@ class PageSimulator:
 
     def _reached(self) -> np.ndarray:
         """Largest absolute value of each state on the motion from rest (moved out of the walls), shape (S,)."""
-        zero = np.zeros(self.machine.size)
+        zero = np.zeros(self.model.size)
         self.start(outside(self.stepper, zero, 0.0))
         try:
             run = self.run(WARM, 5000)
@@ -414,17 +368,17 @@ class PageSimulator:
             reach = zero
         largest, room = float(reach.max()), self._room()
         if largest < SIMULATING.resting * room:  # it stays where it is
-            return np.full(self.machine.size, room)
+            return np.full(self.model.size, room)
         return np.maximum(reach, 0.1 * largest if largest > 0.0 else 1.0)
 
     def _room(self) -> float:
         """The widest gap of a wall at the state; 0 without walls."""
-        gaps = zip(self.stepper.contact_values(), self.machine.contacts)
+        gaps = zip(self.stepper.contact_values(), self.model.contacts)
         return max((float(gap) for gap, contact in gaps if isinstance(contact, Wall)), default=0.0)
 
     def free(self, points: np.ndarray) -> np.ndarray:
         """Which starts have all gaps open, bool array (m,)."""
-        machine = self.machine
+        machine = self.model
         walls = [j for j, contact in enumerate(machine.contacts) if isinstance(contact, Wall)]
         if not walls:
             return np.ones(len(points), dtype=bool)
@@ -434,6 +388,3 @@ class PageSimulator:
         rows = np.repeat(numbers[None], len(points), axis=0)
         values = machine.compiled.contact_values()(states, np.ascontiguousarray(clocks), rows)
         return np.all(values[:, walls] >= 0.0, axis=1)
-
-    def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> None:
-        """Flights are integrated one by one: each start is followed no further than it has to be."""

@@ -17,7 +17,7 @@ from orbits.words import Word
 from orbits.words.alphabet import shaken
 
 if TYPE_CHECKING:
-    from orbits.machines.base import Model
+    pass
 
 LETTERS = "LRtsuH"
 KINDS = np.array([kinds.HIT, kinds.HIT, kinds.TURN, kinds.STICK, kinds.SLIP, kinds.HOLD])
@@ -75,28 +75,12 @@ class NativeTrajectory(Trajectory):
     modes: np.ndarray
     rows: np.ndarray
 
-    @classmethod
-    def of(
-        cls,
-        model: Model,
-        params: np.ndarray,
-        machine: Stepper,
-        start: np.ndarray,
-        end: np.ndarray,
-        events: tuple[np.ndarray, np.ndarray, np.ndarray, int],
-    ) -> NativeTrajectory:
-        """From the states at both ends, and codes, modes, rows and the status of the stepper."""
-        codes, modes, rows, status = events
-        clocks = np.append(_clock(start), rows[:, 0] + TWO_PI * rows[:, 1])
-        ends = float(_clock(end))
-        return cls(model, params, clocks, ends, KINDS[codes], status, machine, start, end, codes, modes, rows)
-
     @property
     def points(self) -> np.ndarray:
         """Positions and velocities just after the events."""
         return self.states[1:, list(self.machine.places)]
 
-    @property
+    @cached_property
     def letters(self) -> str:
         """The events as one string."""
         return "".join(LETTERS[code] for code in self.codes)
@@ -199,28 +183,17 @@ class NativeTrajectory(Trajectory):
         ValueError
             If a phase lies outside the run.
         """
-        first, last = float(self.clocks[0]), self.finish
         if phases is None:
             phases = self._grid(per_period)
         phases = np.atleast_1d(np.asarray(phases, dtype=float))
-        slack = SIMULATING.whole * max(1.0, abs(last))
-        if phases.size and (phases.min() < first - slack or phases.max() > last + slack):
-            raise ValueError(
-                f"phases from {phases.min():g} to {phases.max():g} leave the run, which lasts "
-                f"from {first:g} to {last:g}; simulate more periods"
-            )
-        place = np.clip(np.searchsorted(self.clocks, phases, side="right") - 1, 0, len(self.clocks) - 1)
-        states = self.states[place]
-        ahead = np.maximum((phases - TWO_PI * states[:, TURNS]) - states[:, PSI], 0.0)
-        out = np.empty((phases.size, 4))
-        self.machine.sample(states, self.params, ahead, out)
-        w, w_rate, v, v_rate = out.T
+        w, w_rate, v, v_rate = self.at(phases).T
         return Samples(phases, w, w_rate, v, v_rate, *self.model.bodies(w, v, self.params))
 
-    def coordinates(self, times: np.ndarray) -> np.ndarray:
-        """The simulator's coordinates at these times (forcing periods), shape (m, d)."""
-        seen = self.sample(TWO_PI * times)
-        return np.column_stack([getattr(seen, name) for name in self.machine.coordinates])
+    def flown(self, places: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+        """w, w', v, v', shape (m, 4)."""
+        out = np.empty((len(ahead), 4))
+        self.machine.sample(self.states[places], self.params, ahead, out)
+        return out
 
     def peak_cavity(self, per_period: int = PER_PERIOD) -> float:
         """Largest displacement |q1| of the cavity over the run: events, ends, and the zeros of q1' between samples."""
@@ -282,10 +255,6 @@ class NativeTrajectory(Trajectory):
         )
         error = abs(gap) / scale if scale > 0.0 else 0.0
         return Balance(change, float(excitation), float(damping), float(friction), impacts, float(error))
-
-
-def _clock(state: np.ndarray) -> float:
-    return state[PSI] + TWO_PI * state[TURNS]
 
 
 def _touches(codes: np.ndarray, nodes: np.ndarray, speeds: np.ndarray) -> np.ndarray:

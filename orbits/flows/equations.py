@@ -1,0 +1,231 @@
+"""The equations of the cycles with one word: what those of all flows have in common, and Newton's method on them."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from orbits.flows.trajectory import TWO_PI
+from orbits.machines.path import along
+from orbits.settings import SOLVING
+
+if TYPE_CHECKING:
+    from contvines.core.table import TableKernels
+    from orbits.flows.plain_kernels import PlainKernels
+    from orbits.machines.varying import Varying
+    from orbits.words import Word
+
+ModelOf = TypeVar("ModelOf", bound="Varying")
+
+PLAIN = (1.0, 1.0)
+"""Length and rate of unknowns that are counted in the machine's own units."""
+
+
+class Approach(NamedTuple):
+    """The speed with which an impact leaves its wall, in units of the unknowns, and how it depends on them.
+
+    Attributes
+    ----------
+    speed : float
+    slopes : ndarray, shape (n,)
+        By the entries of the node.
+    by_parameter : float
+    push : ndarray, shape (n,)
+        Direction of the node in which it is changed.
+    """
+
+    speed: float
+    slopes: np.ndarray
+    by_parameter: float
+    push: np.ndarray
+
+
+class Equations(Generic[ModelOf]):
+    """The equations of the cycles with one word, against one parameter. A symmetric cycle is solved for on half its word, closed by the mirror.
+
+    Parameters
+    ----------
+    model : Model or Machine
+    word : Word
+        Of the whole cycle.
+    periods : int
+        Forcing periods of the whole cycle; 1 for a self-excited machine, whose period is unknown.
+    parameter : str
+    params : float array (P,)
+        What `parameter` moves in it is the starting value only.
+    symmetric : bool
+    whole : int
+        Nodes of the whole cycle.
+
+    Attributes
+    ----------
+    length, dimension, n_multipliers, n_margins : int
+        Unknown nodes (half the word's, of a symmetric cycle), unknowns, multipliers, margins.
+    twist, shift : float
+        Closure: the first node returns with its phase plus `shift`, all else times `twist`.
+    movable : bool
+        Whether solutions may be shifted as a whole, but for the mirror that holds them.
+    period_shift : float array (N,) or None
+        What a turn of the forcing adds to the unknowns.
+    path : float array (2, P)
+        How the numbers follow the parameter (`orbits.machines.path`).
+    units : (float, float)
+        Length and rate in which the unknowns are counted; `unit` is what one of each entry of the nodes is, shape (L, n).
+    data
+        What kernels are handed.
+
+    Raises
+    ------
+    ValueError
+        If the parameter is unknown, or `symmetric` is asked where there is no symmetry.
+    """
+
+    n_multipliers: int
+    movable: bool
+    period_shift: np.ndarray | None
+    path: np.ndarray
+    data: Any
+    units: tuple[float, float] = PLAIN
+
+    def __init__(
+        self,
+        model: ModelOf,
+        word: Word,
+        periods: int,
+        parameter: str,
+        params: np.ndarray,
+        symmetric: bool,
+        whole: int,
+    ) -> None:
+        params = np.array(params, dtype=float)
+        if symmetric and not model.has_mirror(params, parameter):
+            raise ValueError(
+                f"the machine {model.name!r} has no mirror image along {parameter}, so no symmetric orbits"
+            )
+        if symmetric and not (word.mirror_symmetric_halves and (periods % 2 == 1 or not model.forced)):
+            raise ValueError(f"word {word.text!r} with periods = {periods} has no symmetric orbits")
+        self.model, self.word, self.periods = model, word, int(periods)
+        self.parameter, self.params = parameter, params
+        self.symmetric, self.forced = bool(symmetric), model.forced
+        node = len(model.node_names)
+        self.length = whole // 2 if symmetric else whole
+        self.dimension = self.length * node
+        self.twist = -1.0 if symmetric else 1.0
+        self.shift = (0.5 if symmetric else 1.0) * TWO_PI * self.periods if self.forced else 0.0
+        self.n_margins = len(word.alphabet.columns) * self.length
+        self.unit = np.ones((whole, node))
+        self.period_shift = np.zeros(self.dimension) if self.forced else None
+        if self.period_shift is not None:
+            self.period_shift[::node] = TWO_PI
+
+    @property
+    def kernels(self) -> TableKernels | PlainKernels:
+        """linearise, bordered, inspect, newton, examine."""
+        raise NotImplementedError
+
+    def workspace(self) -> Any:
+        """Arrays for the kernels."""
+        raise NotImplementedError
+
+    @cached_property
+    def scratch(self) -> Any:
+        """A workspace for single calls, whose contents nobody relies on."""
+        return self.workspace()
+
+    def values(self, p: float | np.ndarray) -> np.ndarray:
+        """The parameter vector at parameter value `p`, shape (P,); (m, P) for an array of values."""
+        return along(self.path, self.params, p)
+
+    def value(self, params: np.ndarray) -> float:
+        """The value of the parameter that varies in a parameter vector."""
+        return self.model.amount(self.parameter, params)
+
+    @cached_property
+    def began(self) -> float:
+        """The value of the parameter that varies in the parameter vector."""
+        return self.value(self.params)
+
+    def to_multipliers(self, spectrum: np.ndarray) -> np.ndarray:
+        """Multipliers of the full period from those of the closure map (half maps: squared)."""
+        spectrum = np.asarray(spectrum, dtype=complex)
+        return spectrum**2 if self.twist < 0.0 else spectrum
+
+    def expand(self, u: np.ndarray, p: float | np.ndarray | None = None) -> np.ndarray:
+        """Nodes of the whole cycle, shape (..., L, n), from the unknowns, shape (..., N).
+
+        The image of half a cycle is taken about the middle between the walls at the parameter values `p`, shape (...); without
+        them at the one in the parameter vector.
+        """
+        u = np.asarray(u, dtype=float)
+        nodes = u.reshape(*u.shape[:-1], self.length, self.unit.shape[1])
+        if self.units != PLAIN:
+            nodes = nodes * self.unit[: self.length]
+        if self.twist > 0.0:
+            return nodes
+        image = self.model.image(self.word, nodes, self.params if p is None else self.values(p))
+        image[..., 0] += self.shift
+        return np.concatenate([nodes, image], axis=-2)
+
+    def reduce(self, nodes: np.ndarray) -> np.ndarray:
+        """Unknowns, shape (N,), from the nodes of the whole cycle."""
+        own = np.array(nodes[: self.length], dtype=float, order="C")
+        if self.units != PLAIN:
+            own /= self.unit[: self.length]
+        return own.ravel()
+
+    def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
+        """Of the impact at a place; a dependence on the parameter that is no formula comes from a difference of size `near`."""
+        raise NotImplementedError
+
+    def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray | None] | None:
+        """Derivatives of each flight's equations by the node before it and after it (None: each node by the one before), the mirror in the last."""
+        raise NotImplementedError
+
+
+def newton(
+    system: Equations,
+    guess: np.ndarray,
+    p: float,
+    border: np.ndarray | None = None,
+    limit: int = 40,
+) -> tuple[np.ndarray, float, float, np.ndarray]:
+    """Solve F(u, p) = 0 at fixed p, or in the hyperplane of `border` through the guess.
+
+    Returns
+    -------
+    u : float array (N,)
+    p : float
+    residual : float
+        Infinity where it does not converge.
+    tangent : float array (N + 1,)
+        Direction of the branch, not normalised.
+    """
+    row = np.zeros(system.dimension + 1)
+    row[-1] = 1.0
+    if border is not None:
+        row[:] = border
+    step, tangent = np.empty_like(row), np.empty_like(row)
+    u = np.array(guess, dtype=float)
+    residual, _, p = system.kernels.newton(
+        system.data, u, p, system.scratch, row, step, tangent, SOLVING.last_step, limit
+    )
+    return u, float(p), float(residual), tangent
+
+
+def solved_nodes(
+    system: Equations, nodes: np.ndarray, params: np.ndarray, limit: int = 40
+) -> np.ndarray | None:
+    """Nodes of the solution next to these, at these parameters; None if Newton's method does not converge to one."""
+    value = system.value(params)
+    u, residual = solved_at(system, system.reduce(nodes), value, limit)
+    if not residual < SOLVING.scaled * max(1.0, float(np.abs(u).max(initial=0.0))):
+        return None
+    return system.expand(u, value)[: len(nodes)]
+
+
+def solved_at(system: Equations, guess: np.ndarray, p: float, limit: int = 40) -> tuple[np.ndarray, float]:
+    """Solution at a parameter value, and its residual (infinite if there is none)."""
+    u, _, residual, _ = newton(system, guess, p, limit=limit)
+    return u, residual
