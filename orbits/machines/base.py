@@ -223,11 +223,9 @@ class Model(Varying):
         """
         if varying == "slope" or ("slope" in self.parameter_names and self.column(params, "slope") != 0.0):
             return False
-        pairs = [(f"{name}_left", f"{name}_right") for name in ("restitution", "friction")]
-        unlike = [pair for pair in pairs if pair[0] in self.parameter_names]
-        return all(
-            varying not in pair and self.column(params, pair[0]) == self.column(params, pair[1])
-            for pair in unlike
+        return not any(
+            varying in (f"{name}_left", f"{name}_right") or np.not_equal(*self.sides(params, name))
+            for name in ("restitution", "friction")
         )
 
     @classmethod

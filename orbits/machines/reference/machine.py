@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +10,9 @@ import numpy as np
 
 from orbits.machines.reference import maps, margins
 from orbits.machines.reference.law import DRIVEN, LAWS, Law
-from orbits.machines.reference.oscillation import Oscillation, after, first_zero, oscillation, standing
+from orbits.machines.reference.oscillation import after, oscillation, standing
 from orbits.machines.reference.stepper import Run, launch
 from orbits.machines.stepping import FAILED, LOW, MODE, PSI, RATE, V_RATE, Stepper, V, W
-from orbits.numbers import ROUNDOFF
 
 if TYPE_CHECKING:
     from orbits.arguments import CycleData, Workspace
@@ -130,7 +128,7 @@ class Reference(Stepper):
             travel = (q.q2_rate + 0.5 * q.q2_pull * times) * times
             v = state[V] + (way + eps * travel if state[MODE] != 0.0 else law.whole * way)
             Psi = state[PSI] + omega * times
-            row[0] = max(abs(q1 + q.at(tau).way) for tau in (0.0, *_extrema(q, span), span))
+            row[0] = max(abs(q1 + q.at(tau).way) for tau in (0.0, *q.zeros(1, 0.0, span), span))
             row[1] = omega * (weights * v) @ np.sin(Psi)
             row[2] = omega * (weights * v) @ np.cos(Psi)
             row[3] = omega * (weights * (q1 + way)) @ np.sin(Psi)
@@ -152,16 +150,3 @@ def quadrature(phase: float, span: float) -> tuple[np.ndarray, np.ndarray]:
     half = 0.5 * span / pieces
     middles = (2.0 * np.arange(pieces) + 1.0) * half
     return (middles[:, None] + half * NODES).ravel(), np.tile(half * WEIGHTS, pieces)
-
-
-def _extrema(q: Oscillation, end: float) -> Iterator[float]:
-    """Times up to `end` at which q1 has an extremum."""
-
-    def look(tau: float) -> tuple[float, float]:
-        at = q.at(tau)
-        return q.h1 + q.z1 + at.speed, at.h2 + at.z2
-
-    tiny = 2.0 * ROUNDOFF * (2.0 * q.driven(1) + 2.0 * q.own(1, 0.0))
-    tau = 0.0
-    while (tau := first_zero(look, tau, end, q.driven(3) + q.own(3, tau), tiny)) < end:
-        yield tau

@@ -8,21 +8,15 @@ import numpy as np
 
 from orbits.machines.reference.law import Law
 from orbits.machines.reference.oscillation import (
-    Oscillation,
-    Point,
     State,
     after,
-    first_zero,
     leg,
     push,
 )
-from orbits.numbers import ROUNDOFF
 from orbits.settings import EVENTS, STEPPING
 from orbits.words.alphabet import CODES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
     from orbits.arguments import CycleData, Workspace
 
 LEFT_IMPACT, TURN, STICK, SLIP = (CODES[letter] for letter in "Ltsu")
@@ -75,7 +69,7 @@ def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.n
         elif not d > 0.0:
             pass
         elif mode == 0.0:
-            for at in _extrema(q, 3, psi, d):
+            for at in map(q.at, q.zeros(3, 0.0, d, psi)):
                 flight = min(flight, reserve(law.whole * (at.h2 + at.z2) - b))
         elif not law.frictionless:
             tau, until = 0.0, d
@@ -86,10 +80,14 @@ def margins(law: Law, data: CycleData, u: np.ndarray, work: Workspace, out: np.n
                 bound = q.driven(4) + q.own(4, 0.0)
                 tau = min(abs(jerk) / bound, 0.5 * d) if bound > 0.0 else 0.0
             if event != TURN or mode * against > friction[mode]:  # else the turn's own margin says it
-                flight = _slowest(q, psi, mode, tau, until)
+                lowest = [
+                    mode * q.derivative(1, instant, sliding=True)[0]
+                    for instant in q.zeros(2, tau, until, psi, sliding=True)
+                    if mode * q.derivative(2, instant, sliding=True)[1] > 0.0
+                ]
+                flight = min(lowest, default=np.inf)
         else:
-            tau = 0.0
-            while (tau := first_zero(_slide(q), tau, d, *_bounds(q, 1, tau, d), psi)) < d:
+            for tau in q.zeros(1, 0.0, d, psi, sliding=True):
                 w = after(law, q, q.at(tau), begin, mode, tau).w
                 flight = min(flight, law.left - w, w - law.right)
         before = modes[i - 1] if i > 0 else twist * modes[-1]
@@ -125,48 +123,3 @@ def _late(law: Law, psi: float, d: float) -> float:
             first = min(first, rest - 2.0 * np.pi if rest > 2.0 * np.pi - STEPPING.slip else rest)
     late = d * law.omega - first
     return -1.0 if first == np.inf else d if abs(late) < STEPPING.slip else -abs(late)
-
-
-def _bounds(q: Oscillation, order: int, start: float, end: float) -> tuple[float, float]:
-    """Of a derivative of q1: what bounds its second derivative from a time on, and its rounding."""
-    drift = abs(q.q2_rate) + abs(q.q2_pull) * end if order == 1 else 0.0
-    return q.driven(order + 2) + q.own(order + 2, start), 2.0 * ROUNDOFF * (
-        drift + 2.0 * q.driven(order) + 2.0 * q.own(order, 0.0)
-    )
-
-
-def _slide(q: Oscillation) -> Callable[[float], tuple[float, float]]:
-    """w' and w'' by time."""
-
-    def look(tau: float) -> tuple[float, float]:
-        at = q.at(tau)
-        return q.h1 + q.z1 + at.speed - (q.q2_rate + q.q2_pull * tau), at.h2 + at.z2 - q.q2_pull
-
-    return look
-
-
-def _extrema(q: Oscillation, order: int, psi: float, end: float) -> Iterator[Point]:
-    """The motion where q1''' vanishes."""
-
-    def look(tau: float) -> tuple[float, float]:
-        at = q.at(tau)
-        return at.h3 + at.z3, q.fourth(at)
-
-    tau = 0.0
-    while (tau := first_zero(look, tau, end, *_bounds(q, order, tau, end), psi)) < end:
-        at: Point = q.at(tau)
-        yield at
-
-
-def _slowest(q: Oscillation, psi: float, s: float, start: float, end: float) -> float:
-    """Smallest s w' at an interior minimum on start < tau < end of a slide, infinity if there is none."""
-
-    def look(tau: float) -> tuple[float, float]:
-        at = q.at(tau)
-        return at.h2 + at.z2 - q.q2_pull, at.h3 + at.z3
-
-    smallest, tau = np.inf, start
-    while (tau := first_zero(look, tau, end, *_bounds(q, 2, tau, end), psi)) < end:
-        if s * look(tau)[1] > 0.0:
-            smallest = min(smallest, s * _slide(q)(tau)[0])
-    return smallest

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -126,6 +126,30 @@ class Oscillation:
         """Bound of the free oscillation's derivative of this order from a time on."""
         size = np.hypot(self.z0, (self.z1 + self.alpha * self.z0) / self.beta)
         return size * np.exp(-self.alpha * start) * self.kappa ** (0.5 * order)
+
+    def derivative(self, order: int, tau: float, sliding: bool) -> tuple[float, float]:
+        """The derivative of this order, 1 to 3, of q1, or of w = q1 - q2 (`sliding`), after a time; and the next one."""
+        at = self.at(tau)
+        rate, pull = (self.q2_rate + self.q2_pull * tau, self.q2_pull) if sliding else (0.0, 0.0)
+        table = self.h1 + self.z1 + at.speed - rate, at.h2 + at.z2 - pull, at.h3 + at.z3, self.fourth(at)
+        return table[order - 1], table[order]
+
+    def zeros(
+        self, order: int, start: float, end: float, phase: float = 0.0, sliding: bool = False
+    ) -> Iterator[float]:
+        """Times in start < tau < end at which it vanishes, found by steps that cannot pass one; `phase`: where the motion began."""
+        drift = abs(self.q2_rate) + abs(self.q2_pull) * end if sliding and order == 1 else 0.0
+        tiny = 2.0 * ROUNDOFF * (drift + 2.0 * self.driven(order) + 2.0 * self.own(order, 0.0))
+
+        def look(tau: float) -> tuple[float, float]:
+            return self.derivative(order, tau, sliding)
+
+        while True:
+            bound = self.driven(order + 2) + self.own(order + 2, start)
+            start = first_zero(look, start, end, bound, tiny, phase)
+            if not start < end:
+                return
+            yield start
 
 
 def _beyond(derivatives: list[Number], order: int, t: Number) -> Number:
