@@ -188,17 +188,17 @@ class Machine(Varying):
 
     def _numbers(self, values: Mapping[str, float]) -> np.ndarray:
         """The parameter vector, each value checked by itself."""
-        given = {key: self._units.number(key, value) for key, value in values.items()}
-        for key, value in given.items():
-            if key not in self.parameters:
+        merged = dict(self.parameters)
+        for key, value in values.items():
+            if key not in merged:
                 raise ParameterError(no_parameter(key, f"the machine {self.name!r}", self.parameter_names))
+            given = self._units.number(key, value)
             try:
-                number = float(value)
+                merged[key] = float(given)
             except (TypeError, ValueError):
-                raise ParameterError(f"{key} = {value!r} is not a number") from None
-            if not np.isfinite(number):
-                raise ParameterError(f"{key} = {number} is not finite; give a number")
-        merged = {**self.parameters, **{key: float(value) for key, value in given.items()}}
+                raise ParameterError(f"{key} = {given!r} is not a number") from None
+            if not np.isfinite(merged[key]):
+                raise ParameterError(f"{key} = {merged[key]} is not finite; give a number")
         if self.phase_rate is not None and not (speed := merged[self.phase_rate]) > 0.0:
             raise ParameterError(f"{self.phase_rate} = {speed:g}: a forcing frequency is above 0")
         return np.array([merged[key] for key in self.parameter_names])

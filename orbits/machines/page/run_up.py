@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from orbits.contacts.dry_friction import DryFriction
-from orbits.contacts.wall import Wall
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.page import Named, PageError, States
 from orbits.machines.page.patterns import Contact
@@ -77,13 +75,17 @@ def run_up(machine: Machine, params: np.ndarray, begin: float, time: float) -> M
 
 
 def _contact(contact: Contact, wrapped: Callable) -> Contact:
-    """The same contact with its functions wrapped."""
-    if isinstance(contact, Wall):
-        push = {key: wrapped(value) for key, value in contact.push.items()}
-        return replace(contact, gap=wrapped(contact.gap), push=push, restitution=wrapped(contact.restitution))
-    if isinstance(contact, DryFriction):
-        return replace(contact, velocity=wrapped(contact.velocity), limit=wrapped(contact.limit))
-    return replace(contact, surface=wrapped(contact.surface))
+    """The same contact with its functions wrapped, those of a push among them."""
+    parts = {part.name: getattr(contact, part.name) for part in fields(contact)}
+    return replace(
+        contact,
+        **{
+            name: {key: wrapped(one) for key, one in part.items()}
+            if isinstance(part, Mapping)
+            else wrapped(part)
+            for name, part in parts.items()
+        },
+    )
 
 
 def phase_at_end(machine: Machine, params: np.ndarray, begin: float, time: float) -> float:
