@@ -62,7 +62,8 @@ class CycleMesh(Parametrised, ProblemDefaults, ABC):
         self.flow, self.field, self.values = flow, field, field.values
         self.rule, self.node = mesh.rule(flow.degree), field.node
         self.intervals, self.rounds, self.copies = counts
-        self.node_scale, self.clock, self.parameter_scale = sizes
+        self.node_scale = np.array(sizes[0], dtype=float)
+        self.clock, self.parameter_scale = float(sizes[1]), float(sizes[2])
         self.free_period = 0 if field.forced else 1
         self.states = self.intervals * self.rule.degree * self.node
         self.dimension = self.states + self.free_period + self.intervals

@@ -304,9 +304,8 @@ class CycleProblem(CycleRelatives):
 
     def describe(self) -> dict[str, Any]:
         """Name, discretisation, and how to build the problem again."""
-        about = self.flow.describe()
         return {
-            **about,
+            **self.flow.describe(),
             **self.flow.of_cycles,
             **({"periods": self.rounds} if self.field.forced else {}),
             "parameter": self.parameter,
@@ -320,5 +319,4 @@ class CycleProblem(CycleRelatives):
                 "clock": self.clock,
                 "unit": self.parameter_scale,
             },
-            "factory": about.get("factory"),
         }

@@ -43,13 +43,17 @@ def condense(blocks: np.ndarray, columns: np.ndarray, d: int) -> Condensed:
         Of the shared unknowns, right-hand sides (with the opposite sign) among them.
     d : int
     """
-    inner = blocks.shape[1] - d
-    q, r = np.linalg.qr(blocks[:, :, d:-d], mode="complete")
     whole = np.concatenate([blocks[:, :, :d], blocks[:, :, -d:], columns], axis=2)
+    maps, rest, sign = _eliminated(blocks[:, :, d:-d], whole)
+    return Condensed(rest[:, :, :d], rest[:, :, d : 2 * d], rest[:, :, 2 * d :], maps, sign)
+
+
+def _eliminated(front: np.ndarray, whole: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """From equations ``front[i] y_i + whole[i] z_i = 0`` the maps, ``y_i = -maps[i] z_i``, what is left of z alone, and the sign of the determinant of the part that is solved for y."""
+    k = front.shape[2]
+    q, r = np.linalg.qr(front, mode="complete")
     turned = np.matmul(q.transpose(0, 2, 1), whole)
-    maps = np.linalg.solve(r[:, :inner], turned[:, :inner])
-    rest = turned[:, inner:]
-    return Condensed(rest[:, :, :d], rest[:, :, d : 2 * d], rest[:, :, 2 * d :], maps, _sign(q, r))
+    return np.linalg.solve(r[:, :k], turned[:, :k]), turned[:, k:], _sign(q, r)
 
 
 def _sign(q: np.ndarray, r: np.ndarray) -> float:
@@ -91,7 +95,6 @@ def solve_cyclic(
         n = len(left)
         pairs = n // 2
         one, two = slice(0, 2 * pairs, 2), slice(1, 2 * pairs, 2)
-        q, r = np.linalg.qr(np.concatenate([right[one], left[two]], axis=1), mode="complete")
         zero = np.zeros((pairs, d, d))
         whole = np.concatenate(
             [
@@ -100,15 +103,14 @@ def solve_cyclic(
             ],
             axis=1,
         )
-        turned = np.matmul(q.transpose(0, 2, 1), whole)
-        maps = np.linalg.solve(r[:, :d], turned[:, :d])
-        sign *= _sign(q, r)
+        maps, rest, own = _eliminated(np.concatenate([right[one], left[two]], axis=1), whole)
+        sign *= own
         passed = np.matmul(rows[two], maps)
         foot -= passed[:, :, 2 * d :].sum(axis=0)
         rows = np.concatenate([rows[one], rows[2 * pairs :]])
         rows[:pairs] -= passed[:, :, :d]
         rows[1 : pairs + 1] -= passed[:, :, d : 2 * d]
-        rest, last = turned[:, d:], slice(2 * pairs, n)
+        last = slice(2 * pairs, n)
         left = np.concatenate([rest[:, :, :d], left[last]])
         right = np.concatenate([rest[:, :, d : 2 * d], right[last]])
         columns = np.concatenate([rest[:, :, 2 * d :], columns[last]])

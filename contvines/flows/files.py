@@ -14,7 +14,8 @@ import numpy as np
 from ..problems.registry import find_callables
 from ..shared.files import module_of, names_of
 from .expressions import read_text
-from .problem import FlowProblem, NamedOptions
+from .flow import NamedOptions
+from .problem import FlowProblem
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

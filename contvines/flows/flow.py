@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -26,6 +26,27 @@ if TYPE_CHECKING:
     from .settings import FlowSettings
 
 Sizes = tuple[np.ndarray, float, float]  #: of states, period and parameter
+
+
+class FlowOptions(TypedDict, total=False):
+    """What may be said of a flow beside its equations; see :class:`FlowProblem`."""
+
+    mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None
+    period: Callable | float | None
+    derivative: Callable | Mapping[str, Callable] | None
+    degree: int
+    error: float | None
+    settings: FlowSettings | Mapping[str, float] | None
+    scale: ArrayLike | None
+    events: Mapping[str, Callable] | None
+    parameter: str
+    name: str
+
+
+class NamedOptions(FlowOptions, total=False):
+    """The same, and names of the states."""
+
+    states: Sequence[str] | None
 
 
 class Flow(ABC):

@@ -24,6 +24,7 @@ from scipy.sparse import block_array, csc_array
 from scipy.sparse.linalg import splu
 
 from . import mesh
+from .field import SIXTH
 
 if TYPE_CHECKING:
     from scipy.sparse.linalg import SuperLU
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 NEAR = 0.001  # distance along the critical direction at which the third derivative counts
 LARGEST = 100_000  # unknowns of one return up to which there are normal forms
 STEP = 0.02  # of differences of Jacobians, in lengths over which the right-hand side bends
-FIRST = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))
 SECOND = ((1, 1.5), (2, -0.15), (3, 1.0 / 90.0))
 MIDDLE = -49.0 / 18.0
 
@@ -110,8 +110,8 @@ class Return:
         def at(k: float) -> np.ndarray:
             return field.jacobian(self.points + k * step * direction, self.p, self.times)
 
-        sides = {k: (at(float(k)), at(float(-k))) for k, _ in FIRST}
-        one = sum(weight * (sides[k][0] - sides[k][1]) for k, weight in FIRST)
+        sides = {k: (at(float(k)), at(float(-k))) for k, _ in SIXTH}
+        one = sum(weight * (sides[k][0] - sides[k][1]) for k, weight in SIXTH)
         two = sum(weight * (sides[k][0] + sides[k][1]) for k, weight in SECOND) + MIDDLE * self.jacobian
         return np.asarray(one) / step, np.asarray(two) / step**2
 

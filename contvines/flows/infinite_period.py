@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .cycle_mesh import CycleMesh
 
 
+FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to a point of least speed is the one at which it stays
 SHARE = 0.01  # of the growth of the period: less of it is none
 HALF = (
     -0.5
@@ -109,83 +110,73 @@ class InfinitePeriod:
 
 def infinite_period(problem: CycleMesh, point: BorderPoint) -> InfinitePeriod:
     """What the cycles of a branch become whose period grows without bound towards a point."""
-    x, period, widths = problem.parts(point.u, point.value)
-    x, p, field = x.reshape(-1, problem.node), float(point.value), problem.field
-    growth = float(point.tangent[problem.states])
-    rates = field(x, p)
-    sizes = np.maximum(np.ptp(x, axis=0), TINY)
-    speeds = np.linalg.norm(rates / sizes, axis=1)
-    slowest = x[int(np.argmin(speeds))]
-    found = (period, slowest)
-    value = p + period * float(point.tangent[-1]) / growth if growth else p
+    ending, p = Ending(problem, point), float(point.value)
+    value = p + ending.period * float(point.tangent[-1]) / ending.growth if ending.growth else p
     value = value if abs(value) > problem.flow.settings.rounded * abs(p) else 0.0
-    if _exponent(problem, point, x, rates / sizes, int(np.argmax(speeds))) < HALF:
-        return InfinitePeriod(Limit.AT_REST, *found, (), problem.parameter, value)
-    saddles = _saddles(problem, point, x, rates, speeds, widths)
-    sorts = (Limit.SADDLE_NODE, Limit.HOMOCLINIC, Limit.HETEROCLINIC)
-    return InfinitePeriod(sorts[min(len(saddles), 2)], *found, saddles, problem.parameter, value)
+    limit, saddles = Limit.AT_REST, ()
+    if not ending.exponent() < HALF:
+        saddles = ending.saddles()
+        limit = (Limit.SADDLE_NODE, Limit.HOMOCLINIC, Limit.HETEROCLINIC)[min(len(saddles), 2)]
+    slowest = ending.x[int(np.argmin(ending.speeds))]
+    return InfinitePeriod(limit, ending.period, slowest, saddles, problem.parameter, value)
 
 
-def _exponent(
-    problem: CycleMesh, point: BorderPoint, x: np.ndarray, rates: np.ndarray, fastest: int
-) -> float:
-    """d log(largest speed) / d log(period) along the branch; zero where the period does not change."""
-    growth, period = float(point.tangent[problem.states]), float(point.u[problem.states])
-    if not growth:
-        return 0.0
-    p, field, k = float(point.value), problem.field, slice(fastest, fastest + 1)
-    sizes = np.maximum(np.ptp(x, axis=0), TINY)
-    moved = point.tangent[: problem.states].reshape(x.shape)[fastest]
-    change = (field.jacobian(x[k], p)[0] @ moved + field.slope(x[k], p)[0] * point.tangent[-1]) / sizes
-    return float(rates[fastest] @ change / (rates[fastest] @ rates[fastest]) * period / growth)
+class Ending:
+    """The last cycle of a branch, and how it changes along it: x, rates and change `moved` at the nodes, T and T'."""
 
+    def __init__(self, problem: CycleMesh, point: BorderPoint) -> None:
+        self.problem, self.tangent, self.p = problem, point.tangent, float(point.value)
+        x, self.period, self.widths = problem.parts(point.u, point.value)
+        self.x = x.reshape(-1, problem.node)
+        self.growth = float(point.tangent[problem.states])
+        self.moved = point.tangent[: problem.states].reshape(self.x.shape)
+        self.rates, self.sizes = problem.field(self.x, self.p), np.ptp(self.x, axis=0)
+        self.units = np.maximum(self.sizes, TINY)
+        self.speeds = np.linalg.norm(self.rates / self.units, axis=1)
 
-def _saddles(
-    problem: CycleMesh,
-    point: BorderPoint,
-    x: np.ndarray,
-    rates: np.ndarray,
-    speeds: np.ndarray,
-    widths: np.ndarray,
-) -> tuple[Saddle, ...]:
-    """The equilibria with stable and unstable directions beside which the cycle stays longer and longer, in order along it, the one with the largest share first."""
-    delays, sizes = _delays(problem, point, x, rates, widths), np.ptp(x, axis=0)
-    least = np.flatnonzero((speeds <= np.roll(speeds, 1)) & (speeds < np.roll(speeds, -1)))
-    slowest = int(np.argmin(speeds))
-    found: list[Saddle] = []
-    for k in sorted({*least.tolist(), slowest}):
-        place = nearby_equilibrium(problem, x[k], float(point.value), sizes)
-        if place is None:
-            continue
-        values = np.linalg.eigvals(problem.field.jacobian(place[None], float(point.value))[0])
-        if (values.real < 0.0).all() or (values.real > 0.0).all():
-            continue
-        near = (np.abs(x - place) <= FAR * sizes).all(axis=1)
-        first, last = _run(near, k)
-        turns = delays[-1] if last < first else 0.0
-        share = float((delays[last] - delays[first] + turns) / delays[-1]) if delays[-1] else np.nan
-        same = [i for i, other in enumerate(found) if (np.abs(other.place - place) <= FAR * sizes).all()]
-        if same:
-            if share > found[same[0]].share:
-                found[same[0]] = Saddle(place, values, share)
-        elif share > SHARE or k == slowest:
-            found.append(Saddle(place, values, share))
-    longest = max(range(len(found)), key=lambda i: found[i].share, default=0)
-    return tuple(found[longest:] + found[:longest])
+    def exponent(self) -> float:
+        """d log(largest speed) / d log(period) along the branch; zero where the period does not change."""
+        if not self.growth:
+            return 0.0
+        field, k = self.problem.field, int(np.argmax(self.speeds))
+        x, rate = self.x[k : k + 1], self.rates[k] / self.units
+        change = field.jacobian(x, self.p)[0] @ self.moved[k] + field.slope(x, self.p)[0] * self.tangent[-1]
+        return float(rate @ (change / self.units) / (rate @ rate) * self.period / self.growth)
 
+    def saddles(self) -> tuple[Saddle, ...]:
+        """The equilibria with stable and unstable directions beside which the cycle stays longer and longer, in order along it, the one with the largest share first."""
+        x, p, sizes, speeds, delays = self.x, self.p, self.sizes, self.speeds, self._delays()
+        least = np.flatnonzero((speeds <= np.roll(speeds, 1)) & (speeds < np.roll(speeds, -1)))
+        slowest = int(np.argmin(speeds))
+        found: list[Saddle] = []
+        for k in sorted({*least.tolist(), slowest}):
+            place = nearby_equilibrium(self.problem, x[k], p, sizes)
+            if place is None:
+                continue
+            values = np.linalg.eigvals(self.problem.field.jacobian(place[None], p)[0])
+            if (values.real < 0.0).all() or (values.real > 0.0).all():
+                continue
+            first, last = _run((np.abs(x - place) <= FAR * sizes).all(axis=1), k)
+            turns = delays[-1] if last < first else 0.0
+            share = float((delays[last] - delays[first] + turns) / delays[-1]) if delays[-1] else np.nan
+            same = [i for i, other in enumerate(found) if (np.abs(other.place - place) <= FAR * sizes).all()]
+            if same:
+                if share > found[same[0]].share:
+                    found[same[0]] = Saddle(place, values, share)
+            elif share > SHARE or k == slowest:
+                found.append(Saddle(place, values, share))
+        longest = max(range(len(found)), key=lambda i: found[i].share, default=0)
+        return tuple(found[longest:] + found[:longest])
 
-def _delays(
-    problem: CycleMesh, point: BorderPoint, x: np.ndarray, rates: np.ndarray, widths: np.ndarray
-) -> np.ndarray:
-    """How the times change along the branch at which the cycle passes the planes across its motion at the nodes, that of one round last."""
-    period, growth = float(point.u[problem.states]), float(point.tangent[problem.states])
-    moved = point.tangent[: problem.states].reshape(x.shape) / problem.node_scale
-    f = rates / problem.node_scale
-    changed = mesh.node_places(
-        problem.rule, growth * widths + period * point.tangent[problem.states + 1 : -1]
-    )
-    delays = changed - np.einsum("ij,ij->i", f, moved) / np.maximum(np.einsum("ij,ij->i", f, f), TINY)
-    return np.append(delays, growth)
+    def _delays(self) -> np.ndarray:
+        """How the times change along the branch at which the cycle passes the planes across its motion at the nodes, that of one round last."""
+        problem = self.problem
+        f, moved = self.rates / problem.node_scale, self.moved / problem.node_scale
+        lengths = self.growth * self.widths + self.period * self.tangent[:-1][problem.held]
+        delays = mesh.node_places(problem.rule, lengths) - (f * moved).sum(axis=1) / np.maximum(
+            (f * f).sum(axis=1), TINY
+        )
+        return np.append(delays, self.growth)
 
 
 def _run(near: np.ndarray, k: int) -> tuple[int, int]:
@@ -203,9 +194,6 @@ def _place(x: np.ndarray) -> str:
 
 def _shortly(value: complex) -> str:
     return f"{value.real:.4g}" if value.imag == 0.0 else f"{value:.4g}"
-
-
-FAR = 0.05  # sizes of a cycle: an equilibrium nearer than that to a point of least speed is the one at which it stays
 
 
 def nearby_equilibrium(

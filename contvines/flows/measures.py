@@ -1,4 +1,4 @@
-"""What is measured on cycles of flows: largest and smallest values of the coordinates, norm, period."""
+"""Names of the states of a flow, and what is measured of equilibria and cycles, with their flow at hand or without."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import mesh
-from .mesh import Rule
 
 if TYPE_CHECKING:
     from .cycle_mesh import CycleMesh
     from .mesh import Rule
 
 
+OF_STATES = ("max", "min", "mean")
+TAKEN = ("norm", "period")
+#: of flows whose functions can be imported; others have none
+BUILDER = "contvines.flows.files:from_description"
 FINER = 4  # places between two nodes at which the largest value is looked for
 
 
@@ -72,10 +75,6 @@ def _largest(rule: Rule, ends: np.ndarray, widths: np.ndarray) -> float:
     return float(middle - 0.25 * slope * slope / bend if bend < 0.0 else middle)
 
 
-OF_STATES = ("max", "min", "mean")
-TAKEN = ("norm", "period")
-
-
 def checked_names(given: Sequence[str] | None, count: int) -> tuple[str, ...]:
     """The names of so many states: those given, or x0, x1, ...
 
@@ -95,11 +94,6 @@ def checked_names(given: Sequence[str] | None, count: int) -> tuple[str, ...]:
         why = "is that of a measure" if wrong in TAKEN else "is there twice"
         raise ValueError(f"states: the name {wrong!r} {why}; choose another one")
     return tuple(given)
-
-
-BUILDER = (
-    "contvines.flows.files:from_description"  # of flows whose functions can be imported; others have none
-)
 
 
 @dataclass(frozen=True)
@@ -139,10 +133,9 @@ class MeasuresWithoutRates:
             free = u.shape[1] > n * m * d + n
             return u[:, n * m * d].copy() if free else np.full(len(u), np.nan)
         j = self.states.index(state) if word else 0
-        ends = (mesh.closed(y[: n * m * d].reshape(n, m, d)) for y in u)
-        return np.array(
-            [of_mesh(self.rule, each, y[-n:], word or name, j) for each, y in zip(ends, u, strict=True)]
-        )
+        ends = mesh.closed(u[:, : n * m * d].reshape(-1, n, m, d))
+        found = [of_mesh(self.rule, *each, word or name, j) for each in zip(ends, u[:, -n:], strict=True)]
+        return np.array(found)
 
 
 def measures_without_rates(description: Mapping[str, Any], unknowns: int) -> MeasuresWithoutRates | None:
@@ -150,10 +143,8 @@ def measures_without_rates(description: Mapping[str, Any], unknowns: int) -> Mea
     flow, cycle = description.get("flow"), description.get("cycle")
     if not isinstance(flow, Mapping) or description.get("factory") not in (None, BUILDER):
         return None
-    states = checked_names(flow["states"], len(flow["x0"]))
-    if cycle is None:
-        found = MeasuresWithoutRates(states, mesh.rule(flow["degree"]), 0)
-        return found if unknowns == len(states) else None
-    found = MeasuresWithoutRates(states, mesh.rule(flow["degree"]), cycle["intervals"])
-    whole = found.intervals * (found.rule.degree * len(states) + 1)
-    return found if unknowns in (whole, whole + 1) else None
+    states, rule = checked_names(flow["states"], len(flow["x0"])), mesh.rule(flow["degree"])
+    count = 0 if cycle is None else cycle["intervals"]
+    whole = count * (rule.degree * len(states) + 1)
+    known = unknowns in (whole, whole + 1) if count else unknowns == len(states)
+    return MeasuresWithoutRates(states, rule, count) if known else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from .equilibria import Equilibria
 from .expressions import compiled_expressions, name_of
 from .field import Field
 from .first_cycle import cycle_beside
-from .flow import Flow, is_number, period_of
+from .flow import Flow, FlowOptions, is_number, period_of
 from .measures import OF_STATES, checked_names
 from .orbit import CycleOrbit
 from .population import FlowPopulation, Settled, curves
@@ -33,27 +33,6 @@ if TYPE_CHECKING:
     from ..problems.protocol import Problem
     from .cycle_mesh import CycleMesh
     from .flow import Sizes
-
-
-class FlowOptions(TypedDict, total=False):
-    """What may be said of a flow beside its equations; see :class:`FlowProblem`."""
-
-    mirror: Callable[[np.ndarray], ArrayLike] | ArrayLike | None
-    period: Callable | float | None
-    derivative: Callable | Mapping[str, Callable] | None
-    degree: int
-    error: float | None
-    settings: FlowSettings | Mapping[str, float] | None
-    scale: ArrayLike | None
-    events: Mapping[str, Callable] | None
-    parameter: str
-    name: str
-
-
-class NamedOptions(FlowOptions, total=False):
-    """The same, and names of the states."""
-
-    states: Sequence[str] | None
 
 
 class FlowProblem(Flow):

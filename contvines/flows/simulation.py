@@ -1,4 +1,8 @@
-"""Simulation of flows by scipy's integrators: checks cycles, and finds attractors."""
+"""Simulation of flows: one motion until it recurs, by scipy's integrators, and many motions at once.
+
+The latter by Dormand and Prince's method of order five, each motion with a step length of its own: J. Comput. Appl. Math. 6 (1980) 19, table 2.
+Importing scipy's takes longer than a diagram of a small flow.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,6 @@ import numpy as np
 from contvines.shared.floating_point import ROUNDED
 
 from ..problems.functions import NotEvaluable
-from .field import Field
 
 if TYPE_CHECKING:
     from scipy.integrate._ivp.ivp import OdeResult
@@ -24,6 +27,18 @@ CAUTION = 10.0  # times the tolerance of a simulation
 DOUBLINGS = 12  # of the transient
 BRIEF = 100  # steps of the integrator: a motion that takes no more has hardly gone on; of a stiff flow, whose fastest scale begins the transient
 MOST = 80  # such motions
+FIRST_STEP = 0.001  # step at first, in times after which a motion has gone its size
+SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
+PLACES = (0.2, 0.3, 0.8, 8 / 9, 1.0)
+STAGES = [
+    np.array([1 / 5]),
+    np.array([3 / 40, 9 / 40]),
+    np.array([44 / 45, -56 / 15, 32 / 9]),
+    np.array([19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729]),
+    np.array([9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]),
+]
+WHOLE = np.array([35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84])
+ERROR = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
 
 
 class Place(NamedTuple):
@@ -255,20 +270,6 @@ def _crossing(run: OdeResult | Way, plane: Place, i: int) -> float:
         else:
             high = middle
     return 0.5 * (low + high)
-
-
-FIRST_STEP = 0.001  # step at first, in times after which a motion has gone its size
-SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
-PLACES = (0.2, 0.3, 0.8, 8 / 9, 1.0)
-STAGES = [
-    np.array([1 / 5]),
-    np.array([3 / 40, 9 / 40]),
-    np.array([44 / 45, -56 / 15, 32 / 9]),
-    np.array([19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729]),
-    np.array([9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656]),
-]
-WHOLE = np.array([35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84])
-ERROR = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
 
 
 class March:
