@@ -47,6 +47,16 @@ LR repeats after one impact on each wall; LRLt after two impacts on the left,
 one on the right and a turn. A study begins with `word` and `periods`, the
 number of forcing periods after which the orbit repeats. `contvines orbit
 FILE.vines LABEL` lists the events of an orbit with their times."""
+EXTRAS = {
+    "machines": ("heyoka",),
+    "proofs": ("flint", "mpmath"),
+    "units": ("pint",),
+    "tables": ("pandas", "xarray", "h5netcdf", "networkx"),
+    "surveys": ("dask", "distributed"),
+    "report": ("plotly",),
+}
+"""Modules that each extra of pyproject.toml brings."""
+DIALECT = "http://json-schema.org/draft-07/schema#"  # what the TOML plugins of editors read
 
 
 def help(
@@ -186,17 +196,6 @@ def _template(name: str) -> str:
     return (files("contvines.command") / "templates" / name).read_text(encoding="utf-8")
 
 
-EXTRAS = {
-    "machines": ("heyoka",),
-    "proofs": ("flint", "mpmath"),
-    "units": ("pint",),
-    "tables": ("pandas", "xarray", "h5netcdf", "networkx"),
-    "surveys": ("dask", "distributed"),
-    "report": ("plotly",),
-}
-"""Modules that each extra of pyproject.toml brings."""
-
-
 def doctor(json: JsonOption = False) -> None:
     """Print versions, the core that computes, the extras that are installed, and the result of a self-test.
 
@@ -253,9 +252,6 @@ def self_test() -> dict[str, Any]:
         "found": float(found),
         "closed_form": expected,
     }
-
-
-DIALECT = "http://json-schema.org/draft-07/schema#"  # what the TOML plugins of editors read
 
 
 def schema(

@@ -18,6 +18,8 @@ from .study_data import Sort, Study, without_word
 if TYPE_CHECKING:
     from ..graph.graph import Graph
 
+WITH_Y = ("diagram", "atlas", "trace", "plot")  # commands with axes
+
 
 def machine(study: Study):
     """The machine of a study, `[start]`'s overrides included.
@@ -154,9 +156,6 @@ def run_atlas(study: Study, seed: object, **options: Any) -> Graph:
     """The atlas of a study's starts; options as for `contvines.atlas`."""
     asked = {"kinds": study.all_kinds, **study.options, **study.atlas.model_dump()}
     return contvines.atlas(seed, within=study.within, **{**asked, **options})
-
-
-WITH_Y = ("diagram", "atlas", "trace", "plot")  # commands with axes
 
 
 def check_bounds(study: Study, command: str) -> None:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ..graph.graph import Graph
     from ..loci.chart import Chart
 
+MOST_NAMED = 24  # labels in one sentence
+
 
 class Interrupted(Exception):
     """Ctrl-C in the middle of the work; the message says what is kept and how to go on."""
@@ -160,9 +162,6 @@ def made(target: Path, fingerprint: str, study: dict[str, Any], quiet: bool, mak
             found = make(journal=store, progress=progress)
         store.tidy()
     return found
-
-
-MOST_NAMED = 24  # labels in one sentence
 
 
 # ---------------------------------------------------------------------- results

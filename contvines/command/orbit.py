@@ -5,7 +5,7 @@ from __future__ import annotations
 import json as json_
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -15,8 +15,16 @@ from ..text_table import fitted
 from .frame import draw, held, interruptible, load_file, point_of, say, tell
 from .options import JsonOption, PlotOption, TrustOption, argument, interval, option
 
-if TYPE_CHECKING:
-    pass
+# which measure's unit an event's number has
+EVENTS = {
+    "B_pre": "B_pre",
+    "B_post": "B_post",
+    "w": "max_abs_w",
+    "w_rate": "B",
+    "v": "max_abs_w",
+    "v_rate": "B",
+}
+MANY = 2000  # boxes: checking more of them is announced
 
 
 def orbit(
@@ -114,17 +122,6 @@ def _plain(found: Any) -> dict[str, Any]:
     return {n: getattr(found, n) for n in ("parameter", "value", "u", "points") if hasattr(found, n)}
 
 
-# which measure's unit an event's number has
-EVENTS = {
-    "B_pre": "B_pre",
-    "B_post": "B_post",
-    "w": "max_abs_w",
-    "w_rate": "B",
-    "v": "max_abs_w",
-    "v_rate": "B",
-}
-
-
 def _describe(about: dict[str, Any]) -> str:
     """An orbit as a readable text, from what --json prints."""
     from ..graph.table import short_word, with_unit
@@ -169,9 +166,6 @@ def _describe(about: dict[str, Any]) -> str:
             f"of {len(margins)}"
         )
     return "\n".join(lines or [f"{k}: {v}" for k, v in about.items()])
-
-
-MANY = 2000  # boxes: checking more of them is announced
 
 
 def prove(

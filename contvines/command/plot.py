@@ -36,6 +36,15 @@ if TYPE_CHECKING:
 
     from ..graph.graph import Graph
 
+GENERAL = ("--output", "--size", "--style", "--trust")  # options for every picture
+LOOKS = {
+    "bare": ("0.35", (0, (1, 1.2))),
+    "tuned": ("#a6611a", (0, (6, 1.5, 1, 1.5))),
+    "friction": ("#7b3294", (0, (3, 1.2))),
+}
+SHOWN = ("max_abs_q1", "amplitude")
+POINTS = 600
+
 
 class Picture(StrEnum):
     """What `plot` draws."""
@@ -45,7 +54,6 @@ class Picture(StrEnum):
     network = "network"
 
 
-GENERAL = ("--output", "--size", "--style", "--trust")  # options for every picture
 DRAWS = {
     Picture.diagram: "draws all branches",
     Picture.multipliers: "draws over the parameter",
@@ -157,15 +165,6 @@ def plot(
 
 
 # ---------------------------------------------------------------------- what a response is compared with
-LOOKS = {
-    "bare": ("0.35", (0, (1, 1.2))),
-    "tuned": ("#a6611a", (0, (6, 1.5, 1, 1.5))),
-    "friction": ("#7b3294", (0, (3, 1.2))),
-}
-SHOWN = ("max_abs_q1", "amplitude")
-POINTS = 600
-
-
 def compared(
     graph: Graph, kinds: Sequence[str] | None, x: str | None = None, y: str | None = None, **options: Any
 ) -> Figure:

@@ -25,6 +25,11 @@ if TYPE_CHECKING:
 
     from .study_data import Study
 
+BLUE, RED, GREY = "#0b3c6f", "#b5121b", "0.45"
+SIZE, REPORT = (10.0, 4.0), (9.0, 3.4)  # inches
+PART = 0.6  # of the height for the start-up
+ROOM = 1.3  # of the vertical axis beside the largest number: for the legend
+
 
 def recommend(
     study: Annotated[
@@ -136,12 +141,6 @@ def _target(text: str, study: Study) -> float:
     if value <= 0.0:
         raise ValueError(f"--target {text}: give a response above 0.")
     return value
-
-
-BLUE, RED, GREY = "#0b3c6f", "#b5121b", "0.45"
-SIZE, REPORT = (10.0, 4.0), (9.0, 3.4)  # inches
-PART = 0.6  # of the height for the start-up
-ROOM = 1.3  # of the vertical axis beside the largest number: for the legend
 
 
 def choice_picture(found: Recommendation, size: tuple[float, float] | None = None) -> Figure:

@@ -24,6 +24,13 @@ from .study_data import Study
 from .study_data import StudyError as StudyError
 
 QUANTITY = re.compile(r"\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[a-zA-Z%].*")  # "3.2 kg"
+LARGEST = 1_000_000  # bytes of a study; those of people have a few hundred
+DEEPEST = 8  # sections in sections; a study has one level of them, and lists of lists
+_LINE = re.compile(r"^\s*(?P<key>[\w.\-\"']+)\s*=\s*(?P<value>[^#]*?)\s*(#.*)?$")
+_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
+_WORD = re.compile(r"[^\W\d][\w.+ -]*")
+_TRUE, _FALSE = ("yes", "on", "True", "TRUE"), ("no", "off", "False", "FALSE")
+EXAMPLE = "{ temperature = [[20, 0.7], [80, 0.6]] }"
 
 
 def read_study(path: str | Path) -> Study:
@@ -149,14 +156,6 @@ def source_of(file: Path) -> dict[str, Any] | None:
 
 
 # ---------------------------------------------------------------------- TOML
-LARGEST = 1_000_000  # bytes of a study; those of people have a few hundred
-DEEPEST = 8  # sections in sections; a study has one level of them, and lists of lists
-_LINE = re.compile(r"^\s*(?P<key>[\w.\-\"']+)\s*=\s*(?P<value>[^#]*?)\s*(#.*)?$")
-_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
-_WORD = re.compile(r"[^\W\d][\w.+ -]*")
-_TRUE, _FALSE = ("yes", "on", "True", "TRUE"), ("no", "off", "False", "FALSE")
-
-
 def toml_data(text: str) -> dict[str, Any]:
     """The nested dicts of a TOML text.
 
@@ -215,9 +214,6 @@ def _habit(value: str) -> str:
 
 
 # ---------------------------------------------------------------------- conditions
-EXAMPLE = "{ temperature = [[20, 0.7], [80, 0.6]] }"
-
-
 def without_tables(data: dict[str, Any]) -> tuple[dict[str, Any], dict[str, float], tuple[Table, ...]]:
     """A study's data with numbers, or texts, in place of tables over a condition, its conditions, and the tables.
 

@@ -39,6 +39,24 @@ if TYPE_CHECKING:
 
 SETTINGS = {"tolerance", "angle", "max_step", "max_points", "max_branches", "max_unknowns"}
 SHOWN = 60  # letters of a word that a refusal repeats
+UNION = re.compile(r"constrained-\w+|(list|dict)\[.*\]")  # how pydantic names types in the place of an error
+MOST = 20  # sentences in one refusal
+SECTIONS = {
+    "model": 'name = "absorber" and its parameters',
+    "continue": 'what to vary and where, for example parameter = "amplitude", within = [0.2, 1.3]',
+}
+WRONG = {
+    "float_type": "is not a number",
+    "int_type": "is not a whole number",
+    "string_type": "is not text",
+    "bool_type": "is not true or false",
+    "finite_number": "is not a finite number",
+    "greater_than": "is out of range",
+    "greater_than_equal": "is out of range",
+    "less_than": "is out of range",
+    "less_than_equal": "is out of range",
+}
+"""What is wrong with a value, by the type of pydantic's error."""
 
 
 class Sort(Enum):
@@ -235,26 +253,6 @@ def wrong_intervals(
             said = f"{first:g} {unit} lies outside [continue] within = [{low:g}, {high:g}] {unit}"
         wrong.append(f"[start] {go.parameter} = {said}; start inside the interval, or widen it.")
     return wrong
-
-
-UNION = re.compile(r"constrained-\w+|(list|dict)\[.*\]")  # how pydantic names types in the place of an error
-MOST = 20  # sentences in one refusal
-SECTIONS = {
-    "model": 'name = "absorber" and its parameters',
-    "continue": 'what to vary and where, for example parameter = "amplitude", within = [0.2, 1.3]',
-}
-WRONG = {
-    "float_type": "is not a number",
-    "int_type": "is not a whole number",
-    "string_type": "is not text",
-    "bool_type": "is not true or false",
-    "finite_number": "is not a finite number",
-    "greater_than": "is out of range",
-    "greater_than_equal": "is out of range",
-    "less_than": "is out of range",
-    "less_than_equal": "is out of range",
-}
-"""What is wrong with a value, by the type of pydantic's error."""
 
 
 class StudyError(ValueError):

@@ -22,6 +22,14 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 PATIENCE = 120.0  # seconds for a browser to print a page
 
 Rows = Sequence[Sequence[str]]
+WIDE, HIGH = 595.0, 842.0  # points: A4
+MARGIN = 42.0
+ROOM = WIDE - 2.0 * MARGIN
+LEADING = 1.32  # of a font's size, from line to line
+BODY, SMALL, HEAD, TITLE = 9.0, 8.0, 10.5, 14.0  # points
+COLUMNS = (0.0, 0.31, 0.5)  # of the room: where a table's columns begin
+BLUE, GREY = "#0b3c6f", "0.35"
+SHARP = 220  # dots per inch of pictures
 
 
 @dataclass(frozen=True)
@@ -121,16 +129,6 @@ def print_page(page: str | Path, target: str | Path) -> str:
                 f"{target}: {browser} could not print the page ({type(error).__name__}); open {page} and print it there."
             ) from None
     return Path(browser).name
-
-
-WIDE, HIGH = 595.0, 842.0  # points: A4
-MARGIN = 42.0
-ROOM = WIDE - 2.0 * MARGIN
-LEADING = 1.32  # of a font's size, from line to line
-BODY, SMALL, HEAD, TITLE = 9.0, 8.0, 10.5, 14.0  # points
-COLUMNS = (0.0, 0.31, 0.5)  # of the room: where a table's columns begin
-BLUE, GREY = "#0b3c6f", "0.35"
-SHARP = 220  # dots per inch of pictures
 
 
 def set_answer(answer: Answer, target: str | Path) -> None:

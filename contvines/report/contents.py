@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 NUMBERS = 420_000  # numbers of all orbits together: what keeps a page below 5 MB
 SAMPLES = (48, 160)  # points of an orbit's curves, fewest and most
 MEASURES = 14  # at most, to choose the axes from
+RASTER = 180  # cells of the picture of the regions each way, at most
+MOTIONS = 24  # of each locus
+DENSE = 90  # points of a motion's curves
 
 
 def contents(graph: Graph, source: str) -> dict[str, Any]:
@@ -156,11 +159,6 @@ def _scenes(curve: Branch | Locus, places: Iterable[int], samples: int) -> dict[
 
 def _pairs(values: np.ndarray) -> list[list[float]]:
     return [[float(f"{v.real:.8g}"), float(f"{v.imag:.8g}")] for v in values if np.isfinite(v)]
-
-
-RASTER = 180  # cells of the picture of the regions each way, at most
-MOTIONS = 24  # of each locus
-DENSE = 90  # points of a motion's curves
 
 
 def chart_contents(chart: Chart, source: str) -> dict[str, Any]:
