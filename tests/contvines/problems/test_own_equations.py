@@ -221,3 +221,33 @@ def test_a_branch_may_end_where_its_equations_do():
         cv.AlgebraicProblem(lambda u, p: np.emath.sqrt(u) - p - 1.0, [1.0], 0.0), within=(-1.0, 1.0)
     )
     assert all("end of the interval" in said for said in graph["B1"].ended)
+
+
+def test_a_staircase_is_noise():
+    """Numbers of single precision are stairs, between which neighbouring samples tell nothing."""
+
+    def F(u, p):
+        return np.asarray(np.float32(u) ** 3 - np.float32(u) + np.float32(p), dtype=float)
+
+    graph = cv.diagram(cv.AlgebraicProblem(F, [1.0], 0.0), within=(-2.0, 2.0))
+    assert of_kind(graph, "fold") == pytest.approx([-2.0 / 27.0**0.5, 2.0 / 27.0**0.5], abs=1e-6)
+    assert not graph.unresolved
+
+
+def test_an_even_function_tells_how_large_its_unknown_is():
+    """p = cosh(u) - 1 with u of the order of ten million."""
+    problem = cv.AlgebraicProblem(lambda u, p: np.cosh(u * 1e-7) - 1.0 - p, [0.0], 0.0)
+    graph = cv.diagram(problem, within=(-1.0, 2.0))
+    assert of_kind(graph, "fold") == pytest.approx([0.0], abs=1e-9)
+    assert len(graph["B1"]) < 200
+
+
+@pytest.mark.parametrize("size", [1e-7, 1e7])
+def test_an_unknown_that_is_zero_is_as_large_as_it_weighs_where_it_is_even(size):
+    problem = cv.AlgebraicProblem(
+        lambda u, p: [u[0] - p + (u[1] / size) ** 2, u[1] * (u[0] - 0.3)], [1.0, 0.0], 1.0
+    )
+    graph = cv.diagram(problem, within=(-1.0, 2.0))
+    assert len(graph.branches) == 2
+    assert of_kind(graph, "branch-point") == pytest.approx([0.3], abs=1e-9)
+    assert sum(len(branch) for branch in graph) < 400
