@@ -206,16 +206,6 @@ class Corrector:
                 return p, size, 1
         return p, size, 0
 
-    def linearised(
-        self, u: np.ndarray, p: float, border: np.ndarray, target: float, tangent: np.ndarray
-    ) -> tuple[float, float]:
-        """One linearisation and one elimination, which gives the correction and the tangent; residual (not finite: not evaluable) and sign."""
-        residual = self.kernels.linearise(self.data, u, p, self.work)
-        if not math.isfinite(residual):
-            return residual, 0.0
-        gap = target - float(border[-1]) * p - dot(border, u, len(u))
-        return residual, self.kernels.bordered(self.data, self.work, border, gap, self.scratch.step, tangent)
-
     def correct(
         self, u: np.ndarray, p: float, target: float, tolerance: float, max_sweeps: int
     ) -> tuple[float, int, float, float]:
@@ -231,11 +221,14 @@ class Corrector:
         size : float
             Last correction, relative to the scale + abs(unknown).
         """
-        size, sign = 0.0, 0.0
+        kernels, data, work, (_, border, step, tangent, _) = self.kernels, self.data, self.work, self.scratch
+        size, sign, n, of_parameter = 0.0, 0.0, len(u), float(border[-1])
         for sweep in range(max_sweeps):
-            residual, sign = self.linearised(u, p, self.scratch.border, target, self.scratch.tangent)
+            residual = kernels.linearise(data, u, p, work)
             if not math.isfinite(residual):
                 return p, -2, sign, size
+            gap = target - of_parameter * p - dot(border, u, n)
+            sign = kernels.bordered(data, work, border, gap, step, tangent)
             p, size, verdict = self.improve(u, p, sweep, residual, size, tolerance)
             if verdict != 0:
                 return p, sweep + 1 if verdict > 0 else -1, sign, size
@@ -243,16 +236,19 @@ class Corrector:
 
     def point(self, way: Way, s: float, found: Found, i: int) -> None:
         """The solution at a place on a chord, and everything about it, into entry i of what is found."""
+        kernels, data, work = self.kernels, self.data, self.work
         border, u, tangent = way.border, found.u[i], found.tangents[i]
         p = hermite(way.chord, s, u, self.scratch.guess)
         limit = 0 if way.length > 0.0 and (s == 0.0 or s == 1.0) else way.sweeps
         target = way.start + s * way.length
         residual, sign, size, sweeps, settled = 0.0, 0.0, 0.0, -1, limit == 0
         for sweep in range(limit + 1):
-            residual, sign = self.linearised(u, p, border, target, tangent)
+            residual = kernels.linearise(data, u, p, work)
             if not math.isfinite(residual):
                 sweeps = -2
                 break
+            gap = target - float(border[-1]) * p - dot(border, u, len(u))
+            sign = kernels.bordered(data, work, border, gap, self.scratch.step, tangent)
             if settled:
                 sweeps = sweep
                 break
@@ -263,7 +259,7 @@ class Corrector:
                 break
             settled = verdict > 0
         if sweeps >= 0:
-            self.kernels.inspect(self.data, u, p, self.work, found.rows[i])
+            kernels.inspect(data, u, p, work, found.rows[i])
             norm, same, across = orient(tangent, way.along, border, self.metric)
             if not math.isfinite(norm):
                 sweeps = -3

@@ -201,7 +201,9 @@ def nearest_eigenvalues(data: Equations, work: DenseWork) -> np.ndarray:
     if not isinstance(data.reference, np.ndarray):
         data.reference = reference_of(work.jacobian, *data.sizes())
     values = without_roundoff(np.linalg.eigvals(data.reference @ work.jacobian))
-    return values[np.argsort(np.abs(values), kind="stable")][: data.n_multipliers]
+    if len(values) > data.n_multipliers:
+        values = values[np.argsort(np.abs(values), kind="stable")][: data.n_multipliers]
+    return values
 
 
 def matrix(data: Equations, work: DenseWork) -> np.ndarray:
