@@ -62,7 +62,7 @@ class CallableProblem(Parametrised, ProblemDefaults, ABC):
     unsolved : bool
         Whether the last linear system, of a Jacobian without a matrix, was not solved.
     generators, symmetric_for, mixed_rows
-        Symmetries by name, and for which parameters they are known to be some; see :mod:`.equivariance`.
+        Symmetries by name, and for which parameters they are known to be some; see :mod:`.symmetries`.
     """
 
     values: ParameterSet
