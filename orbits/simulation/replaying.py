@@ -127,14 +127,14 @@ def deviation(orbit: Motion, known: Known) -> float:
 
 def by_events(orbit: Motion, first: int = 0, count: int | None = None) -> float:
     """Largest difference of the times and states of so many events (all of a period) after one at which the simulation starts; infinite if they are others."""
-    wanted = count or len(orbit.word)
+    wanted = (first + 1 + np.arange(count or len(orbit.word))) % len(orbit.word)
     longest = 2.0 * float(orbit.durations.sum()) / TWO_PI + 1.0
     simulator, word = simulator_of(orbit.model, orbit.params), orbit.word.rotate(first)
-    run, message = go_round(simulator, word, orbit.nodes[first], wanted, longest)
+    run, message = go_round(simulator, word, orbit.nodes[first], len(wanted), longest)
     if run is None or message:
         return math.inf
-    late = run.clocks[1:] - run.clocks[0] - np.cumsum(np.roll(orbit.durations, -first)[:wanted])
-    apart = run.points - np.roll(flow_of(orbit.model).points(orbit), -first - 1, axis=0)[:wanted]
+    late = run.clocks[1:] - run.clocks[0] - np.cumsum(orbit.durations[wanted - 1])
+    apart = run.points - flow_of(orbit.model).points(orbit)[wanted]
     length, rate = orbit.model.natural_units(orbit.params)
     return float(max(np.abs(late).max(), np.abs(apart).max() / max(1.0, length, length * rate)))
 

@@ -315,6 +315,8 @@ def collect(
         count, status = engine.advance(state, params, until, codes, modes, rows)
         parts.append((codes[:count], modes[:count], rows[:count]))
         left -= count
+    if len(parts) == 1:
+        return (*parts[0], status)
     codes, modes, rows = (np.concatenate(column) for column in zip(*(parts or [buffers(engine, 0)])))
     return codes, modes, rows, status
 

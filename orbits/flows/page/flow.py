@@ -94,8 +94,7 @@ class PageFlow(Flow[Machine]):
         """What the page says; else impact speeds, which belong to the impacts, or how far the first state goes."""
         if model.response not in (None, "approach_speed"):
             return (model.response,)
-        walls = any(isinstance(contact, Wall) for contact in model.contacts)
-        return () if walls else self.simulated_names(model)[:2]
+        return () if model.alphabet.walled else self.simulated_names(model)[:2]
 
     def in_units(self, model: Machine, params: np.ndarray, values: dict[str, float]) -> dict[str, float]:
         """They are."""

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from orbits.contacts.letters import HOLD, RELEASE
-from orbits.contacts.wall import HELD, Wall
+from orbits.contacts.wall import HELD
 from orbits.flows.page.pieces import flown
 from orbits.flows.page.stepper import TWO_PI, Stepper
 from orbits.flows.page.variations import Variations, growth
@@ -73,8 +73,7 @@ class PageTrajectory(Trajectory):
     @property
     def held(self) -> bool:
         """Whether one of the walls holds the body from the beginning to the end."""
-        walls = [j for j, contact in enumerate(self.model.contacts) if isinstance(contact, Wall)]
-        return any(all(mode[j] == HELD for mode in self.modes) for j in walls)
+        return any(all(mode[j] == HELD for mode in self.modes) for j in self.model.equations.gap)
 
     @property
     def reason(self) -> str:
@@ -144,7 +143,7 @@ def outside(stepper: Stepper, state: np.ndarray, clock: float) -> np.ndarray:
     stepper.modes = machine.rest_mode(stepper.params, state, stepper.clock)
     for _ in range(200):  # walls that push against one another are left in turn
         gaps = stepper.contact_values()
-        deep = [j for j, c in enumerate(machine.contacts) if isinstance(c, Wall) and gaps[j] < 0.0]
+        deep = [j for j in machine.equations.gap if gaps[j] < 0.0]
         if not deep:
             break
         numbers = machine.compiled.numbers(stepper.params, stepper.modes)
@@ -289,9 +288,7 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
         compiled = machine.compiled
         numbers = compiled.numbers(self.params, machine.rest_mode(self.params, here, 0.0))
         gaps = compiled.contact_values().one(here, 0.0, numbers)
-        for j, contact in enumerate(machine.contacts):
-            if not isinstance(contact, Wall):
-                continue
+        for j in machine.equations.gap:
             slopes = compiled.gap_slopes(j).one(here, 0.0, numbers)
             steep = float(np.linalg.norm(slopes))
             if not abs(gaps[j]) < near * steep:
@@ -373,13 +370,13 @@ class PageSimulator(Simulator[Machine, PageTrajectory]):
 
     def _room(self) -> float:
         """The widest gap of a wall at the state; 0 without walls."""
-        gaps = zip(self.stepper.contact_values(), self.model.contacts)
-        return max((float(gap) for gap, contact in gaps if isinstance(contact, Wall)), default=0.0)
+        values = self.stepper.contact_values()
+        return max((float(values[j]) for j in self.model.equations.gap), default=0.0)
 
     def free(self, points: np.ndarray) -> np.ndarray:
         """Which starts have all gaps open, bool array (m,)."""
         machine = self.model
-        walls = [j for j, contact in enumerate(machine.contacts) if isinstance(contact, Wall)]
+        walls = [*machine.equations.gap]
         if not walls:
             return np.ones(len(points), dtype=bool)
         clocks = points[:, 0] if self.forced else np.zeros(len(points))

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from orbits.contacts.dry_friction import ABSENT, STUCK, DryFriction
+from orbits.contacts.dry_friction import ABSENT, STUCK
 from orbits.contacts.letters import HIT, HOLD, RELEASE, SLIP, STICK, SWITCH, TURN
-from orbits.contacts.wall import FREE, HELD, Wall
+from orbits.contacts.wall import FREE, HELD
 from orbits.flows.protocol import SimulationError
 from orbits.machines.page.machine import Machine
 from orbits.machines.page.possible import singular_at
@@ -62,15 +62,14 @@ class Stepper:
         places = {j: machine.size + 1 + k for k, j in enumerate(self.equations.signed)}
         self._touched = {  # frictions and switches whose sign an impact may change, and where the impact's map tells it
             w: [(j, places[j]) for (wall, j) in machine.alphabet.flips if wall == w and j not in self.absent]
-            for w, contact in enumerate(machine.contacts)
-            if isinstance(contact, Wall)
+            for w in self.equations.gap
         }
-        self._frictions = [j for j, c in enumerate(machine.contacts) if isinstance(c, DryFriction)]
+        self._frictions = [*self.equations.velocity]
         self._tied = {  # frictions that stop what closes and opens a wall's gap
             w: [
                 j
                 for (wall, j), sign in machine.alphabet.flips.items()
-                if wall == w and sign is not None and isinstance(machine.contacts[j], DryFriction)
+                if wall == w and sign is not None and j in self._frictions
             ]
             for w in self._touched
         }
@@ -111,10 +110,10 @@ class Stepper:
             return
         self.modes = tuple(self.machine.rest_mode(self.params, self.state, self.clock))
         values = self.contact_values()
-        for j, contact in enumerate(self.machine.contacts):
-            if isinstance(contact, Wall) and values[j] < -EVENTS.zero * (1.0 + np.abs(self.state).max()):
+        for j in self._touched:
+            if values[j] < -EVENTS.zero * (1.0 + np.abs(self.state).max()):
                 raise SimulationError(
-                    f"the gap of wall {contact.letter!r} is {values[j]:.6g} at the start: bodies overlap; "
+                    f"the gap of wall {self.machine.contacts[j].letter!r} is {values[j]:.6g} at the start: bodies overlap; "
                     "give a start with all gaps at 0 or above"
                 )
         for j in self._frictions * len(self._frictions):  # one that slips may be too much for another
@@ -122,7 +121,9 @@ class Stepper:
                 self.modes = self._with(j, self._at_rest(j))
         self._agree()
         self._fresh = True
-        self._impacts_at_start(values)
+        for j in self._touched:
+            if abs(values[j]) <= EVENTS.zero and self._gap_rate(j) < 0.0:
+                self._struck(j)
 
     def _agree(self) -> None:
         """Frictions that begin at rest, until each slides the way it is pushed by what the others do."""
@@ -138,11 +139,6 @@ class Stepper:
         if not self.machine.contacts:
             return np.zeros(0)
         return self._now(self._values)
-
-    def _impacts_at_start(self, values: np.ndarray) -> None:
-        for j, contact in enumerate(self.machine.contacts):
-            if isinstance(contact, Wall) and abs(values[j]) <= EVENTS.zero and self._gap_rate(j) < 0.0:
-                self._struck(j)
 
     # ------------------------------------------------------------------ laws
     @property
