@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,16 +16,15 @@ from ..graph.graph import Graph
 from ..graph.run import Left, Run
 from ..interrupts import listening
 from ..journal import Journal
+from ..problems.populations import Population
 from ..progress import Asked, OnInterrupt, Tell, carried_out
-from .census import Counted, census, locate
+from .census import Counted, census, join, population_of
 from .effort import BUDGET, Effort
-from .handover import Handover
-from .places import scattered, unasked, unknown, unresolved
-from .population import Population, population_of
-from .roots import add_root
+from .places import Handover, scattered, unasked, unknown, unresolved
 from .settings import ATLAS
 from .windows import CYCLES, Windows, run_apart
 
+T = TypeVar("T")
 STARTS = 256  # at each of the given values where no number is given, in closed form
 FEW = 16  # starts at each of the further values
 SOUGHT = 8  # starts at each given value from which cycles are looked for, stable or not
@@ -125,18 +124,8 @@ def atlas(
     asked = {"values": len(where), "starts": starts, "seed": seed, "scan": scan, "budget": budget}
 
     def begun(kept: Journal, tell: Tell | None) -> tuple[Graph, Callable[[], None]]:
-        run = new_run(
-            population.parameter,
-            dict(population.about),
-            within,
-            depth,
-            virtual,
-            user_functions,
-            kept,
-            tell,
-            settings,
-            kinds=kinds,
-        )
+        about = dict(population.about), within, depth, virtual, user_functions, kept, tell, settings
+        run = new_run(population.parameter, *about, kinds=kinds)
         run.graph.settings |= asked
         run.narrowest = ATLAS.narrow * (run.graph.within[1] - run.graph.within[0])
         return run.graph, partial(_work, _Looking(run, population, seed, budget), where, starts, scan)
@@ -159,10 +148,9 @@ def _work(looking: _Looking, where: list[float], starts: int, scan: int) -> None
         looking.between(scan)
         looking.unbranched(scan)
     looking.tell_left()
-    run, everything = looking.run, looking.found
-    everything.sort(key=lambda counted: counted.attractor.value)
-    run.graph.attractors = [counted.attractor for counted in everything]
-    finish(run)
+    found = sorted((counted.attractor for counted in looking.found), key=lambda attractor: attractor.value)
+    looking.run.graph.attractors = found
+    finish(looking.run)
 
 
 def _check_whole(name: str, value: object, least: int) -> None:
@@ -195,35 +183,6 @@ def check_values(values: int | Sequence[float], within: tuple[float, float]) -> 
     return numbers
 
 
-def join(run: Run, found: Sequence[Counted], depth: int = 0) -> int:
-    """Give each attractor the label of its branch; what lies on none is traced first, with all that leaves it.
-
-    Its branch counts as one that `depth` others lie before.
-
-    Returns
-    -------
-    int
-        How many roots were added.
-    """
-    before = len(run.graph.branches)
-    for counted in found:
-        attractor = counted.attractor
-        if counted.problem is None or counted.u is None:
-            continue
-        label = locate(run, counted)
-        if label is None:
-            try:
-                add_root(run, counted.problem, counted.u, attractor.value, depth)
-            except ValueError as refusal:
-                run.tell(f"a start at {attractor.value:.6g} is left: {refusal}", attractor.value)
-                continue
-            label = locate(run, counted)
-        attractor.branch = label
-        if label is not None:  # one motion, one spelling of its word
-            attractor.word = str(run.graph.branches[label].description.get("word", attractor.word))
-    return len(run.graph.branches) - before
-
-
 class _Looking:
     """What has been simulated so far, and where next."""
 
@@ -237,23 +196,16 @@ class _Looking:
         self.windows = Windows(run, population, apart, self.effort)
         self.left: dict[str, int] = {}  # pieces of work that the budget did not allow
         run.over = lambda: self.effort.over
-        run.left = lambda: Left(self.effort.share, *self.effort.pieces, self.effort.seconds)
+        run.left = lambda: Left(*self.effort.left())
 
-    def given(self, values: Sequence[float], starts: int) -> None:
-        """Simulate starts at the given values, then trace what they reach."""
-        self.effort.expect(GIVEN, len(values))
-        self.effort.expect(TRACED, len(values))
-        met: list[list[Counted]] = []
-        for k, p in enumerate(values):
-            if k and self._over(GIVEN, len(values) - k):
-                break
-            with self.effort.piece(GIVEN):
-                met.append(self.simulated(p, starts))
-        for k, counted in enumerate(met):
-            if k and self._over(TRACED, len(met) - k):
-                break
-            with self.effort.piece(TRACED):
-                join(self.run, counted)
+    def pieces(self, what: str, things: Sequence[T], least: int = 0) -> Iterator[T]:
+        """The pieces of a search one by one while the budget lasts, at least so many; those that are left out are counted."""
+        self.effort.expect(what, len(things))
+        for k, thing in enumerate(things):
+            if k >= least and self._over(what, len(things) - k):
+                return
+            with self.effort.piece(what):
+                yield thing
 
     def _over(self, what: str, left: int) -> bool:
         """Whether the budget is used up; then so many pieces of work are left out."""
@@ -261,17 +213,24 @@ class _Looking:
             self.left[what] = left
         return self.effort.over
 
-    def simulated(self, p: float, starts: int, seed: int | None = None) -> list[Counted]:
+    def given(self, values: Sequence[float], starts: int) -> None:
+        """Simulate starts at the given values, then trace what they reach."""
+        self.effort.expect(TRACED, len(values))
+        met = [self.simulated(p, starts, self.seed) for p in self.pieces(GIVEN, values, 1)]
+        for counted in self.pieces(TRACED, met, 1):
+            join(self.run, counted)
+
+    def simulated(self, p: float, starts: int, seed: int) -> list[Counted]:
         """Simulate starts at a value."""
         self.run.tell(f"{starts} starts at {self.population.parameter} = {p:.6g}", p)
-        counted = census(self.population, p, starts, self.seed if seed is None else seed, self.run.journal)
+        counted = census(self.population, p, starts, seed, self.run.journal)
         self.asked.append(p)
         self.found += counted
         return counted
 
-    def at(self, p: float, starts: int, seed: int | None = None) -> int:
-        """Simulate starts at a value, and trace what they reach; the number of branches that this has added."""
-        return join(self.run, self.simulated(p, starts, seed))
+    def few(self, p: float) -> int:
+        """Simulate a few starts at a value, and trace what they reach; the number of branches that this has added."""
+        return join(self.run, self.simulated(p, FEW, self.seed + len(self.asked)))
 
     def for_cycles(self, values: Sequence[float]) -> None:
         """Follow unstable cycles, out of the chaos that has been met and from elsewhere, to where they are born with a stable one."""
@@ -287,35 +246,28 @@ class _Looking:
 
     def unbranched(self, most: int) -> None:
         """Values where a kind of motion without a branch begins or ends, up to `most`."""
-        self._few(lambda asked, left: unresolved(self._met(), asked, self.run.graph.within, left), most)
+
+        def places(asked: Sequence[float], left: int) -> list[float]:
+            met: dict[str, list[float]] = {}
+            for counted in self.found:
+                met.setdefault(counted.attractor.kind, []).append(counted.attractor.value)
+            return unresolved(met, asked, self.run.graph.within, left)
+
+        self._few(places, most)
 
     def _few(self, places: Callable[[Sequence[float], int], list[float]], most: int) -> None:
-        while most > 0 and (wanted := places(self.asked, most)):
+        while most > 0 and BETWEEN not in self.left and (wanted := places(self.asked, most)):
             most -= len(wanted)
-            self.effort.expect(BETWEEN, len(wanted))
-            for k, p in enumerate(wanted):
-                if self._over(BETWEEN, len(wanted) - k):
-                    return
-                with self.effort.piece(BETWEEN):
-                    self.at(p, FEW, self.seed + len(self.asked))
-
-    def _met(self) -> dict[str, list[float]]:
-        met: dict[str, list[float]] = {}
-        for counted in self.found:
-            met.setdefault(counted.attractor.kind, []).append(counted.attractor.value)
-        return met
+            for p in self.pieces(BETWEEN, wanted):
+                self.few(p)
 
     def past_ends(self, most: int) -> None:
         """Follow what is lost at the ends of stable stretches, those of what it leads to included, until `most` starts have been in all."""
         while ends := self.handover.left()[: max(most // FOLLOWED - len(self.handover.done), 0)]:
-            self.effort.expect(ENDS, len(ends))
-            for k, end in enumerate(ends):
-                if self._over(ENDS, len(ends) - k):
-                    break
-                with self.effort.piece(ENDS):
-                    found = self.handover.follow(end)
-                    self.found += found
-                    join(self.run, found, self.run.depth)  # what leaves its branches is met at their ends
+            for end in self.pieces(ENDS, ends):
+                found = self.handover.follow(end)
+                self.found += found
+                join(self.run, found, self.run.depth)  # what leaves its branches is met at their ends
             if self.effort.over:
                 break
         left = len(self.handover.left())
@@ -329,7 +281,7 @@ class _Looking:
             self.effort.expect(SCATTERED, left)
             with self.effort.piece(SCATTERED):
                 p = scattered(self.run.graph.within, self.seed, k)
-                added = self.at(p, FEW, self.seed + len(self.asked))
+                added = self.few(p)
             quiet = 0 if added else quiet + 1
             k += 1
         self.run.graph.settings |= {"scanned": k, "quiet": quiet}

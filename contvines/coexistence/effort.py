@@ -8,7 +8,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .population import Population
+    from ..problems.populations import Population
 
 BUDGET = 500_000  # units of work that an atlas may take where no number is given: some minutes
 PERIODS = 100  # simulated forcing periods, or steps of a map, that take about as long as a point of a branch
@@ -30,9 +30,8 @@ class Effort:
         self.population, self.budget, self.points = population, budget, points
         self.begun, self.started = population.work, monotonic()
         self.waiting: dict[str, int] = {}  # pieces of each search that are known so far
-        self._took: dict[
-            str, tuple[int, float]
-        ] = {}  # pieces of each search that are done, and their seconds
+        # pieces of each search that are done, and their seconds
+        self._took: dict[str, tuple[int, float]] = {}
 
     @property
     def spent(self) -> int:
@@ -43,11 +42,6 @@ class Effort:
     def over(self) -> bool:
         """Whether no further piece of work may begin."""
         return self.spent >= self.budget
-
-    @property
-    def share(self) -> float:
-        """Of the budget, at most 1."""
-        return min(self.spent / self.budget, 1.0)
 
     def expect(self, search: str, pieces: int) -> None:
         """So many pieces of a search are known to be left."""
@@ -62,22 +56,15 @@ class Effort:
         self._took[search] = count + 1, seconds + monotonic() - begun
         self.waiting[search] = max(self.waiting.get(search, 0) - 1, 0)
 
-    @property
-    def pieces(self) -> tuple[int, int]:
-        """Pieces of work that are done, and that are known so far."""
-        done = sum(count for count, _ in self._took.values())
-        return done, done + sum(self.waiting.values())
-
-    @property
-    def seconds(self) -> float:
-        """Estimate of the time that the pieces known so far, or the rest of the budget, will take; NaN before the first is done."""
-        done, _ = self.pieces
-        if not done:
-            return float("nan")
-        mean = sum(seconds for _, seconds in self._took.values()) / done
-        left = 0.0
-        for search, pieces in self.waiting.items():
-            count, seconds = self._took.get(search, (1, mean))
-            left += pieces * seconds / count
-        share = self.share
-        return min(left, (monotonic() - self.started) * (1.0 / share - 1.0)) if share else left
+    def left(self) -> tuple[float, int, int, float]:
+        """Share of the budget that is used; pieces of work that are done, and known so far; the time that the others, or the rest of the budget, will
+        take, as far as that is known: NaN before the first is done."""
+        done, known = sum(count for count, _ in self._took.values()), sum(self.waiting.values())
+        share, seconds = min(self.spent / self.budget, 1.0), float("nan")
+        if done:
+            mean = sum(seconds for _, seconds in self._took.values()) / done
+            took = {search: self._took.get(search, (1, mean)) for search in self.waiting}
+            seconds = sum(n * took[search][1] / took[search][0] for search, n in self.waiting.items())
+            if share:
+                seconds = min(seconds, (monotonic() - self.started) * (1.0 / share - 1.0))
+        return share, done, done + known, seconds

@@ -9,16 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ..bifurcation.scan import image_of
 from ..branches.solutions import solutions_at
 from ..circles.section import Section, Walled, section_of
 from ..continuation.settings import Settings
 from ..graph.graph import Graph
-from .circle_step import TURN, next_point
+from ..shared.floating_point import TINY
 from .settings import MANIFOLDS
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 
     from ..branches.branch import Branch
     from ..problems.protocol import Problem
+
 
 LINEAR = 0.1  # distances of the first point from the saddle by which its images are off: a saddle beside a grazing impact is bent
 STRAIGHT = 0.05  # angle between two steps below which the radius grows
@@ -287,3 +290,67 @@ class _Half:
         """Where the segments of all pieces begin and end."""
         pieces = [np.array(points) for points in self.pieces]
         return np.concatenate([x[:-1] for x in pieces]), np.concatenate([x[1:] for x in pieces])
+
+
+TURN = 0.3  # angle between two steps beyond which the radius shrinks
+ARCS = 12  # candidates on the part of a circle that is searched
+REFINED = 60  # times that an angle is refined, at most
+
+
+def next_point(
+    image: Callable[[np.ndarray], np.ndarray],
+    known: tuple[np.ndarray, np.ndarray, int],
+    last: np.ndarray,
+    heading: np.ndarray,
+    radius: float,
+    widest: float,
+) -> tuple[np.ndarray, int, float] | None:
+    """The point on the circle whose image lies on the known segments, from `known[2]` on, the segment on which it lies, and the angle turned by."""
+    middle, near = np.arctan2(heading[1], heading[0]), MANIFOLDS.on_curve * radius
+    sides: dict[float, tuple[float, int, bool]] = {}
+
+    def place(turn: float) -> np.ndarray:
+        return last + radius * np.array([np.cos(middle + turn), np.sin(middle + turn)])
+
+    def gap(turn: float) -> float:
+        """Distance of the image of a point of the circle from the curve; 0 where it lies on it."""
+        if turn not in sides:
+            sides[turn] = _beside(*known, image(place(turn)))
+        value = sides[turn][0]
+        return 0.0 if abs(value) < near else value
+
+    count = int(np.ceil(ARCS * max(1.0, widest))) if widest > TURN else ARCS
+    turns = [float(turn) for turn in widest * np.linspace(-1.0, 1.0, count + 1)]
+    for low, high in sorted(pairwise(turns), key=lambda ends: abs(ends[0] + ends[1])):
+        a, b = gap(low), gap(high)
+        if not (np.isfinite(a) and np.isfinite(b)) or a * b > 0.0:
+            continue
+        try:
+            turn: float = brentq(gap, low, high, xtol=TINY, maxiter=REFINED, disp=False)  # pyright: ignore[reportAssignmentType]
+        except ValueError:  # the image cannot be told
+            return None
+        off, (_, segment, beyond) = gap(turn), sides[turn]
+        if not beyond and abs(off) <= MANIFOLDS.jump * radius:  # else the motion jumps there
+            return place(turn), segment, abs(turn)
+    return None
+
+
+def _beside(starts: np.ndarray, ends: np.ndarray, at: int, point: np.ndarray) -> tuple[float, int, bool]:
+    """Signed distance of a point to known segments near that numbered `at` or later ones, the nearest segment, and whether the point is
+
+    beyond what is known: then the distance is that to the last segment's line, whose side still tells where a saddle throws it.
+    """
+    if not np.all(np.isfinite(point)):
+        return float("nan"), at, False
+    first = max(at - 2, 0)
+    starts, ends = starts[first:], ends[first:]
+    along = ends - starts
+    lengths = np.maximum((along * along).sum(axis=1), TINY)
+    part = ((point - starts) * along).sum(axis=1) / lengths
+    inside = np.clip(part, 0.0, 1.0)
+    gaps = np.linalg.norm(point - (starts + inside[:, None] * along), axis=1)
+    k = int(gaps.argmin())
+    across = along[k, 0] * (point - starts[k])[1] - along[k, 1] * (point - starts[k])[0]
+    if k == len(gaps) - 1 and part[k] > 1.0:
+        return float(across / np.sqrt(lengths[k])), at, True
+    return float(np.sign(across) * gaps[k]), first + k, False

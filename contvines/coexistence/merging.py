@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..continuation.settings import Settings
-from ..graph.builder import adopt
 from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..graph.run import Run
-from ..journal import NullJournal
+from .census import run_on
 
 if TYPE_CHECKING:
+    from ..branches.branch import Branch
     from ..branches.special_point import SpecialPoint
 
 
@@ -37,9 +37,9 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
         If they are of different parameters or machines, or a branch has no problem.
     """
     _refuse_strangers(graph, other)
-    run = Run(graph, Settings.kept(graph.settings), NullJournal(), 0, True, None, None)
-    adopt(run)
+    run = run_on(graph)
     called: dict[str, str] = {}
+    added: list[Branch] = []
     for branch in other.branches.values():
         middle = len(branch) // 2
         known = run.register.find(
@@ -47,22 +47,19 @@ def merge(graph: Graph, other: Graph) -> dict[str, str]:
         )
         called[branch.label] = run.new_label("B") if known is None else known.label
         if known is None:
-            added = replace(branch, label=called[branch.label])
-            graph.branches[added.label] = added
-            run.register.add(added, run.engine(added.attached))
+            added.append(replace(branch, label=called[branch.label]))
+            graph.branches[added[-1].label] = added[-1]
+            run.register.add(added[-1], run.engine(branch.attached))
     for point in other.special.values():
         called[point.label] = _special(run, point, called)
-    fresh = {called[label] for label in other.branches} - {
-        b for b in called if b in graph.branches and called.get(b) == b
-    }
-    for label in fresh:
-        branch = graph.branches[label]
-        if any(mark not in graph.special for _, mark in branch.marks) or branch.seed not in (
-            None,
-            *graph.special,
-        ):
-            branch.marks = tuple((i, called.get(mark, mark)) for i, mark in branch.marks)
-            branch.seed = None if branch.seed is None else called.get(branch.seed, branch.seed)
+    names = {**called, None: None}
+    for branch in added:
+        branch.marks = tuple((i, called[mark]) for i, mark in branch.marks)
+        branch.seed = names[branch.seed]
+        first, last = (
+            replace(ending, point=names[ending.point], other=names[ending.other]) for ending in branch.endings
+        )
+        branch.endings = first, last
     for switch in other.switches:
         run.connect(called[switch.point], called[switch.source], called[switch.target], switch.note)
     attractors = [replace(a, branch=None if a.branch is None else called[a.branch]) for a in other.attractors]
@@ -77,15 +74,10 @@ def _special(run: Run, point: SpecialPoint, called: dict[str, str]) -> str:
     form = point.attached.canonical(point.u, point.value)
     for known in graph.special.values():
         near = abs(known.value - point.value) <= run.settings.same * run.unit(point.value)
-        if (
-            known.kind == point.kind
-            and near
-            and known.problem is not None
-            and same_form(run.form(known), form)
-        ):
+        alike = known.kind == point.kind and near and known.problem is not None
+        if alike and same_form(run.form(known), form):
             return known.label
-    prefix = point.label.rstrip("0123456789")
-    label = run.new_label(prefix)
+    label = run.new_label(point.label.rstrip("0123456789"))
     graph.special[label] = replace(point, label=label, branch=called[point.branch])
     return label
 

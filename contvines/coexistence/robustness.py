@@ -4,23 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..branches.branch import Branch
+from ..branches.branch import Branch, Reason
 from ..branches.solutions import solutions_at
 from ..circles.section import section_of
 from ..continuation.settings import hinting
+from ..continuation.starts import problem_and_start
+from ..graph.automatic import diagram
 from ..graph.table import short_word
 from ..problems.abilities import Gauged
+from ..problems.maps import MapProblem
+from ..problems.populations import Population
 from ..shared.motions import called
 from ..shared.number_text import figures
 from ..text_table import fitted
 from .basins import wilson
-from .population import Population, population_of
-from .ranges import stable_range
+from .census import population_of
 from .settings import ATLAS
+
+if TYPE_CHECKING:
+    from ..problems.protocol import Problem
+
 
 MANY, FEW, MANY_ACROSS = 1024, 256, 100
 """Starts that tell a share: many of a population whose basins are drawn with so many starts each way, few where each start is flown alone."""
@@ -207,8 +214,8 @@ def robustness(
         reaches,
         share,
         interval,
-        {name: found.ends for name, found in ranges.items()},
-        {name: found.lost for name, found in ranges.items()},
+        {name: ends for name, (ends, _) in ranges.items()},
+        {name: lost for name, (_, lost) in ranges.items()},
         dict(branch.description.get("units") or {}),
         problem.gauges(section.names, float(at)) if isinstance(problem, Gauged) else {},
     )
@@ -296,14 +303,11 @@ class _Kicked:
             lost.flat[part], names.flat[part] = self._lost(
                 self._starts(kicks.reshape(-1, kicks.shape[2])[part])
             )
-        first = np.where(lost.any(axis=1), lost.argmax(axis=1), LEVELS)
-        if first.min() == LEVELS:
-            nothing = np.full(self.places.shape[1], np.nan)
-            return self.places[0], nothing, ""
-        rays = np.flatnonzero(first < LEVELS)
-        outside = longest[rays] * levels[first[rays]]
-        inside = outside - longest[rays] / LEVELS
-        reaches = names[rays, first[rays]]
+        rays = np.flatnonzero(lost.any(axis=1))
+        if not len(rays):
+            return self.places[0], np.full(self.places.shape[1], np.nan), ""
+        first = lost[rays].argmax(axis=1)
+        inside, outside, reaches = begins[rays, first], ends[rays, first], names[rays, first]
         near = inside < outside.min()  # the others cannot hold the smallest
         rays, inside, outside, reaches = rays[near], inside[near], outside[near], reaches[near]
         for _ in range(HALVINGS):
@@ -334,3 +338,75 @@ class _Kicked:
         possible = np.array([m.kind != "impossible" for m in motions])
         lost = ((index != index[0]) | (mirrored != mirrored[0])) & possible[index]
         return lost[1:], np.where(index == index[0], MIRRORED, names[index])[1:]
+
+
+REACH = 0.5  # of a parameter's size, to either side
+REFUSALS = 12  # of an end of the interval that the machine refuses
+AT_THE_MOTION = {
+    Reason.BORDER,
+    Reason.LEAVES,
+    Reason.GOES_ON,
+    Reason.REACHES,
+    Reason.MEETS,
+    Reason.MEETS_SYMMETRIC,
+    Reason.COMES_BACK,
+    Reason.STOPS,
+}
+
+
+def stable_range(
+    problem: Problem, u: np.ndarray, p: float, name: str
+) -> tuple[tuple[float, float], tuple[bool, bool]]:
+    """Smallest and largest value of the parameter `name` up to which a motion stays stable and real, within half its size.
+
+    For either of them also whether the motion loses its stability or ceases to be real there; False: the search ended there.
+
+    Parameters
+    ----------
+    problem : Problem
+    u, p
+        The motion.
+    name : str
+        A parameter of the problem, its own or another.
+
+    Raises
+    ------
+    ValueError
+        If the problem has no such parameter.
+    """
+    if isinstance(problem, MapProblem):
+        seed = problem.cycle_through(problem.section(p).rounds(u), p)
+        if name != problem.parameter:
+            seed = seed.against(name)
+    else:
+        seed = problem.orbit(u, p)
+    other, _, value = problem_and_start(seed, name)
+    low, high = (_allowed(other, name, value, side * REACH * (abs(value) or 1.0)) for side in (-1.0, 1.0))
+    graph = diagram(seed, over=name, within=(low, high), depth=0)
+    ends, lost = [value, value], [False, False]
+    for branch in graph.branches.values():
+        for interval in branch.stable_intervals() if branch.real else ():
+            if interval[0] <= value <= interval[1]:
+                for k, wider in enumerate((interval[0] < ends[0], interval[1] > ends[1])):
+                    if wider:
+                        ends[k], lost[k] = interval[k], not _search_ended(branch, interval[k])
+    return (ends[0], ends[1]), (lost[0], lost[1])
+
+
+def _search_ended(branch: Branch, value: float) -> bool:
+    """Whether a branch ends at a value for a reason that lies in the continuation, not in the motion."""
+    ends = zip((branch.values[0], branch.values[-1]), branch.endings)
+    return not branch.closed and any(
+        end == value and ending.reason not in AT_THE_MOTION for end, ending in ends
+    )
+
+
+def _allowed(problem: Problem, name: str, value: float, change: float) -> float:
+    """The value changed, by less where the machine refuses it."""
+    for _ in range(REFUSALS):
+        try:
+            problem.check_value(name, value + change)
+            return value + change
+        except ValueError:
+            change *= 0.5
+    return value + change

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,14 +14,11 @@ from ..graph.builder import begin, work
 from ..graph.graph import Graph
 from ..graph.run import Run
 from ..journal import Part
-from .census import Counted
+from ..problems.populations import Population
+from ..problems.protocol import Problem
+from .census import Counted, Solution, add_root, remembered
 from .effort import Effort
-from .population import Population
-from .roots import add_root
 from .settings import ATLAS
-
-if TYPE_CHECKING:
-    from ..problems.protocol import Problem
 
 CYCLES = "searches for unstable cycles"
 MOST = 10_000  # branches traced apart
@@ -71,87 +68,71 @@ class Windows:
 
         What settles on a narrow or rare motion is hard to meet; the cycles that its branch turns into, unstable ones, reach far beyond.
         """
+        population = self.population
         for p in values:
-            starts = partial(self.population.starts, count, seed, p)
             self._search(
                 f"cycles/{p!r}/{count}/{seed}",
                 p,
                 f"cycles from {count} starts",
-                lambda p=p, starts=starts: self.population.returning(starts(), p),
+                lambda p=p: population.returning(population.starts(count, seed, p), p),
             )
 
-    def _search(
-        self, key: str, p: float, what: str, cycles: Callable[[], Sequence[tuple[Problem, np.ndarray]]]
-    ) -> None:
+    def _search(self, key: str, p: float, what: str, cycles: Callable[[], Sequence[Solution]]) -> None:
         """Add to the graph what cycles at a value lead to, unless the work is over."""
         if self.effort.over:
             self.left += 1
             return
-        self.run.tell(f"{what} at {self.population.parameter} = {p:.6g}", p)
+        where = f"{self.population.parameter} = {p:.6g}"
+        self.run.tell(f"{what} at {where}", p)
+
+        def recalled(known: Mapping[str, Any]) -> list[Solution] | None:
+            """None where their problems take functions that are not at hand."""
+            found = []
+            for k, description in enumerate(known["problems"]):
+                problem = self.population.restored(description, known[f"u{k}"], p)
+                if problem is None:
+                    return None
+                found.append((problem, known[f"u{k}"]))
+            return found
+
         with self.effort.piece(CYCLES):
-            for problem, u, at in self._stable(key, p, cycles):
+            found = remembered(self.population, key, self.run.journal, cycles, _record, recalled)
+            stable: list[tuple[Problem, np.ndarray, float]] = []
+            for k, (problem, u) in enumerate(found):
+                if self.effort.over:
+                    self.left += 1
+                    break
+                if self.run.register.find(problem, u, p) is None:
+                    told = f"cycle {k + 1} of {len(found)} at {where}: followed to where it is stable"
+                    self.run.tell(told, p)
+                    stable += self._traced(problem, u, p)
+            for problem, u, at in stable:
                 if self.run.register.find(problem, u, at, True) is None:
                     add_root(self.run, problem, u, at, max(self.run.depth - 1, 0))
 
-    def _stable(
-        self, key: str, p: float, cycles: Callable[[], Sequence[tuple[Problem, np.ndarray]]]
-    ) -> list[tuple[Problem, np.ndarray, float]]:
-        """A point of every stable stretch to which cycles lead."""
-        points = []
-        known = self._recalled(key, p)
-        before = self.population.work
-        found = self._recorded(key, cycles(), before) if known is None else known
-        for k, (problem, u) in enumerate(found):
-            if self.effort.over:
-                self.left += 1
-                break
-            if self.run.register.find(problem, u, p) is None:
-                where = f"{self.population.parameter} = {p:.6g}"
-                self.run.tell(f"cycle {k + 1} of {len(found)} at {where}: followed to where it is stable", p)
-                points += self._traced(problem, u, p)
-        return points
-
-    def _recalled(self, key: str, p: float) -> list[tuple[Problem, np.ndarray]] | None:
-        """Cycles of an earlier run; None if there was none, or their problems take functions that are not at hand."""
-        known = self.run.journal.recall(key)
-        if known is None:
-            return None
-        cycles = []
-        for k, description in enumerate(known["problems"]):
-            u = known[f"u{k}"]
-            problem = self.population.restored(description, u, p)
-            if problem is None:
-                return None
-            cycles.append((problem, u))
-        self.population.work += float(known.get("work", 0.0))
-        return cycles
-
-    def _recorded(
-        self, key: str, cycles: Sequence[tuple[Problem, np.ndarray]], before: float
-    ) -> Sequence[tuple[Problem, np.ndarray]]:
-        work = self.population.work - before
-        record: dict[str, Any] = {"problems": [problem.describe() for problem, _ in cycles], "work": work}
-        record.update({f"u{k}": np.asarray(u, dtype=float) for k, (_, u) in enumerate(cycles)})
-        self.run.journal.record(key, record)
-        return cycles
-
     def _traced(self, problem: Problem, u: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray, float]]:
         """Trace a cycle unless it has been; a point of each stable stretch of what is new."""
-        if self.apart.register.find(problem, u, p) is not None:
+        apart, (low, high) = self.apart, self.run.graph.within
+        if apart.register.find(problem, u, p) is not None:
             return []
-        known = set(self.apart.graph.branches)
+        known = len(apart.graph.branches)
         try:
-            begin(self.apart, problem, u, p)
-            work(self.apart)
+            begin(apart, problem, u, p)
+            work(apart)
         except ValueError:  # it is real within rounding only
             return []
-        new = [branch for label, branch in self.apart.graph.branches.items() if label not in known]
         return [
             (branch.attached, branch.points[i], float(branch.values[i]))
-            for branch in new
+            for branch in list(apart.graph.branches.values())[known:]
             if branch.real
-            for i in _middles(branch, ATLAS.narrow * (self.run.graph.within[1] - self.run.graph.within[0]))
+            for i in _middles(branch, ATLAS.narrow * (high - low))
         ]
+
+
+def _record(cycles: Sequence[Solution]) -> dict[str, Any]:
+    """What a journal keeps of cycles."""
+    parts = {f"u{k}": np.asarray(u, dtype=float) for k, (_, u) in enumerate(cycles)}
+    return {"problems": [problem.describe() for problem, _ in cycles], **parts}
 
 
 def run_apart(run: Run) -> Run:

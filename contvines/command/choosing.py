@@ -125,7 +125,7 @@ class Machines:
     def __post_init__(self) -> None:
         from orbits.design.references import first_clearance
 
-        from ..coexistence.population import population_of
+        from ..coexistence.census import population_of
         from .compose import check_shaken, machine
         from .survey_study import machines_of, plan_and_machine, units_of
 

@@ -66,7 +66,7 @@ def population(study: Study):
     fixed = {name: value for name, value in own.items() if name != study.parameter}
     if study.sort is Sort.FLOW:
         return study.flow.population_at(fixed, study.parameter, study.box)
-    from ..coexistence.population import population_of
+    from ..coexistence.census import population_of
 
     return population_of(study.model, study.parameter, **fixed)
 

@@ -204,7 +204,7 @@ def _run(
 
         typer.echo("\n" + fitted(compared_text(study.model, study.parameter, study.within, compare)))
     if command == "diagram" and graph.missing:
-        from ..coexistence.missing import missing_text
+        from ..coexistence.census import missing_text
 
         say(missing_text(graph, str(path)), quiet)
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
@@ -247,7 +247,7 @@ def _looked(study: Study, target: Path) -> Graph:
 
     The graph is read from its file, so that a run killed in the look ends with the graph of an undisturbed one.
     """
-    from ..coexistence.missing import look
+    from ..coexistence.census import look
     from ..graph.graph import Graph
     from ..store import Store
     from .compose import population
@@ -303,7 +303,7 @@ def _add_simulated(axes: Axes, graph: Graph, study: Study) -> None:
     from ..plots.figures import styled
     from ..plots.legends import Key, draw_legend
     from ..plots.sweep import draw_bands
-    from ..survey.simulated import simulated
+    from ..survey.completion import simulated
     from .compose import population
 
     met = simulated(graph, population(study))

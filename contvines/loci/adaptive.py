@@ -10,8 +10,7 @@ import numpy as np
 
 from ..flows.cycles import CycleProblem
 from ..problems.protocol import Problem, Symmetry
-from .kernels import KNOWN
-from .kinds import FOLD, GROWTH, PERIOD
+from .kernels import FOLD, GROWTH, KNOWN, PERIOD
 from .linear import borders_at
 from .problem import LocusProblem, Work
 

@@ -25,7 +25,7 @@ from ..shared.floating_point import TINY
 from .chart import Chart
 from .codimension_two import mark
 from .departures import leaving
-from .kinds import BRANCH, FOLD, MARGIN, PERIOD, condition
+from .kernels import BRANCH, FOLD, MARGIN, PERIOD, condition
 from .locus import Locus, PlanePoint
 from .problem import LocusProblem
 from .regions import KnownMotions, divide, together

@@ -27,7 +27,7 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..shared.floating_point import ROUNDED
 from .adaptive import on_mesh
-from .kinds import FLIP, FOLD, MARGIN, PAIR, PERIOD
+from .kernels import FLIP, FOLD, MARGIN, PAIR, PERIOD
 from .linear import Linearisation, critical_first
 from .locus import Locus, PlanePoint
 from .plane import Place, Plane

@@ -28,7 +28,7 @@ from ..flows.mesh import rule
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Embedding
 from .adaptive import on_mesh
-from .kinds import BRANCH
+from .kernels import BRANCH
 from .linear import Linearisation
 from .locus import Locus, PlanePoint
 from .plane import BEND

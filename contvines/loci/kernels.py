@@ -40,15 +40,42 @@ import math
 import numpy as np
 
 from ..bifurcation.settings import LOCATING
+from ..problems.protocol import Problem
 from ..shared.floating_point import PIVOT, ROUNDED
-from .kinds import APART, BRANCH, FLIP, FOLD, GROWTH, MARGIN, OWN, PAIR, PERIOD
 from .settings import SCALING
+
+# in Python alone: PERIOD, one of the unknowns, the period, has a given value; GROWTH, the only multiplier is 1; OWN, the condition of a user's kind
+FOLD, FLIP, MARGIN, PAIR, BRANCH, PERIOD, GROWTH, OWN = range(8)
+APART = 0.03  # of its size: how far from an equilibrium a cycle may stay that stands for a homoclinic orbit
+
+#: kind of a special point -> what is followed, unless it is a border (then its margin)
+CONDITIONS = {
+    "fold": FOLD,
+    "branch-point": BRANCH,
+    "neimark-sacker": PAIR,
+    "hopf": PAIR,
+    "period-doubling": FLIP,
+    "symmetry-breaking": FLIP,
+    "homoclinic": PERIOD,
+}
 
 ALONG, NULL, TESTED, LEFT, SPARE = range(5)  # rows of `solutions`, the last one with another after it
 B, C, FLIP_B, FLIP_C = range(4)  # rows of `borders`
 KNOWN, SIGN, ANGLE, SERVED = range(4)  # of `state`; KNOWN: -1 nothing, 0 directions, 1 their slopes, too
 LONGEST = 4  # points that borders serve
 TURNED = 1.02  # length of the null vector, as long as c at first, at which they do not any more
+
+
+def condition(problem: Problem, kind: str) -> int:
+    """What is followed for a special point of this kind, seen in this problem.
+
+    A symmetry breaking or period doubling is a multiplier -1 where the problem says so (``flip_kind``), else a branch point
+    of the problem itself, on the fixed space of a symmetry.
+    """
+    found = CONDITIONS.get(kind, MARGIN)
+    if found == FLIP and not (problem.spectrum == "map" and problem.flip_kind == kind):
+        return BRANCH
+    return found
 
 
 # ------------------------------------------------------------------ tests

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from ..interrupts import HELD
 from ..problems.protocol import Problem, array_of
-from .kernels import pair_of
-from .kinds import BRANCH, FLIP, FOLD
+from .kernels import BRANCH, FLIP, FOLD, pair_of
 
 SWEEPS = 4  # renewals of random borders until they are null vectors to roundoff, where the matrix is singular
 STIRRED = 0.1  # part of a random vector in those of a neighbour
@@ -201,7 +200,7 @@ def borders_at(
     ----------
     problem : Problem
     wanted : int
-        The condition that is followed; see :mod:`contvines.loci.kinds`.
+        The condition that is followed; see :mod:`contvines.loci.kernels`.
     u, p
         The point.
     near : ndarray, optional

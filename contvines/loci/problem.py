@@ -17,8 +17,18 @@ from ..core.records import pack
 from ..core.table import TableKernels, memory_of, native_table
 from ..problems.abilities import notation_of
 from ..problems.protocol import KernelFunctions, Kernels, Problem, ProblemDefaults, array_of
-from .kernels import LONGEST, locus_bordered, locus_inspect, locus_linearise
-from .kinds import BRANCH, FLIP, MARGIN, OWN, PAIR, condition
+from .kernels import (
+    BRANCH,
+    FLIP,
+    LONGEST,
+    MARGIN,
+    OWN,
+    PAIR,
+    condition,
+    locus_bordered,
+    locus_inspect,
+    locus_linearise,
+)
 from .linear import borders_at, fresh_borders
 from .settings import SCALING
 

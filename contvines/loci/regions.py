@@ -14,7 +14,7 @@ from ..continuation.engine import Engine
 from ..continuation.layout import MARGIN, Solved
 from ..continuation.settings import Settings
 from ..problems.abilities import Attracting
-from .kinds import BRANCH, FOLD
+from .kernels import BRANCH, FOLD
 from .locus import Locus
 from .settings import VANISHING
 

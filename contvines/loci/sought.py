@@ -13,7 +13,7 @@ from ..bifurcation.normal_forms.coefficients import Coefficient, Forms
 from ..bifurcation.settings import NORMAL_FORMS
 from ..problems.abilities import Adaptive
 from .adaptive import on_mesh
-from .kinds import BRANCH, FLIP, FOLD, MARGIN, OWN, PAIR
+from .kernels import BRANCH, FLIP, FOLD, MARGIN, OWN, PAIR
 from .linear import Null, critical_first
 from .plane import Plane
 from .problem import LocusProblem, PointOfLocus

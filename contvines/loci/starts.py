@@ -22,7 +22,7 @@ from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
 from .adaptive import AdaptiveLocus, on_mesh
-from .kinds import APART, FLIP, MARGIN, OWN, PAIR, PERIOD, condition
+from .kernels import APART, FLIP, MARGIN, OWN, PAIR, PERIOD, condition
 from .linear import Linearisation, borders_at, singularity
 from .problem import LocusProblem, check_second, has_natural_units
 from .settings import VANISHING

@@ -29,7 +29,7 @@ from ..shared.number_text import number_text
 from .adaptive import on_mesh
 from .codimension_two import bare_points, becomes, beginning, vanishing
 from .departures import homoclinic_of
-from .kinds import BRANCH, MARGIN, PERIOD
+from .kernels import BRANCH, MARGIN, PERIOD
 from .locus import Locus, PlanePoint, Turn
 from .plane import Place, impossible_side
 from .problem import LocusProblem

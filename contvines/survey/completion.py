@@ -8,20 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..coexistence.build import join
-from ..coexistence.census import Counted, census, followed, locate
-from ..coexistence.handover import Handover
-from ..coexistence.population import Population
-from ..coexistence.roots import add_root
-from ..continuation.settings import Settings
-from ..graph.builder import adopt
+from contvines.shared.motions import BAND, modulation_of
+
+from ..coexistence.census import Counted, add_root, census, followed, join, locate, run_on
+from ..coexistence.places import Handover
 from ..graph.graph import Graph
 from ..graph.run import Limits, Run
-from ..graph.stretches import COVERAGE, default_measure, gaps, spread, stretches, unseen
-from ..journal import NullJournal
+from ..graph.stretches import COVERAGE, SIMULATED, default_measure, gaps, spread, stretches, unseen
+from ..problems.populations import Population
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem
+
 
 CLOSED = 41  # values at which closed forms are evaluated, the interval's ends included
 FEW = 2  # starts at each value of a gap
@@ -86,7 +84,9 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
     list of Unbranched
         Attractors that were met and have no branch.
     """
-    run, (low, high) = _run(graph), graph.within
+    kept, (low, high) = graph.settings, graph.within
+    limits = Limits.of(None, kept.get("bounds"), next(iter(graph.branches.values())).attached)
+    run = run_on(graph, int(kept.get("depth", 0)), bool(kept.get("virtual", False)), limits)
     for p in np.linspace(low, high, CLOSED):
         _add(run, population.closed(float(p)), float(p))
     met: list[Counted] = []
@@ -138,17 +138,6 @@ def complete(graph: Graph, population: Population, values: int) -> list[Unbranch
 def _size(graph: Graph, before: Collection[str]) -> int:
     """Unknowns of all points of the branches that were not there before."""
     return sum(b.points.size for label, b in graph.branches.items() if label not in before)
-
-
-def _run(graph: Graph) -> Run:
-    """A run that goes on with a graph, with the settings it was made with."""
-    first = next(iter(graph.branches.values())).attached
-    kept = graph.settings
-    limits = Limits.of(None, kept.get("bounds"), first)
-    depth, virtual = int(kept.get("depth", 0)), bool(kept.get("virtual", False))
-    run = Run(graph, Settings.kept(kept), NullJournal(), depth, virtual, None, None, limits)
-    adopt(run)
-    return run
 
 
 def _add(run: Run, motions: Sequence[tuple[Problem, np.ndarray]], p: float) -> None:
@@ -211,3 +200,37 @@ def _about_the_largest(
     beside = [p for p in (below, above) if p not in flat or abs(p - top) > FLAT * (high - low)]
     state = next(one.state for one in left if one.value == top and one.measures.get(name) == known[top])
     return [0.5 * (top + other) for other in beside], state
+
+
+VALUES = 5  # in the gaps, at least
+Band = tuple[float, float, float, float]
+
+
+def simulated(graph: Graph, population: Population, starts: int = FEW) -> list[Band]:
+    """What starts settle on at some values of every gap between the stable stretches of a graph, at fewer where a motion is integrated.
+
+    Parameters
+    ----------
+    graph : Graph
+    population : Population
+    starts : int
+        At each value.
+
+    Returns
+    -------
+    list of (float, float, float, float)
+        The value, and the lowest, mean and highest response in a forcing period; all the same of a motion that recurs.
+    """
+    name, found = default_measure(graph), []
+    for p in spread(gaps(graph), graph.within, VALUES, SIMULATED / np.cbrt(population.price)):
+        motions, *_ = population.settle(population.starts(starts, 0, p), p)
+        for motion in motions:
+            if motion.kind in ON_ITS_WAY or motion.state is None:
+                continue
+            measures = population.observed(motion.state, p)
+            high = measures.get(name, np.nan)
+            modulated = bool(modulation_of(measures))
+            low, mean = (measures[end] if modulated else high for end in BAND[:2])
+            if np.isfinite(high):
+                found.append((p, low, mean, high))
+    return found

@@ -14,15 +14,16 @@ import numpy as np
 
 from contvines.shared.motions import BAND, is_strong
 
-from ..coexistence.places import UNBRANCHED
+from ..coexistence.census import UNBRANCHED
 from ..graph.stretches import COVERAGE, default_measure, gaps, highest, stretches, united, unseen
 from ..shared.number_text import figures_in
-from .family import Simulated
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph
     from .completion import Unbranched
 
+Simulated = tuple[float, Mapping[str, float], str]
+"""A motion on which a simulation settles: value of the parameter, measures by name, word."""
 GRID = 401  # values at which coexisting responses are compared
 KNOWN = 1.0 - COVERAGE.least  # share of the interval from which on the responses are known
 

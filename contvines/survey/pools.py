@@ -27,17 +27,34 @@ LOST = (
 Task = tuple[int, dict[str, float], object]
 
 
-def serial(job: Job, tasks: Sequence[Task]) -> Generator[Row, None, None]:
-    """In this process, one after the other."""
-    for task in tasks:
-        yield work(job, *task)
+def worked(
+    job: Job, tasks: Sequence[Task], workers: int | None, client: str | Client | None
+) -> Generator[Row, None, None]:
+    """The rows of some systems, in any order.
 
-
-def pool(job: Job, tasks: Sequence[Task], workers: int) -> Generator[Row, None, None]:
-    """In `workers` processes of this machine."""
+    Parameters
+    ----------
+    job : Job
+    tasks : sequence of (int, dict, object)
+        Number of a system, its values, and what it may begin with.
+    workers : int or None
+        Processes of this machine; all cores by default, 1 for none beside this one.
+    client : str or distributed.Client, optional
+        A dask cluster instead, or its address.
+    """
+    if client is not None:
+        return cluster(job, tasks, client)
+    count = workers or cores()
+    if count > 1 and found_here_alone(job.family, *job.outcomes):
+        print(
+            "the survey runs in one process: no other one finds functions of a notebook; import them from a file to use all cores",
+            file=sys.stderr,
+        )
+        count = 1
+    if count == 1 or len(tasks) < 2:
+        return (work(job, *task) for task in tasks)
     pieces = [(job, *task) for task in tasks]
-    for _, row in spread(work, pieces, workers, lambda place: lost(tasks[place][0])):
-        yield row
+    return (row for _, row in spread(work, pieces, count, lambda place: lost(tasks[place][0])))
 
 
 def lost(index: int) -> Row:

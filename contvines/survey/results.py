@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import html
+import io
 import json
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,13 +22,13 @@ from ..shared.files import write_csv
 from ..shared.number_text import figures
 from ..shared.on_demand import needed
 from ..text_table import Table, titled
-from .files import read, write
 from .outcomes import KNOWN, OF_ALL
 from .plan import Plan, PlanError
 from .work import NOT_YET, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from xarray import Dataset
 
 
 @hinted
@@ -292,3 +295,66 @@ def load_survey(path: str | Path) -> Survey:
     if not whole:
         raise damaged
     return Survey(plan, columns, notes, units, about, notation)
+
+
+FORMAT = "contvines survey 2"  # the first had no digest
+BLANK = b"0" * 64
+MARK = b"sha256\0\0" + (2).to_bytes(4, "big") + len(BLANK).to_bytes(4, "big")
+"""How the attribute begins in the file: its name, that it is text, and how long (NetCDF classic format, section on attributes)."""
+
+
+def write(data: Dataset, path: Path) -> None:
+    """Write a data set with its digest; a file of that name is replaced in one step.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+    path : Path
+    """
+    draft = path.with_name(path.name + ".new")
+    marked = data.assign_attrs(format=FORMAT, sha256=BLANK.decode())
+    marked.to_netcdf(draft, engine="scipy", format="NETCDF3_64BIT")  # needs no library of its own
+    content = draft.read_bytes()
+    place = content.index(MARK) + len(MARK)
+    digest = hashlib.sha256(content).hexdigest().encode()
+    draft.write_bytes(content[:place] + digest + content[place + len(BLANK) :])
+    os.replace(draft, path)
+
+
+def read(path: Path) -> Dataset:
+    """The data set of a file, in memory.
+
+    Raises
+    ------
+    PlanError
+        If there is no such file, it is not the file of a survey, or it is damaged.
+    """
+    xarray = needed("xarray", "tables")
+
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise PlanError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise PlanError(f"{path}: this file cannot be read ({error.strerror})") from None
+    if not _sound(content):
+        raise PlanError(
+            f"{path}: this file is damaged, it has changed since it was written; move it away, and the survey makes it again"
+        )
+    try:
+        with xarray.open_dataset(io.BytesIO(content), engine="scipy") as data:
+            data.load()
+    except (
+        Exception
+    ):  # of another kind, or one without a digest that is damaged: whatever its reader stumbles over
+        raise PlanError(f"{path}: this is not the NetCDF file of a survey, or it is damaged") from None
+    return data
+
+
+def _sound(content: bytes) -> bool:
+    """Whether the digest is that of the content; files of the first format have none."""
+    before, mark, after = content.partition(MARK)
+    if not mark:
+        return FORMAT.encode() not in content
+    kept, rest = after[: len(BLANK)], after[len(BLANK) :]
+    return hashlib.sha256(before + mark + BLANK + rest).hexdigest().encode() == kept

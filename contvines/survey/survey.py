@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -20,11 +19,10 @@ from ..shared import files
 from ..shared.on_demand import needed
 from ..shared.row_journal import Rows
 from . import pools
-from .family import Carrying, Family
 from .outcomes import ARGUMENTS, MADE, PLAIN, Outcome
 from .plan import Plan, PlanError, planned
 from .results import Survey
-from .work import NOT_YET, Job, Row
+from .work import NOT_YET, Carrying, Family, Job, Row
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -127,18 +125,8 @@ def survey(
     check_interrupt(interrupt)
     plan = vary if isinstance(vary, Plan) else planned(vary)
     functions = tuple(outcome_named(o) if isinstance(o, str) else o for o in outcomes)
-    job = Job(
-        family,
-        over,
-        (float(within[0]), float(within[1])),
-        functions,
-        gaps,
-        values,
-        starts,
-        options,
-        atlas,
-        swept,
-    )
+    interval = (float(within[0]), float(within[1]))
+    job = Job(family, over, interval, functions, gaps, values, starts, options, atlas, swept)
     systems = plan.systems()
     description = _description(plan, over, job.within, about)
     digest = digest_of(plan, over, job.within, about)
@@ -157,7 +145,7 @@ def survey(
         tasks = [(i, values, near[i]) for i, values in enumerate(systems) if i not in known]
         stopped = False
         try:
-            with closing(_worked(job, tasks, workers, cluster)) as worked:
+            with closing(pools.worked(job, tasks, workers, cluster)) as worked:
                 for row in worked:
                     rows.keep(row)
                     if tell is not None:
@@ -193,20 +181,3 @@ def _description(
         "axes": {name: values.tolist() for name, values in plan.axes.items()},
         "samples": {name: values.tolist() for name, values in plan.samples.items()},
     }
-
-
-def _worked(
-    job: Job, tasks: list[pools.Task], workers: int | None, cluster: str | Client | None
-) -> Generator[Row, None, None]:
-    if cluster is not None:
-        return pools.cluster(job, tasks, cluster)
-    count = workers or pools.cores()
-    if count > 1 and pools.found_here_alone(job.family, *job.outcomes):
-        print(
-            "the survey runs in one process: no other one finds functions of a notebook; import them from a file to use all cores",
-            file=sys.stderr,
-        )
-        count = 1
-    if count == 1 or len(tasks) < 2:
-        return pools.serial(job, tasks)
-    return pools.pool(job, tasks, count)

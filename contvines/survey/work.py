@@ -1,24 +1,50 @@
-"""One system of a survey: its start, its diagram, and what comes out of it. This is what worker processes run."""
+"""One system of a survey: what is asked of its family, its start, its diagram, and what comes out of it. This is what worker processes run."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
+from ..coexistence.build import atlas
+from ..coexistence.census import population_of
+from ..graph.automatic import diagram
 from ..graph.stretches import gaps, spread
 from .completion import complete
-from .family import Family, Simulated, Simulating, Sweeping
-from .outcomes import Findings, Outcome, covered, unknown
-
-if TYPE_CHECKING:
-    from ..coexistence.population import Population
-    from ..graph.graph import Graph
-
+from .outcomes import Findings, Outcome, Simulated, covered, unknown
 
 NOT_YET = "not done yet: the survey was interrupted"  # note of a row
+Family = Callable[[Mapping[str, float], Any], object]
+"""(values, near) -> the system with these values and a solution of it to begin with; `near` is what `Carrying.starts` had of it, or None."""
+
+
+@runtime_checkable
+class Carrying(Protocol):
+    """A family whose solutions begin with those of neighbours: one entry for each system, None where it begins by itself."""
+
+    def starts(
+        self, systems: Sequence[Mapping[str, float]], neighbours: Sequence[int | None]
+    ) -> Sequence[object]: ...
+
+
+@runtime_checkable
+class Simulating(Protocol):
+    """A family that simulates a system, from so many starts at each of some values of the parameter `over`."""
+
+    def simulated(
+        self, values: Mapping[str, float], over: str, at: Sequence[float], starts: int
+    ) -> Sequence[Simulated]: ...
+
+
+@runtime_checkable
+class Sweeping(Protocol):
+    """A family that tells the responses of a system by simulation alone: values of the parameter `over`, and a measure there."""
+
+    def swept(
+        self, values: Mapping[str, float], over: str, at: Sequence[float]
+    ) -> Sequence[tuple[float, float]]: ...
 
 
 @dataclass(frozen=True)
@@ -84,8 +110,12 @@ def work(job: Job, index: int, values: Mapping[str, float], near: object = None)
             if job.swept and isinstance(job.family, Sweeping):
                 return Row(index, _swept(job, job.family, values))
             seed = job.family(values, near)
-            graph = _graph(job, seed)
-            population = _population(job, seed)
+            make, more = (diagram, {}) if job.atlas is None else (atlas, job.atlas)
+            graph = make(seed, over=job.over, within=job.within, **job.options, **more)
+            try:
+                population = population_of(seed, job.over)
+            except ValueError:  # equations that cannot be simulated from many starts
+                population = None
             left = [] if population is None else complete(graph, population, job.gaps)
             open_ = gaps(graph) if population is None else []  # else they are looked at already
             found = Findings(graph, seed, _simulated(job, values, open_), left)
@@ -108,26 +138,6 @@ def _swept(job: Job, family: Sweeping, values: Mapping[str, float]) -> dict[str,
         at, response = max(motions, key=lambda motion: motion[1], default=(np.nan, np.nan))
         found |= {name: response, f"{name}_at": at}
     return found
-
-
-def _graph(job: Job, seed: object) -> Graph:
-    """The diagram of a system, or its atlas."""
-    from ..coexistence.build import atlas
-    from ..graph.automatic import diagram
-
-    if job.atlas is None:
-        return diagram(seed, over=job.over, within=job.within, **job.options)
-    return atlas(seed, over=job.over, within=job.within, **job.options, **job.atlas)
-
-
-def _population(job: Job, seed: object) -> Population | None:
-    """Starts of a system and what they settle on; None for equations that cannot be simulated from many."""
-    from ..coexistence.population import population_of
-
-    try:
-        return population_of(seed, job.over)
-    except ValueError:
-        return None
 
 
 def _simulated(

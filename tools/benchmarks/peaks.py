@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import contvines as cv
-from contvines.coexistence.population import population_of
+from contvines.coexistence.census import population_of
 from contvines.command.study import read_study
 from contvines.graph.stretches import highest, inside, stretches
 from contvines.survey import survey

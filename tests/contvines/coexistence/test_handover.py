@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.coexistence.handover import Handover, loose_ends
+from contvines.coexistence.places import Handover, loose_ends
 from contvines.continuation.settings import Settings
 from contvines.graph.builder import adopt
 from contvines.graph.run import Run

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.coexistence.missing import look, missing_text
+from contvines.coexistence.census import look, missing_text
 from orbits.attractors import find_attractor
 from tests.machines import ABSORBER
 
@@ -118,6 +118,22 @@ def test_graphs_are_merged_without_doubles(graph):
                 depth=0,
             )
         )
+
+
+def test_a_merged_branch_ends_at_its_own_points():
+    """Both graphs have points of the same labels, at other values of the amplitude."""
+    one, two = (
+        cv.diagram(ABSORBER.orbit("LR", amplitude=begin), over="amplitude", within=within, depth=1)
+        for begin, within in ((0.55, (0.3, 0.7)), (0.6, (0.5, 0.9)))
+    )
+    called = one.merge(two)
+    for branch in two:
+        there = one[called[branch.label]]
+        if there.label != "B1":
+            assert [(i, called[mark]) for i, mark in branch.marks] == list(there.marks)
+            ends = [(0, there.endings[0]), (len(there) - 1, there.endings[1])]
+            for i, ending in ends:
+                assert ending.point is None or one[ending.point].value == pytest.approx(there.values[i])
 
 
 def test_the_look_says_that_chaos_has_no_branch():

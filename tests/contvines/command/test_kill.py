@@ -53,8 +53,8 @@ def test_killed_at_chosen_writes(tmp_path, undisturbed, where):
 def test_stopped_while_it_looks_for_what_the_diagram_does_not_have(tmp_path, undisturbed, blow):
     path = tmp_path / "l.vines"
     code = (
-        "import os, sys\nfrom contvines.coexistence import missing\nfrom contvines.command.cli import main\n"
-        f"missing.census = lambda *a: os.kill(os.getpid(), {int(blow)})\nmain(sys.argv[1:])"
+        "import os, sys\nfrom contvines.coexistence import census\nfrom contvines.command.cli import main\n"
+        f"census.census = lambda *a: os.kill(os.getpid(), {int(blow)})\nmain(sys.argv[1:])"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, *COMMAND[3:], str(path)], capture_output=True, text=True

@@ -7,7 +7,7 @@ import pytest
 
 import contvines as cv
 from contvines.command.run import _shows_response
-from contvines.survey.simulated import simulated
+from contvines.survey.completion import simulated
 from orbits import Machine, Wall
 from orbits.symbols import cos
 
