@@ -16,6 +16,8 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from orbits.machines.names import PAGES
+
 from ..shared.files import digest_of
 from ..shared.near_names import did_you_mean
 from .schema import (
@@ -194,7 +196,9 @@ class Study:
             own = {"name": self.name, "digest": self.flow.origin[2], "state": self.state, "box": self.box}
             return {**own, **self.parameters}
         own = self.model.settings() if self.sort is Sort.PAGE else {}
-        own.pop("page", None)  # where the machine file lies; its text decides
+        # the text of a machine file decides, wherever it lies; the name of a machine that comes with the package
+        for name in ("page", "source", "digest") if self.name in PAGES else ("page",):
+            own.pop(name, None)
         if self.sort is Sort.CATALOGUE and self.model.contact_time is not None:
             own = {"contact_time": self.model.contact_time}
         return {**own, "name": self.name, **self.parameters}

@@ -106,6 +106,12 @@ IMPOSSIBLE = {
 }  # fmt: skip
 
 
+def test_a_machine_that_comes_with_the_package_is_known_by_its_name(study):
+    study.write_text(TWO.replace("MODEL", ""))
+    about = read_study(study).describe()["model"]
+    assert about["name"] == "coupled_two" and not {"page", "source", "digest"} & set(about)
+
+
 @pytest.mark.parametrize("change", IMPOSSIBLE)
 def test_values_that_no_machine_has_are_refused_where_they_stand(study, change):
     study.write_text(TWO.replace(*change).replace("MODEL", ""))
