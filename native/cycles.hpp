@@ -88,7 +88,7 @@ inline void cycle_assign(void* data, void* other, double value) {
     }
 }
 
-// Write the transposed system into another workspace, with `column` (L n,) as its last column; see orbits/elimination/rearranged.py.
+// Write the transposed system into another workspace, with `column` (L n,) as its last column.
 inline void cycle_transpose(void* data, void* work, const double* column, void* other) {
     auto &w = *static_cast<Workspace*>(work), &o = *static_cast<Workspace*>(other);
     const double twist = static_cast<Cycle*>(data)->twist;

@@ -1,5 +1,5 @@
 // Special points of a compiled problem as solutions of a larger one, against a second parameter: minimally augmented systems. The
-// reference, which says how and why: contvines/loci/kernels.py, probing.py, spanning.py, layout.py.
+// reference, which says how and why: contvines/loci/kernels.py.
 #pragma once
 #include "march.hpp"
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Reason(StrEnum):
-    """Why a branch ends; the first ones are those of the continuation loop (:class:`contvines.continuation.chunk.Status`)."""
+    """Why a branch ends; the first ones are those of the continuation loop (:class:`contvines.continuation.layout.Status`)."""
 
     RUNNING = "running"
     LEFT_INTERVAL = "left-interval"

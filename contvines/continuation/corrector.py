@@ -75,7 +75,7 @@ def orient(
 
 
 def hermite(chord: np.ndarray, s: float, u: np.ndarray, guess: np.ndarray) -> float:
-    """Cubic Hermite interpolation at s in [0, 1]; fills u and guess alike, returns p. See :class:`contvines.bifurcation.segment.Segment`."""
+    """Cubic Hermite interpolation at s in [0, 1]; fills u and guess alike, returns p. See :class:`contvines.bifurcation.locate.Segment`."""
     a, b = (1.0 + 2.0 * s) * (1.0 - s) ** 2, s * (1.0 - s) ** 2
     c, d = s * s * (3.0 - 2.0 * s), s * s * (s - 1.0)
     guess[:] = a * chord[0] + b * chord[1] + c * chord[2] + d * chord[3]

@@ -375,7 +375,7 @@ def from_description(description: Mapping[str, Any], trust: bool = False) -> Loc
 
 
 class PointOfLocus:
-    """What functions of users' kinds see of a point along a locus: as :class:`~contvines.bifurcation.point_on_branch.PointOnBranch`, without a tangent.
+    """What functions of users' kinds see of a point along a locus: as :class:`~contvines.bifurcation.kind.PointOnBranch`, without a tangent.
 
     ``value`` is the first parameter; ``parameters`` hold both that vary, and ``place`` these two alone, the first one first.
 

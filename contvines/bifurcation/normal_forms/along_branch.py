@@ -72,7 +72,7 @@ def crossing_speed(engine: Engine, point: Solved, name: str, k: int) -> float | 
     point : Solved
         The special point, with the tangent of the known branch.
     name, k
-        Which multiplier; see :func:`contvines.continuation.aims.aim_at_multiplier`.
+        Which multiplier; see :func:`contvines.continuation.layout.aim_at_multiplier`.
     """
     kind = engine.problem.spectrum
     if kind == "none" or abs(point.tangent[-1]) < engine.settings.upright:
