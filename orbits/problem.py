@@ -16,7 +16,7 @@ from orbits.borders.dead_ends import dead_end
 from orbits.borders.distance import INSTANTS, distance
 from orbits.cycles.cycle import canonical, size_of_one
 from orbits.flows.catalogue import flow_of
-from orbits.flows.equations import PLAIN
+from orbits.flows.equations import PLAIN, CycleKernels
 from orbits.machines.catalogue import build
 from orbits.machines.path import along
 from orbits.motions import Motions
@@ -90,7 +90,7 @@ class OrbitProblem(Motions):
 
     # ------------------------------------------------------------------ numerics
     @property
-    def kernels(self):
+    def kernels(self) -> CycleKernels:
         """linearise, bordered, inspect: compiled, but for the empty word."""
         return self.equations.kernels
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
+from contvines.core.table import KernelFunctions
 from orbits.flows.trajectory import TWO_PI
 from orbits.machines.path import along
 from orbits.settings import SOLVING
 
 if TYPE_CHECKING:
-    from contvines.core.table import TableKernels
-    from orbits.flows.plain_kernels import PlainKernels
+    from collections.abc import Callable
+
     from orbits.machines.varying import Varying
     from orbits.words import Word
 
@@ -40,6 +41,15 @@ class Approach(NamedTuple):
     slopes: np.ndarray
     by_parameter: float
     push: np.ndarray
+
+
+class CycleKernels(KernelFunctions, Protocol):
+    """What a continuation calls, and two of this package's own: Newton's method, and a look at one solution (see `orbits.flows.plain_kernels`)."""
+
+    @property
+    def newton(self) -> Callable[..., tuple[float, int, float]]: ...
+    @property
+    def examine(self) -> Callable[..., float]: ...
 
 
 class Equations(Generic[ModelOf]):
@@ -121,7 +131,7 @@ class Equations(Generic[ModelOf]):
             self.period_shift[::node] = TWO_PI
 
     @property
-    def kernels(self) -> TableKernels | PlainKernels:
+    def kernels(self) -> CycleKernels:
         """linearise, bordered, inspect, newton, examine."""
         raise NotImplementedError
 

@@ -80,7 +80,9 @@ class Oscillation:
         if np.ndim(tau) == 0:
             return self._near(tau) if abs(tau) < NEAR else self._far(tau)
         near = np.abs(np.real(tau)) < NEAR
-        return Point(*(where(near, a, b) for a, b in zip(self._near(tau), self._far(tau))))
+        with np.errstate(divide="ignore", invalid="ignore"):  # beyond has no mean speed after no time
+            far = self._far(tau)
+        return Point(*(where(near, a, b) for a, b in zip(self._near(tau), far)))
 
     def _near(self, tau: Number) -> Point:
         h, z = self.derivatives()
