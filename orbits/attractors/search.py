@@ -186,7 +186,7 @@ def recurring(simulator: Simulator, run: Trajectory, max_period: int, near: floa
     """The shortest cycle at the end of a run that its equations confirm and that attracts, or on which the motion is."""
     for orbit, _, gap in _candidates(simulator, run, max_period, near):
         if isinstance(orbit, Orbit) and (gap <= SIMULATING.closed or _attracts(orbit)):
-            return orbit
+            return plainest(orbit)
     return None
 
 
@@ -205,7 +205,7 @@ def _candidates(simulator: Simulator, run: Trajectory, max_period: int, near: fl
         if tried and length % tried:
             continue
         tried = length
-        orbit = solved(run, len(run) - length, len(run), periods, FAR)
+        orbit = _solved(run, len(run) - length, len(run), periods, FAR)
         if orbit is not None:
             yield orbit, orbit.periods, gap
 
@@ -220,7 +220,7 @@ def _attractor(simulator: Simulator, run: Trajectory, found: Orbit | int, period
     if isinstance(found, int):
         return Attractor(model, params, "chatter", periods, None, run, found, state)
     kind = found.flow.kind(found) if len(found.word) else "periodic"
-    return Attractor(model, params, kind, found.periods, found, run, len(found.word), state)
+    return Attractor(model, params, kind, found.periods, plainest(found), run, len(found.word), state)
 
 
 def returns(run: Trajectory, max_period: int, near: float) -> Iterator[tuple[int, int, float]]:
@@ -259,11 +259,16 @@ def _drifts(before: tuple[int, int, float] | None, now: tuple[int, int, float] |
 
 def solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
     """Events `first` to `last` - 1 of a run as an orbit, if its equations have a real solution within `far` of them; see `polished`."""
+    orbit = _solved(run, first, last, periods, far)
+    return None if orbit is None else plainest(orbit)
+
+
+def _solved(run: Trajectory, first: int, last: int, periods: int, far: float) -> Orbit | None:
+    """The same, read from the first of these events: whether it attracts is known without another look at its equations."""
     word, nodes = run.cycle(first, last)
     if run.model.forced:
         nodes[:, 0] -= TWO_PI * np.floor(nodes[0, 0] / TWO_PI)
-    orbit = polished(Orbit(run.model, word, periods, nodes, run.params), far)
-    return None if orbit is None else plainest(orbit)
+    return polished(Orbit(run.model, word, periods, nodes, run.params), far)
 
 
 def polished(orbit: Orbit, far: float = FAR) -> Orbit | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
@@ -52,7 +53,7 @@ class CycleKernels(KernelFunctions, Protocol):
     def examine(self) -> Callable[..., float]: ...
 
 
-class Equations(Generic[ModelOf]):
+class Equations(ABC, Generic[ModelOf]):
     """The equations of the cycles with one word, against one parameter. A symmetric cycle is solved for on half its word, closed by the mirror.
 
     Parameters
@@ -131,13 +132,13 @@ class Equations(Generic[ModelOf]):
             self.period_shift[::node] = TWO_PI
 
     @property
+    @abstractmethod
     def kernels(self) -> CycleKernels:
         """linearise, bordered, inspect, newton, examine."""
-        raise NotImplementedError
 
+    @abstractmethod
     def workspace(self) -> Any:
         """Arrays for the kernels."""
-        raise NotImplementedError
 
     @cached_property
     def scratch(self) -> Any:
@@ -186,12 +187,18 @@ class Equations(Generic[ModelOf]):
         return own.ravel()
 
     def approach(self, u: np.ndarray, p: float, place: int, near: float) -> Approach:
-        """Of the impact at a place; a dependence on the parameter that is no formula comes from a difference of size `near`."""
-        raise NotImplementedError
+        """Of the impact at a place; a dependence on the parameter that is no formula comes from a difference of size `near`.
 
+        Raises
+        ------
+        ValueError
+            If the word has no impacts.
+        """
+        raise ValueError(f"the word {self.word.text!r} has no impact at place {place}")
+
+    @abstractmethod
     def through_flights(self, u: np.ndarray, p: float) -> tuple[np.ndarray, np.ndarray | None] | None:
         """Derivatives of each flight's equations by the node before it and after it (None: each node by the one before), the mirror in the last."""
-        raise NotImplementedError
 
 
 def newton(

@@ -7,6 +7,7 @@ with sensitivities only.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from functools import cache, cached_property
 from importlib import import_module
@@ -77,7 +78,7 @@ class Values(expressions.Values):
         return out.T
 
 
-class _Variations:
+class _Variations(ABC):
     """A flow with its derivatives by the initial state and by some of the numbers.
 
     Parameters
@@ -99,8 +100,8 @@ class _Variations:
         self._numbers = len(self._integrator.pars)
         self._done = heyoka.taylor_outcome.time_limit
 
-    def _made(self, system: Any, how: dict[str, bool]) -> Any:
-        raise NotImplementedError
+    @abstractmethod
+    def _made(self, system: Any, how: dict[str, bool]) -> Any: ...
 
 
 class Flight(_Variations):
@@ -149,7 +150,7 @@ class Flights(_Variations):
         return True
 
 
-class _Events:
+class _Events(ABC):
     """A flow with functions whose zeros are events of heyoka's integrator.
 
     The functions are moved by nothing: heyoka 7.13 loses the later roots in a step that begins exactly on one.
@@ -170,8 +171,8 @@ class _Events:
         self._numbers = len(self._pars)
         self._done, self._stopped = heyoka.taylor_outcome.time_limit, heyoka.taylor_outcome.step_limit
 
-    def _event(self, place: int, function: Any) -> Any:
-        raise NotImplementedError
+    @abstractmethod
+    def _event(self, place: int, function: Any) -> Any: ...
 
     def _put(self, state: np.ndarray, clock: float, numbers: np.ndarray) -> Any:
         """The integrator, at a state."""

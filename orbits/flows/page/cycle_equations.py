@@ -131,7 +131,7 @@ def _periodic(chain: np.ndarray, size: int) -> np.ndarray:
 
 
 class PageKernels(PlainKernels[Pieces, Work]):
-    """The functions that a continuation calls; plain Python round integrated"""
+    """The functions that a continuation calls: plain Python round integrated flights."""
 
     column = 3
     accepted = SOLVING.residual
