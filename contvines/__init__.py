@@ -60,7 +60,7 @@ __getattr__ = on_demand(
         "Embedding": "contvines.problems.protocol",
         "FlowProblem": "contvines.flows",
         "Graph": "contvines.graph.graph",
-        "Interrupted": "contvines.interrupts",
+        "Interrupted": "contvines.journal",
         "KINDS": "contvines.bifurcation.kinds",
         "Kernels": "contvines.problems.protocol",
         "Kind": "contvines.bifurcation.kind",
@@ -114,8 +114,7 @@ if TYPE_CHECKING:
     from .graph.automatic import diagram, switch
     from .graph.contents import Attractor as Attractor
     from .graph.graph import Graph, Switch
-    from .interrupts import Interrupted
-    from .journal import MemoryJournal, NullJournal
+    from .journal import Interrupted, MemoryJournal, NullJournal
     from .loci.chart import Chart
     from .loci.charting import chart
     from .loci.locus import Locus

@@ -1,11 +1,18 @@
-"""Journal: what a run has already computed, so that an interrupted run can be run again and catch up."""
+"""What a run has already computed: the journal, by which an interrupted one catches up, the result that it leaves, and with what it was made."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import json
+import platform
+from collections.abc import Callable, Iterable, Mapping
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from types import MappingProxyType
 from typing import Any, Protocol
 
 import numpy as np
+
+from .core.library import variant
 
 
 class Kept(Protocol):
@@ -117,3 +124,101 @@ class MemoryJournal:
 
     def checkpoint(self, graph: Kept) -> None:
         self.graph = graph
+
+
+class Resumable:
+    """A result that interrupted work may leave.
+
+    Attributes
+    ----------
+    rest : callable or None
+        Goes on with the interrupted work, from what is done, and returns the whole result; None where nothing was interrupted,
+        and in results from files.
+    origin : mapping
+        Of a result from a file: the ``study`` that the file keeps, seeds included, and with what it was ``made``.
+    """
+
+    rest: Callable[[], Any] | None = None
+    origin: Mapping[str, Any] = MappingProxyType({})
+
+    @property
+    def stopped(self) -> bool:
+        """Whether a budget is used up: with a larger one the same call goes on."""
+        return False
+
+
+class Interrupted(KeyboardInterrupt):
+    """Raised when Ctrl-C stops a long computation.
+
+    Attributes
+    ----------
+    graph : Graph, Chart or Survey
+        All that is done; ``contvines.resume(graph)`` goes on.
+    """
+
+    def __init__(self, graph: Resumable) -> None:
+        super().__init__(
+            f"interrupted: all that is done is in .graph, {graph!r}; contvines.resume(that graph) goes on"
+        )
+        self.graph = graph
+
+
+def unfinished(result: Resumable, rest: Callable[[], Any]) -> None:
+    """Say how interrupted work goes on; a result may be frozen."""
+    object.__setattr__(result, "rest", rest)
+
+
+PACKAGES = ("contvines", "numpy", "scipy")
+
+
+def version_of(package: str) -> str | None:
+    """The installed version of a package; None where it is not installed."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def provenance() -> dict[str, str]:
+    """Versions of contvines, numpy, scipy and Python, the platform, the core that computes, and the date in UTC.
+
+    Returns
+    -------
+    dict of str to str
+        Keys ``contvines``, ``numpy``, ``scipy``, ``python``, ``platform``, ``core`` and ``date`` (ISO 8601, to the second).
+    """
+    found = {name: version_of(name) or "unknown" for name in PACKAGES}
+    return {
+        **found,
+        "python": platform.python_version(),
+        "platform": f"{platform.system()} {platform.machine()}",
+        "core": variant(),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+
+
+def carried(result: Resumable) -> dict[str, Any]:
+    """What an export of a result says of its making: ``made``, of a result from a file as the file has it, ``settings``, and the ``study``, where the file keeps one."""
+    about = {"made": result.origin.get("made") or provenance(), "settings": getattr(result, "settings", {})}
+    study = result.origin.get("study")
+    return {**about, "study": study} if study else about
+
+
+def comments(result: Resumable) -> list[str]:
+    """`carried` in lines of comments for people: with what it was made, and the study."""
+    about = carried(result)
+    study = about.get("study") or {}
+    source = study.get("source") or {}
+    said = source.get("text") or json.dumps(study)
+    named = f"contvines {source.get('command', '')} {source.get('study', '')}".rstrip()
+    return [as_text(about["made"]), *([f"{named}, the study:", *said.splitlines()] if study else [])]
+
+
+def as_text(made: dict[str, str]) -> str:
+    """One line for people; empty for a file that does not say with what it was made."""
+    if not made:
+        return ""
+    return (
+        f"made {made.get('date', '')} with contvines {made.get('contvines', '?')}, numpy {made.get('numpy', '?')}, "
+        f"scipy {made.get('scipy', '?')}, Python {made.get('python', '?')}, {made.get('core', '?')} core, {made.get('platform', '?')}"
+    )

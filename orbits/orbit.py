@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from contvines.shared.motions import attracts, onto_circle
 from contvines.shared.near_names import hinting
-from contvines.shared.number_text import pairs
-from contvines.shared.stability import attracts, onto_circle
+from contvines.shared.numbers import pairs
 from orbits.cycles.cycle import Cycle
 from orbits.flows.protocol import Equations
 from orbits.settings import EVENTS

@@ -27,7 +27,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Doubtful
-from ..shared.floating_point import EPSILON
+from ..shared.numbers import EPSILON
 from .locate import Located, Role, Root, Segment
 from .location_error import rounding_of_parameter, singular_within
 from .scan import pairs_past

@@ -12,7 +12,7 @@ import numpy as np
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import Chunk, Status
 from ..problems.abilities import Nearing
-from ..shared.floating_point import EPSILON
+from ..shared.numbers import EPSILON
 from .consistency import at_one, leap
 from .evidence import evidence, filled, kinked, may_be_real, nearest, pointed, suspicious
 from .locate import Located, Role, Segment, locate

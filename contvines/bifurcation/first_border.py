@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN, MARGINS, Aim
-from ..shared.floating_point import EPSILON, TINY
+from ..shared.numbers import EPSILON, TINY
 from .kinds import BORDERS
 from .locate import Located, Role, Root, Segment, locate
 from .settings import LIMITS

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ..continuation.engine import Engine, Solved
 from ..problems.abilities import Adaptive, Blurred, Doubtful, Linearised
 from ..problems.protocol import BorderPoint, array_of
-from ..shared.floating_point import EPSILON
+from ..shared.numbers import EPSILON
 from .locate import Located, Segment
 from .settings import LOCATING
 

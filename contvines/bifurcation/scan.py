@@ -17,7 +17,7 @@ from ..continuation.engine import Engine
 from ..continuation.layout import KINDS, MARGIN, Chunk
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
-from ..shared.floating_point import CENTRAL, TINY
+from ..shared.numbers import CENTRAL, TINY
 from .settings import LOCATING
 
 if TYPE_CHECKING:

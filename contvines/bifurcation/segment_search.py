@@ -11,7 +11,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN, Status, packed
-from ..shared.floating_point import EPSILON, TINY
+from ..shared.numbers import EPSILON, TINY
 from .consistency import at_one, is_astray, on_circle, unaccounted, unresolved
 from .evidence import Evidence, evidence
 from .first_border import border_of, first_zero

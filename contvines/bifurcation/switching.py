@@ -12,7 +12,7 @@ import numpy as np
 
 from ..continuation.engine import Engine, Solved
 from ..problems.protocol import Problem
-from ..shared.floating_point import EPSILON, ROUNDED
+from ..shared.numbers import EPSILON, ROUNDED
 from .settings import LEAVING
 
 KERNEL = 4  # null vectors that are followed at most

@@ -14,7 +14,7 @@ from ..continuation.layout import Status
 from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable
 from ..problems.registry import without_problem
-from ..shared.number_text import number_text
+from ..shared.numbers import number_text
 
 if TYPE_CHECKING:
     from ..flows.measures import MeasuresWithoutRates

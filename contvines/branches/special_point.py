@@ -12,7 +12,7 @@ from ..bifurcation.kinds import BORDERS, critical
 from ..continuation.settings import hinted
 from ..problems.abilities import Limited, Provable, Resolved
 from ..problems.registry import without_problem
-from ..shared.number_text import pairs
+from ..shared.numbers import pairs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..continuation.settings import hinted
 from ..shared.figures import PanelOptions
-from ..shared.number_text import figures, figures_in
+from ..shared.numbers import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .invariance import Curve
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..branches.special_point import SpecialPoint
 from ..continuation.settings import hinting
-from ..interrupts import listening
+from ..long_work import listening
 from ..problems.abilities import notation_of
 from ..problems.registry import without_problem
-from ..shared.floating_point import TINY
+from ..shared.numbers import TINY
 from .along import Birth, Family, anchored, born
 from .circle import Circle, Circles
 from .invariance import CIRCLES, Curve, between, rotation_number

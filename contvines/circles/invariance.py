@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..shared.floating_point import TINY
+from ..shared.numbers import TINY
 from .section import Imaged, Section, Varied, slopes
 
 INSIDE = (

@@ -16,7 +16,7 @@ from ..graph.table import short_word
 from ..problems.abilities import Gauged, Sectioned, notation_of
 from ..shared.figures import PlotOptions
 from ..shared.motions import Motion
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import Table, titled
 from .census import attractors_of, population_of
 from .manifolds import Manifold, check_plane, stable_manifolds

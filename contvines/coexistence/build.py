@@ -14,10 +14,9 @@ from ..graph.automatic import new_run
 from ..graph.builder import finish, leave_waiting, limit_reached, tell_waiting
 from ..graph.graph import Graph
 from ..graph.run import Left, Run
-from ..interrupts import listening
 from ..journal import Journal
+from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening
 from ..problems.populations import Population
-from ..progress import Asked, OnInterrupt, Tell, carried_out
 from .census import Counted, census, join, population_of
 from .effort import BUDGET, Effort
 from .places import Handover, scattered, unasked, unknown, unresolved

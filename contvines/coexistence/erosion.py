@@ -13,7 +13,7 @@ from ..continuation.settings import hinted, hinting
 from ..graph.table import short_word, with_unit
 from ..problems.abilities import notation_of
 from ..shared.figures import PlotOptions
-from ..shared.number_text import figures, figures_in
+from ..shared.numbers import figures, figures_in
 from ..text_table import Table, titled
 from .robustness import Robustness, refuse_uncomputed, robustness, stable_at
 

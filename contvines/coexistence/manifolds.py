@@ -20,7 +20,7 @@ from ..branches.solutions import solutions_at
 from ..circles.section import Section, Walled, section_of
 from ..continuation.settings import Settings
 from ..graph.graph import Graph
-from ..shared.floating_point import TINY
+from ..shared.numbers import TINY
 from .settings import MANIFOLDS
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..flows.settings import FlowSettings
 from ..problems.populations import StartsInBox
-from ..shared.floating_point import TINY
 from ..shared.motions import Motion, mean_of_blocks, wandering
+from ..shared.numbers import TINY
 from .settings import MAPS
 
 if TYPE_CHECKING:

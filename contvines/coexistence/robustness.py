@@ -19,7 +19,7 @@ from ..problems.abilities import Gauged
 from ..problems.maps import MapProblem
 from ..problems.populations import Population
 from ..shared.motions import called
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import fitted
 from .basins import wilson
 from .census import population_of

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from ..continuation.settings import Settings
-from ..file_names import refuse_ending, refuse_place
+from ..shared.files import refuse_ending, refuse_place
 from ..shared.on_demand import pip_install
 from .cli import COMMANDS, command
 from .frame import tell
@@ -203,7 +203,7 @@ def doctor(json: JsonOption = False) -> None:
     compares it with the closed form; it takes about a second. Exit status 1
     if it fails.
     """
-    from ..provenance import provenance
+    from ..journal import provenance
 
     made = provenance()
     extras = {name: all(find_spec(part) for part in parts) for name, parts in EXTRAS.items()}

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import typer
 
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import fitted
 from .frame import draw, tell
 from .study_data import Sort, Study

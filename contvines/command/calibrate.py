@@ -10,7 +10,7 @@ import typer
 from orbits.machines.physical.machine import Physical
 
 from ..graph.table import with_unit
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import Table, fitted, terminal_width
 from .compose import check_shaken, machine
 from .frame import draw, tell

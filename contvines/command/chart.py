@@ -173,7 +173,7 @@ def _diagram(
     file: Path, over: str | None, within: tuple[str, str] | None, virtual: bool, trust: bool, fresh: bool
 ) -> tuple[Graph, Path, Plane]:
     """The diagram to chart, made first if a study is given, its file, and what to chart it over."""
-    from ..file_names import is_database
+    from ..shared.files import is_database
     from .run import diagram
     from .study import read_study
 

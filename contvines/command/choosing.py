@@ -18,7 +18,7 @@ from orbits.orbit import Orbit
 
 from ..graph.stretches import highest, inside
 from ..shared.motions import modulation_of
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..survey.outcomes import peak, stretches
 from ..survey.plan import Plan
 from .recommendation import AGREES, LOADS, MET, Curve, Start

@@ -12,7 +12,7 @@ import numpy as np
 
 from orbits.design.figures import Design
 
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import Table, titled
 from .frame import draw as draw_in
 from .frame import tell

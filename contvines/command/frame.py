@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
-from ..file_names import refuse_ending, refuse_place
+from ..shared.files import refuse_ending, refuse_place
 from ..text_table import fitted
 from .options import MANY
 
@@ -120,7 +120,7 @@ def interruptible(note: str) -> Iterator[None]:
 @contextmanager
 def working(note: str, quiet: bool) -> Iterator[Callable[[Any], None] | None]:
     """Interruptible work; gives what to hand to ``progress=``, which tells a terminal, or a log, where the work is."""
-    from ..progress import shown
+    from ..long_work import shown
 
     with interruptible(note), shown(not quiet) as progress:
         yield progress

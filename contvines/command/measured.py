@@ -13,7 +13,7 @@ from orbits.machines.physical import units
 
 from ..graph.table import with_unit
 from ..shared.files import write_csv
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import Table, titled
 from .frame import say
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..shared.number_text import complex_figures, figures
+from ..shared.numbers import complex_figures, figures
 from ..shared.on_demand import needed
 from ..text_table import fitted
 from .frame import draw, held, interruptible, load_file, point_of, say, tell
@@ -66,7 +66,7 @@ def orbit(
 
 
 def _orbit(file: Path, label: str | None, trust: bool) -> object:
-    from ..file_names import is_database
+    from ..shared.files import is_database
 
     if not is_database(file) and file.suffix == ".toml":
         return _solution(*_first_orbit(file, label))
@@ -125,7 +125,7 @@ def _plain(found: Any) -> dict[str, Any]:
 def _describe(about: dict[str, Any]) -> str:
     """An orbit as a readable text, from what --json prints."""
     from ..graph.table import short_word, with_unit
-    from ..shared.stability import marginal_text
+    from ..shared.motions import marginal_text
     from ..text_table import Table, terminal_width
 
     lines, units, margins = [], about.get("units", {}), about.get("margins")
@@ -267,7 +267,7 @@ def _of_file(
 
 def _certificates(file: Path, labels: list[str]) -> dict[str, Any]:
     """The certificates kept in a file, by label."""
-    from ..file_names import is_database
+    from ..shared.files import is_database
     from ..store import printable
 
     if is_database(file):

@@ -14,7 +14,7 @@ import typer
 from orbits.design.references import NAMES, reference
 from orbits.machines.base import Model
 
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from .frame import beside, say_state
 from .options import (
     CompareOption,

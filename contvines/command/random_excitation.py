@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from ..continuation.settings import Settings
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import Table, titled
 from .frame import present
 from .measured import Scales, Series, written

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, TypeAdapter
 
 from ..shared.motions import BAND
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import Table, fitted, terminal_width
 
 AGREES = 0.01  # of the largest response by diagrams: simulations that exceed it by more are told

@@ -15,7 +15,7 @@ from orbits.flows.catalogue import flow_of
 
 from ..shared.files import digest_of
 from ..shared.motions import BAND
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..survey.plan import Plan
 from .choosing import PLACES, SWEPT, Machines, largest, loads, met
 from .choosing import tidy as _tidy

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 def show(file: FileArgument, json: JsonOption = False) -> None:
     """List branches, special points and switches."""
-    from ..provenance import as_text
+    from ..journal import as_text
     from ..store import Store, load
 
     graph = load(file, problems=False)
@@ -199,7 +199,7 @@ def _result(file: Path, trust: bool) -> Graph | Chart | Survey:
 
 def _answer(file: Path) -> Answer:
     """The page of a recommendation."""
-    from ..provenance import provenance
+    from ..journal import provenance
     from ..report.answer import Answer
     from .recommend import kept, report_pictures
     from .recommendation import Recommendation
@@ -242,8 +242,8 @@ def rerun(
     Values agree to 1e-10, or to the errors that both results state. Exit
     status 1 if anything differs.
     """
+    from ..journal import as_text, provenance
     from ..loci.chart import Chart
-    from ..provenance import as_text, provenance
     from ..store import Store, load
     from ..store.differences import differences, of_chart, of_graph
     from ..store.files import FROM_PYTHON

@@ -18,7 +18,7 @@ from typing import Any
 from orbits.machines.names import PAGES, STRUCTURE
 from orbits.machines.parameters import ParameterError, Table
 
-from ..file_names import is_database
+from ..shared.files import is_database
 from ..shared.near_names import did_you_mean
 from .study_data import Study
 from .study_data import StudyError as StudyError

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from ..shared.motions import BAND
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..text_table import Table, fitted, terminal_width
 from .frame import Interrupted, draw, held, load_file, place_of, say, tell
 from .options import (
@@ -77,7 +77,7 @@ def _simulate(study: Study, down: bool, target: Path, quiet: bool) -> list[Kept]
 
     from orbits.attractors.sweeping import sweep as simulate
 
-    from ..progress import counted
+    from ..long_work import counted
     from .compose import machine
     from .sweep_rows import Rows, kept
 
@@ -194,7 +194,7 @@ def _study_machine(study: Study) -> dict[str, Any]:
 
 def _same(a: float | str, b: float | str) -> bool:
     from ..continuation.settings import Settings
-    from ..shared.floating_point import TINY
+    from ..shared.numbers import TINY
 
     if isinstance(a, str) or isinstance(b, str):
         return a == b

@@ -10,7 +10,7 @@ import typer
 
 from orbits.machines.physical.units import counted
 
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from .frame import present
 from .measured import Rows, Scales, Series, Told, loads_rows, measured, written
 from .options import JsonOption, PlotOption, SizeOption, argument, option, refuse_alone

@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from contvines.shared.floating_point import TINY
+from contvines.shared.numbers import TINY
 
 from .settings import SOLUTION
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from contvines.shared.floating_point import EPSILON
+from contvines.shared.numbers import EPSILON
 
 from ..core.library import native
 from ..core.table import TableKernels
-from ..interrupts import HELD, OPEN
+from ..long_work import HELD, OPEN
 from ..problems.abilities import Adaptive, Moving, Nearing, Rough
 from ..problems.protocol import Problem, array_of
 from .layout import (

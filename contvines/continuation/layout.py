@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..shared.number_text import number_text
+from ..shared.numbers import number_text
 from .settings import SOLUTION
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import numpy as np
 from ..core.library import NUMBER, POINTER, WHOLE, address, function
 from ..core.records import pack, place
 from ..core.table import memory_of
-from ..interrupts import wanted
+from ..long_work import wanted
 from .layout import Aim, Chunk, Control, Found, Metric, Scratch, Status, Way
 from .settings import BY_ANGLE, SOLUTION, StepRule
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 import numpy as np
 
-from contvines.shared.floating_point import ROUNDED
+from contvines.shared.numbers import ROUNDED
 
 from ..problems.abilities import Named, Rough, Started
 from ..problems.functions import NotEvaluable, difference_text

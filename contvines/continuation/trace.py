@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..interrupts import listening
 from ..journal import NullJournal
+from ..long_work import listening
 from ..problems.protocol import Problem
 from .ends import Closing, Reach
 from .engine import Engine, Solved

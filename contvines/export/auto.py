@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..flows.cycle_mesh import CycleMesh
-from ..provenance import comments
+from ..journal import comments
 from .frames import measures_of
 
 if TYPE_CHECKING:

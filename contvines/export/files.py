@@ -12,10 +12,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..file_names import is_database, refuse_ending, refuse_place
 from ..graph.table import with_unit
-from ..provenance import carried
-from ..shared.files import write_csv
+from ..journal import carried
+from ..shared.files import is_database, refuse_ending, refuse_place, write_csv
 from ..shared.on_demand import needed
 from .auto import places, write_auto, write_xpp
 from .frames import chart_rows, graph_columns, measures_of

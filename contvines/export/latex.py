@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..graph.table import branches_table, special_table, title
-from ..provenance import comments
+from ..journal import comments
 from ..text_table import Table
 
 if TYPE_CHECKING:

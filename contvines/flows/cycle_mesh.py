@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from contvines.shared.floating_point import TINY
+from contvines.shared.numbers import TINY
 
 from ..problems.functions import Parametrised
 from ..problems.protocol import ProblemDefaults

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from contvines.shared.floating_point import TINY
+from contvines.shared.numbers import TINY
 
 from ..problems.functions import NotEvaluable
 from ..problems.protocol import Embedding, Symmetry, margin_of

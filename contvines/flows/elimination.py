@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contvines.shared.floating_point import LEAST
+from contvines.shared.numbers import LEAST
 
 from ..core.block_cyclic import Eliminated, eliminate
 from ..core.library import native

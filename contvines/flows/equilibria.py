@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.number_text import complex_figures, figures, pairs
+from contvines.shared.numbers import complex_figures, figures, pairs
 
 from ..problems.algebraic import AlgebraicProblem
 from ..problems.functions import NotEvaluable, Operator
 from ..problems.protocol import Embedding, Seed, Solution, margin_of
-from ..shared.stability import attracts, marginal_text, onto_axis
+from ..shared.motions import attracts, marginal_text, onto_axis
 from . import mesh
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from scipy.sparse import issparse
 
-from contvines.shared.floating_point import COMPLEX_STEP, ROUNDED
+from contvines.shared.numbers import COMPLEX_STEP, ROUNDED
 
 from ..problems.derivatives import Differentiated, agreeing
 from ..problems.differences import along

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
-from contvines.shared.floating_point import TINY
+from contvines.shared.numbers import TINY
 
 from ..problems.functions import NotEvaluable, difference_text
 from ..problems.registry import addresses

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contvines.shared.floating_point import TINY
+from contvines.shared.numbers import TINY
 
 from . import mesh
 

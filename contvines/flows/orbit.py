@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast
 import numpy as np
 
 from ..problems.functions import NotEvaluable
-from ..shared.number_text import pairs
-from ..shared.stability import attracts, onto_circle
+from ..shared.motions import attracts, onto_circle
+from ..shared.numbers import pairs
 from . import mesh
 from .elimination import multipliers_of
 from .kernels import linearise, solved

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.even_points import low_discrepancy
-from contvines.shared.floating_point import TINY
-from contvines.shared.motions import Motion, mean_of_blocks, wandering
+from contvines.shared.motions import Motion, low_discrepancy, mean_of_blocks, wandering
+from contvines.shared.numbers import TINY
 
 from ..problems.functions import NotEvaluable
 from ..problems.populations import StartsInBox

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.floating_point import CENTRAL, ROUNDED
+from contvines.shared.numbers import CENTRAL, ROUNDED
 
 from ..problems.functions import NotEvaluable
 from . import mesh

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from contvines.shared.floating_point import ROUNDED
+from contvines.shared.numbers import ROUNDED
 
 from ..problems.functions import NotEvaluable
 

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import ArpackError, ArpackNoConvergence, LinearOperator, eigs, splu
 
-from contvines.shared.floating_point import ROUNDED
+from contvines.shared.numbers import ROUNDED
 
 from ..problems.large.jacobians import Colouring
 from ..problems.large.sparse_factors import SuperLUFactors

@@ -13,8 +13,8 @@ from ..bifurcation.kinds import checked
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval, problem_and_start
 from ..journal import Journal, NullJournal
+from ..long_work import Asked, OnInterrupt, Tell, carried_out
 from ..problems.registry import without_problem
-from ..progress import Asked, OnInterrupt, Tell, carried_out
 from .builder import adopt, begin, finish, work
 from .graph import Graph
 from .run import NO_LIMITS, Limits, Progress, Run

@@ -20,7 +20,7 @@ from ..branches.tracing import from_border, on_this_side, trace_half
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN, Status
 from ..continuation.starts import solve_start, start_remark
-from ..interrupts import listening, take
+from ..long_work import listening, take
 from ..problems.protocol import Problem
 from .identity import parts_further_on
 from .label_special_points import mark, origin_index

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from ..shared.motions import called
-from ..shared.number_text import number_text
+from ..shared.numbers import number_text
 
 MOST = 10  # stretches of one branch that are listed
 

@@ -11,7 +11,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kind import Kind
 from ..bifurcation.kinds import LABELS, RENAMED, kind_named
 from ..continuation.settings import hinted
-from ..interrupts import Resumable
+from ..journal import Resumable
 from ..problems.abilities import Several, notation_of
 from ..shared.figures import PlotOptions
 from .contents import Attractor, Unresolved

@@ -20,7 +20,7 @@ from ..branches.half_branch import HalfBranch, a_sliver, stability
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.layout import MARGIN
-from ..interrupts import OPEN
+from ..long_work import OPEN
 from ..problems.abilities import Adaptive, EndsOnMesh
 from ..problems.protocol import Problem
 from .contents import Unresolved

@@ -19,9 +19,8 @@ from ..branches.branch import Ending, Reason
 from ..branches.special_point import SpecialPoint
 from ..continuation.engine import Engine, Solved, parameter_unit
 from ..continuation.settings import Settings
-from ..interrupts import OPEN
+from ..long_work import OPEN, time_left
 from ..problems.protocol import Problem
-from ..progress import time_left
 from .graph import Graph, Switch
 from .identity import Register
 

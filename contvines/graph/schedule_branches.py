@@ -19,7 +19,7 @@ from ..branches.branch import Branch
 from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
-from ..interrupts import OPEN
+from ..long_work import OPEN
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Embedding, Problem
 from .graph import Graph

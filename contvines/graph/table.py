@@ -16,8 +16,8 @@ from ..branches.branch import Branch
 from ..branches.special_point import TRANSCRITICAL, SpecialPoint
 from ..continuation.settings import Settings
 from ..shared.motions import MODULATIONS
-from ..shared.number_text import PART, complex_figures, figures, figures_in
-from ..shared.number_text import number_text as number
+from ..shared.numbers import PART, complex_figures, figures, figures_in
+from ..shared.numbers import number_text as number
 from ..text_table import Table, fitted, terminal_width
 from .contents import Attractor, sentences
 from .graph import Graph

@@ -12,7 +12,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kinds import CODIMENSION_TWO
 from ..continuation.settings import hinted
 from ..graph.persistence import branch_of, check_branch, check_fields, content_of, fields_of, fits, renamed
-from ..interrupts import Resumable
+from ..journal import Resumable
 from ..problems.abilities import notation_of
 from ..problems.registry import UnknownFactory, rebuild
 from ..shared.figures import PlotOptions

@@ -10,9 +10,8 @@ from ..branches.special_point import SpecialPoint
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
 from ..graph.graph import Graph
-from ..interrupts import listening
 from ..journal import Journal, NullJournal
-from ..progress import Asked, OnInterrupt, Tell, carried_out
+from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening
 from .chart import Chart
 from .charting_run import Charting, ChartProgress
 from .starts import of_own_kind

@@ -19,9 +19,9 @@ from ..continuation.settings import Settings
 from ..graph.graph import Graph
 from ..graph.identity import same_form
 from ..journal import Journal
+from ..long_work import time_left
 from ..problems.protocol import Problem
-from ..progress import time_left
-from ..shared.floating_point import TINY
+from ..shared.numbers import TINY
 from .chart import Chart
 from .codimension_two import mark
 from .departures import leaving

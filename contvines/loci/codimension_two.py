@@ -22,10 +22,10 @@ from ..bifurcation.settings import LOCATING
 from ..continuation.engine import Engine, Solved
 from ..continuation.settings import Settings
 from ..flows.cycles import CycleProblem
-from ..interrupts import listening
+from ..long_work import listening
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
-from ..shared.floating_point import ROUNDED
+from ..shared.numbers import ROUNDED
 from .adaptive import on_mesh
 from .kernels import FLIP, FOLD, MARGIN, PAIR, PERIOD
 from .linear import Linearisation, critical_first

@@ -41,7 +41,7 @@ import numpy as np
 
 from ..bifurcation.settings import LOCATING
 from ..problems.protocol import Problem
-from ..shared.floating_point import PIVOT, ROUNDED
+from ..shared.numbers import PIVOT, ROUNDED
 from .settings import SCALING
 
 # in Python alone: PERIOD, one of the unknowns, the period, has a given value; GROWTH, the only multiplier is 1; OWN, the condition of a user's kind

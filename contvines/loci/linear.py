@@ -9,7 +9,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..interrupts import HELD
+from ..long_work import HELD
 from ..problems.protocol import Problem, array_of
 from .kernels import BRANCH, FLIP, FOLD, pair_of
 

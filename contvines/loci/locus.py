@@ -13,7 +13,7 @@ from ..branches.branch import Branch
 from ..branches.solutions import on_segment
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings, hinted
-from ..shared.number_text import pairs
+from ..shared.numbers import pairs
 from .problem import LocusProblem
 from .settings import PLACES
 

@@ -17,7 +17,7 @@ import numpy as np
 from ..branches.branch import Branch
 from ..continuation.engine import Engine
 from ..continuation.settings import Settings
-from ..shared.floating_point import TINY
+from ..shared.numbers import TINY
 from .linear import Linearisation, Null
 from .problem import LocusProblem
 from .settings import SCALING, VANISHING

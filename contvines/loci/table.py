@@ -12,7 +12,7 @@ import numpy as np
 from contvines.shared.motions import BAND
 
 from ..graph.table import motion_name, short_word, with_unit
-from ..shared.number_text import figures, figures_in
+from ..shared.numbers import figures, figures_in
 from ..text_table import Table, fitted, terminal_width
 from .settings import PLACES
 

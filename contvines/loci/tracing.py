@@ -20,12 +20,12 @@ from ..continuation.engine import Engine, Solved
 from ..continuation.layout import Status
 from ..continuation.settings import Settings, hinting
 from ..continuation.starts import check_interval
-from ..interrupts import listening
 from ..journal import Journal, NullJournal
+from ..long_work import listening
 from ..problems.abilities import Adaptive
 from ..problems.protocol import Problem
 from ..problems.registry import without_problem
-from ..shared.number_text import number_text
+from ..shared.numbers import number_text
 from .adaptive import on_mesh
 from .codimension_two import bare_points, becomes, beginning, vanishing
 from .departures import homoclinic_of

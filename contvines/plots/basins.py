@@ -8,7 +8,7 @@ import numpy as np
 
 from ..continuation.settings import hinting
 from ..graph.table import told_apart
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from .figures import Size, Style, drawing, is_low
 from .legends import place_legend
 from .style import axis_label

@@ -12,7 +12,7 @@ from contvines.shared.near_names import did_you_mean
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
 from ..graph.stretches import default_measure
-from ..shared.floating_point import TINY
+from ..shared.numbers import TINY
 from .figures import Size, Style, freeze, is_low, new_axes, root, settle, styled, thin_ticks
 from .labels import Region
 from .legends import draw_legend, hold_legend

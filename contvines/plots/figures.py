@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.file_names import refuse_place
 from contvines.shared.figures import new_figure, styled, windows
+from contvines.shared.files import refuse_place
 
 from .settings import DRAWING
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
-from contvines.shared.floating_point import ROUNDED
 from contvines.shared.near_names import did_you_mean
+from contvines.shared.numbers import ROUNDED
 
 from . import dense
 from .checks import disagreement, empty_row, find_break

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from scipy.linalg import blas, get_lapack_funcs
 
-from contvines.shared.floating_point import LEAST
+from contvines.shared.numbers import LEAST
 
 from .abilities import Linearised, Nearing
 from .functions import NotEvaluable

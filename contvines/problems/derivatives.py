@@ -10,7 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from contvines.shared.floating_point import COMPLEX_STEP
+from contvines.shared.numbers import COMPLEX_STEP
 
 from .differences import Difference, along, bend, noise_of, roughness
 from .functions import CALLED, NotEvaluable, Operator, ParameterSet, Sparse, UserFunction, as_matrix

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contvines.shared.floating_point import EPSILON
+from contvines.shared.numbers import EPSILON
 
 from .settings import DERIVATIVES
 

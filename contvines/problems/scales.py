@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from contvines.shared.floating_point import ROUNDED
+from contvines.shared.numbers import ROUNDED
 
 from .differences import FACTOR, HALVINGS, REACH, bend, coupling
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from contvines.shared.floating_point import TINY
+from contvines.shared.numbers import TINY
 
 from .abilities import Rough
 from .functions import NotEvaluable

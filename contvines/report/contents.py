@@ -17,7 +17,7 @@ from ..plots.chart import COLORS
 from ..plots.style import mark_of, mark_of_locus
 from ..plots.survey import label_of
 from ..problems.abilities import Animated
-from ..shared.stability import attracts, onto_axis, onto_circle
+from ..shared.motions import attracts, onto_axis, onto_circle
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -9,7 +9,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contvines.file_names import refuse_place
+from contvines.shared.files import refuse_place
 
 from ..export import json_text
 from ..shared.on_demand import needed

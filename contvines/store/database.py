@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..interrupts import HELD
-from ..provenance import provenance
+from ..journal import provenance
+from ..long_work import HELD
 from .on_disk import (
     APPLICATION_ID,
     TAILS,
@@ -169,7 +169,7 @@ class Store:
 
     @property
     def made(self) -> dict[str, str]:
-        """With what the file was made (`contvines.provenance`); empty for files of versions that did not say so."""
+        """With what the file was made (`contvines.journal.provenance`); empty for files of versions that did not say so."""
         if self._promised is not None:
             return {}
         with self._guard():

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar, overload
 
 from ..continuation.settings import hinting
-from ..interrupts import Resumable
+from ..journal import Resumable
 from .database import Store
 from .on_disk import TAILS, check_header, draft_of
 

@@ -16,7 +16,7 @@ from contvines.shared.motions import BAND, is_strong
 
 from ..coexistence.census import UNBRANCHED
 from ..graph.stretches import COVERAGE, default_measure, gaps, highest, stretches, united, unseen
-from ..shared.number_text import figures_in
+from ..shared.numbers import figures_in
 
 if TYPE_CHECKING:
     from ..graph.graph import Graph

@@ -16,10 +16,10 @@ import numpy as np
 
 from ..continuation.settings import hinted
 from ..graph.table import with_unit
-from ..interrupts import Resumable
+from ..journal import Resumable
 from ..shared.figures import PanelOptions
 from ..shared.files import write_csv
-from ..shared.number_text import figures
+from ..shared.numbers import figures
 from ..shared.on_demand import needed
 from ..text_table import Table, titled
 from .outcomes import KNOWN, OF_ALL

@@ -12,9 +12,9 @@ from contvines.shared.near_names import did_you_mean
 
 from ..bifurcation.kinds import BY_NAME
 from ..continuation.settings import hinting
-from ..interrupts import Interrupted, unfinished
+from ..journal import Interrupted, unfinished
+from ..long_work import OnInterrupt, check_interrupt, counted
 from ..problems.abilities import notation_of
-from ..progress import OnInterrupt, check_interrupt, counted
 from ..shared import files
 from ..shared.on_demand import needed
 from ..shared.row_journal import Rows

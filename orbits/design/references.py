@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import root_scalar
 
-from contvines.shared.floating_point import ROUNDED
+from contvines.shared.numbers import ROUNDED
 from orbits.settings import DESIGNING
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from contvines.shared.floating_point import ROUNDED
 from contvines.shared.near_names import hinting
+from contvines.shared.numbers import ROUNDED
 from orbits.machines.base import Model
 from orbits.machines.parameters import (
     AMPLITUDE,

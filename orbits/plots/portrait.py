@@ -11,7 +11,7 @@ import numpy as np
 
 from contvines.shared.figures import new_figure, styled
 from contvines.shared.near_names import hinting
-from contvines.shared.number_text import complex_figures, figures
+from contvines.shared.numbers import complex_figures, figures
 from orbits.machines.measures import sign
 from orbits.plots.shown import CAVITY, LINE, Shown, quantities, shown
 from orbits.settings import SIMULATING

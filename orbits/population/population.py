@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contvines.shared.even_points import low_discrepancy
-from contvines.shared.motions import Motion
+from contvines.shared.motions import Motion, low_discrepancy
 from contvines.shared.near_names import no_parameter
 from orbits.flows.catalogue import flow_of, simulator_of
 from orbits.flows.protocol import SimulationError, Simulator

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contvines.shared.even_points import low_discrepancy
+from contvines.shared.motions import low_discrepancy
 
 
 @pytest.mark.parametrize("count", [2, 7, 50, 613])

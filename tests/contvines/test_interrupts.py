@@ -11,7 +11,7 @@ import pytest
 
 import contvines as cv
 from contvines.graph.persistence import same_graph
-from contvines.interrupts import HELD, OPEN, listening, wanted
+from contvines.long_work import HELD, OPEN, listening, wanted
 from tests.machines import ABSORBER
 
 PROGRAM = """
@@ -117,7 +117,7 @@ def test_sections_of_other_threads_neither_keep_an_interrupt_back_nor_take_it():
 
 MOMENTS = """
 import signal, sys, threading
-from contvines.interrupts import HELD, OPEN, listening
+from contvines.long_work import HELD, OPEN, listening
 
 def work():
     with listening():

@@ -3,12 +3,12 @@
 import doctest
 import math
 
-from contvines.shared import number_text
-from contvines.shared.number_text import complex_figures, figures, figures_in
+from contvines.shared import numbers
+from contvines.shared.numbers import complex_figures, figures, figures_in
 
 
 def test_the_examples_of_the_docstrings():
-    assert doctest.testmod(number_text).failed == 0 < doctest.testmod(number_text).attempted
+    assert doctest.testmod(numbers).failed == 0 < doctest.testmod(numbers).attempted
 
 
 def test_numbers_that_differ_look_different():

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...continuation.engine import Engine, Solved
 from ...continuation.layout import NO_COLUMNS, SIGN, Aim, aim_at_multiplier
-from ...shared.floating_point import TINY
+from ...shared.numbers import TINY
 from ..consistency import (
     alone,
     is_astray,

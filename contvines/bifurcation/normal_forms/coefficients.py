@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from ...problems.abilities import Evaluable, Returning
 from ...problems.protocol import Problem, array_of
-from ...shared.floating_point import TINY
+from ...shared.numbers import TINY
 from ..settings import NORMAL_FORMS
 from .taylor import Line, along_line
 

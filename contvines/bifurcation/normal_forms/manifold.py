@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import qr
 
-from ...shared.floating_point import TINY
+from ...shared.numbers import TINY
 from ..locate import chebyshev_nodes
 from ..settings import NORMAL_FORMS
 from .taylor import taylor_weights

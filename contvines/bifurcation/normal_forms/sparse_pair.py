@@ -19,7 +19,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from ...problems.large.sparse import SparseWork
-from ...shared.floating_point import ROUNDED
+from ...shared.numbers import ROUNDED
 from ..locate import chebyshev_nodes
 from ..settings import NORMAL_FORMS
 from .coefficients import Coefficient, in_phase

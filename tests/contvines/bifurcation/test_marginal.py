@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contvines as cv
-from contvines.shared.stability import attracts, marginal_text, onto_circle
+from contvines.shared.motions import attracts, marginal_text, onto_circle
 from orbits import Absorber
 
 
