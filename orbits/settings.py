@@ -207,6 +207,10 @@ class Simulating:
         Factor that stands for the growth of a difference that a stick has lost.
     at_once : float
         Phase from a touch to the stick that follows it.
+    late : float
+        Part of the time for which motions that do not recur are followed: what recurs later has been like them until then.
+    lives : float
+        Mean lives of a chaotic transient for which one is waited for that may end.
     peak : float
         Phases of a peak that differ by less: the peak is known to the square of it.
     """
@@ -230,6 +234,8 @@ class Simulating:
     steady: float = 1e-3
     lost: float = 1e-3
     at_once: float = 1e-6
+    late: float = 0.125
+    lives: float = 4.0
     peak: float = 1e-8
 
 

@@ -181,8 +181,10 @@ class Batch(NamedTuple):
         Least difference of a return.
     states, points : float array (n, S), (n, d)
         Where they are at the end, at a whole forcing period.
-    work, followed, growth : float
-        Forcing periods simulated, for which one that does not recur was followed, and that the growth of small differences takes.
+    lasted : float array (n,)
+        Forcing periods for which each was followed.
+    growth : float
+        Forcing periods that the growth of small differences takes.
     """
 
     outcomes: np.ndarray
@@ -190,8 +192,7 @@ class Batch(NamedTuple):
     gaps: np.ndarray
     states: np.ndarray
     points: np.ndarray
-    work: float
-    followed: float
+    lasted: np.ndarray
     growth: float
 
 
@@ -309,6 +310,11 @@ class Simulator(Protocol[ModelOf, Run]):
     def settle_all(self, points: np.ndarray, longest: int, workers: int | None) -> Batch | None:
         """Run starts, all at once, until they recur after at most so many forcing periods; None where nothing is gained by that."""
         return None
+
+    def settle_longer(
+        self, batch: Batch, here: np.ndarray, longest: int, periods: float, workers: int | None
+    ) -> None:
+        """Run those of a batch (bool array (n,)) that have not recurred for so many more periods; the batch is changed in place."""
 
     def growth(self) -> tuple[float, float]:
         """Largest Lyapunov exponent of the motion, per forcing period, and its standard error."""

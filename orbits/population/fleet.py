@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 BLOCKS = (10, 10, 20, 40, 80, 160, 320, 640, 1280)
 """Forcing periods (or events) between two looks at a motion that is followed alone."""
 AGAIN = 8.0  # forcing periods after which a settled motion is looked at
-PATIENCE = 3  # times at most a motion that does not recur is looked at again
+PATIENCE = (
+    3  # times at most a motion that does not recur is looked at again, unless others like it are seen to end
+)
 ENOUGH = 20_000  # forcing periods that chaotic motions, all those alike together, have not ended in; events of a motion that is followed alone
 LATE = 3000.0  # forcing periods between two such looks
 TOLD = 6  # looks after which a motion that does not recur is taken for the one that is known not to
@@ -104,13 +106,13 @@ class Fleet:
         parameter: str,
         p: float,
     ) -> None:
-        self.simulator, self.points, self.longest = simulator, points, longest
+        self.simulator, self.points, self.longest, self.workers = simulator, points, longest, workers
         self.model, self.params, self.parameter, self.p = simulator.model, simulator.params, parameter, p
         self.motions: list[Motion[Problem]] = []
         self.index, self.mirrored = np.full(len(points), -1), np.zeros(len(points), dtype=bool)
         self.free = simulator.free(points)
         self.batch: Batch | None = simulator.settle_all(points, longest, workers)
-        self.work = 0.0 if self.batch is None else self.batch.work
+        self.work = 0.0 if self.batch is None else float(self.batch.lasted.sum())
         self._forms: list[Form | None] = []
         self._known: list[_Marks] = []
         self._begun = 0.0
@@ -166,7 +168,8 @@ class Fleet:
         """A motion that does not recur, judged by its growth of small differences; where it may still recur it is looked at again.
 
         A chaotic transient ends at a rate that does not depend on its age (T. Tel and Y.-C. Lai, Transient Chaos, 2011): that many motions have
-        not ended together tells as much as that one has not in as many times the periods.
+        not ended together tells as much as that one has not in as many times the periods. Where others did end, late, one is followed for
+        several of the lives which that lets expect; if it ends, too, all are followed as long.
         """
         alike = (self.index < 0) & (batch.outcomes == Outcome.WANDERING)
         alike &= np.arange(len(alike)) >= i
@@ -174,13 +177,20 @@ class Fleet:
         alike &= np.abs(np.log10(gaps / gaps[i])) < 1.5
         alike[i] = True
         kind, exponent, error = self._grown()
-        followed = np.count_nonzero(alike) * batch.followed
-        for _ in range(PATIENCE):
-            if kind == "chaotic" and followed >= ENOUGH:
+        ended = (batch.outcomes == Outcome.SETTLED) & (batch.lasted > SIMULATING.late * batch.lasted[i])
+        together, lives = float(batch.lasted[alike].sum()), 0.0
+        if kind == "chaotic" and ended.any():
+            life = (together + float(batch.lasted[ended].sum())) / np.count_nonzero(ended)
+            lives = min(SIMULATING.lives * life, self.simulator.waiting.slow)
+        followed, enough, looks = (0.0, lives, 0) if lives else (together, ENOUGH, 0)
+        while looks < PATIENCE or (lives and followed < enough):
+            if kind == "chaotic" and followed >= enough:
                 break
-            begun = self.simulator.time
+            looks, begun = looks + 1, self.simulator.time
             found = self._looked_at(200.0, self.longest, 2)
             if found.recurrent:
+                if lives:
+                    self._longer(batch, alike, lives)
                 return self._found(found, i)
             self.simulator.skip(LATE)
             followed += self.simulator.time - begun
@@ -192,6 +202,12 @@ class Fleet:
                 return self._found(found, i)
         state = batch.states[i].copy()
         return self._assign(alike, Motion(kind, exponent=exponent, error=error, state=state))
+
+    def _longer(self, batch: Batch, alike: np.ndarray, periods: float) -> None:
+        """Follow chaotic motions that one of them has shown to end."""
+        before = float(batch.lasted.sum())
+        self.simulator.settle_longer(batch, alike, self.longest, periods, self.workers)
+        self.work += float(batch.lasted.sum()) - before
 
     # ------------------------------------------------------------------ followed alone
     def _followed(self, i: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from threading import Event
 from typing import NamedTuple
@@ -184,7 +185,7 @@ def settle_all(
     states: np.ndarray,
     params: np.ndarray,
     *,
-    transients: tuple[float, ...],
+    transients: Sequence[float],
     longest: int,
     tolerance: float,
     workers: int,

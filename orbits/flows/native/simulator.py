@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -45,6 +45,7 @@ TRANSIENTS = (
     640.0,
     2560.0,
 )  # forcing periods of many starts, each for those that do not recur before
+LOOKS = 40  # at motions that are followed longer: where one has ended it is followed no further
 FOREVER = 1_000_000.0  # periods: only a motion that keeps off the walls lasts so long without events
 
 
@@ -240,18 +241,30 @@ class NativeSimulator(Simulator[Model, NativeTrajectory]):
         """See `orbits.flows.native.batches.settle_all`."""
         states = np.zeros((len(points), self.engine.state))
         states[:, [PSI, *self._places]] = points
+        return self._settled(states, TRANSIENTS, longest, workers)
+
+    def settle_longer(
+        self, batch: Batch, here: np.ndarray, longest: int, periods: float, workers: int | None
+    ) -> None:
+        """The same for those of a batch that have not recurred."""
+        more = self._settled(batch.states[here], [periods / LOOKS] * LOOKS, longest, workers)
+        for known, new in zip(batch[:6], more[:6]):
+            known[here] = new
+
+    def _settled(
+        self, states: np.ndarray, transients: Sequence[float], longest: int, workers: int | None
+    ) -> Batch:
         found = settle_all(
             self.model.name,
             states,
             self.params,
-            transients=TRANSIENTS,
+            transients=transients,
             longest=longest,
             tolerance=SIMULATING.returned_many,
             workers=workers or cores(),
         )
-        work, followed = float(states[:, TURNS].sum()), sum(TRANSIENTS)
         columns = found["outcome"], found["periods"], found["gaps"]
-        return Batch(*columns, states, states[:, self._places], work, followed, 2.0 * GROWTH)
+        return Batch(*columns, states, states[:, self._places], states[:, TURNS].copy(), 2.0 * GROWTH)
 
 
 def cores() -> int:

@@ -2,8 +2,10 @@
 
 import numpy as np
 
+import orbits
 from orbits.flows.native import batches
 from orbits.flows.native.batches import AT_REST, SETTLED, settle_all
+from orbits.population import Population
 from orbits.simulation import simulate
 from tests.machines import ABSORBER
 
@@ -42,3 +44,15 @@ def test_the_number_of_threads_changes_nothing(monkeypatch):
     one, two = starts(7), starts(7)
     first, second = run(one, 0.8)[1], run(two, 0.8, workers=2)[1]
     assert np.array_equal(one, two) and all(np.array_equal(first[name], second[name]) for name in first)
+
+
+def test_chaotic_transients_of_ten_thousand_periods_are_followed_to_their_end():
+    machine = orbits.Coupled(mass_ratio=0.0106, restitution=0.6535, friction=0.005, gravity=0.3)
+    values = {"damping": 0.934, "frequency": 0.977}
+    population = Population(machine, "forcing", values, workers=1)
+    starts = population.starts(64, 0, 0.778)
+    motions, index, _ = population.settle(starts, 0.778)
+    late = dict(zip(population.names, starts[3]))
+    assert machine.attractor(late, transient=0, forcing=0.778, **values).kind == "chaotic"
+    later = machine.attractor(late, transient=100_000, forcing=0.778, **values)
+    assert [motion.word for motion in motions] == [later.text] == ["tt"] and not index.any()
