@@ -1,17 +1,19 @@
 """The command line on files that are there already, and on bad input: sentences, exit statuses, untouched files."""
 
 import json
+import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from contvines.command.cli import main
-from contvines.store import Store, save
+from contvines.store import Store
 from tests.contvines import fakes
+from tests.contvines.studies import COUPLED, EXAMPLES, PAPER, SI, STOP, STOP_FILE, TWO
+from tests.orbits.design import laboratory
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "friction.toml"
+FRICTION = (EXAMPLES / "friction.toml").read_text()
 
 
 def test_help_lists_every_command(run):
@@ -53,17 +55,6 @@ def test_show_prints_the_table_or_one_json_object(run, vines):
     assert status == 0
     assert data.pop("made")["contvines"]
     assert data == json.loads(json.dumps(fakes.pitchfork_graph().to_dict()).replace("Infinity", "null"))
-    assert {
-        "label",
-        "kind",
-        "branch",
-        "value",
-        "multipliers",
-        "real",
-        "criticality",
-        "residual",
-        "replay",
-    } <= set(data["special"][0])
 
 
 def test_switch_on_an_unfinished_file_is_refused_and_leaves_it_alone(run, tmp_path):
@@ -105,109 +96,165 @@ def test_export(run, vines, tmp_path, kind):
     assert (tmp_path / f"g.{kind}").stat().st_size > 100
 
 
-GOOD = EXAMPLE.read_text()
-BAD_STUDIES = [
-    ("restitution = 0.76", "restitution = 1.5", "restitution = 1.5"),
-    ("within = [0.17, 1.27]", "within = [1.27, 0.17]", "reversed"),
-    ("[model]", "[modle]", "did you mean 'model'"),
-    ("[model]", "[model", "not valid TOML"),
-    ('word = "LR"', 'word = ""', "stuck"),
-]  # of all sentences there is a table in test_study
-COMMANDS = ("diagram", "trace", "orbit", "sweep")
-CASES = [(command, *case) for command in COMMANDS for case in BAD_STUDIES]
-CASES.remove(("sweep", *BAD_STUDIES[-1]))  # it starts from rest: it needs no word
+# Lines, and what is said of them. In the folder: studies of the absorber, of a panel in a laboratory and of a machine in a file, a
+# graph that is there already, and files that are somebody's own
+REQUESTS = {
+    "diagram none.toml": "none.toml: there is no such file",
+    "show none.vines": "none.vines: there is no such file",
+    "show notes.txt": "notes.txt: this is not a .vines file; give one that `contvines diagram`",
+    "plot g.vines --kind pie": "contvines: --kind pie: there is no such choice; choose one of d",
+    "diagram friction.toml -o g.vines": "g.vines: this file belongs to another study",
+    "diagram friction.tml": "there is no such file (did you mean",
+    "diagram friction.toml -o none/g.vines": "there is no folder 'none'",
+    "diagram friction.toml -o .": "this is a folder",
+    "diagram .": "this is a folder; give the path of a TOML study",
+    "diagram friction.toml --plot a.doc": "must end in .png",
+    "diagram g.vines": "this is not a TOML file (it is no text in UTF-8). It is a database",
+    "diagram stop.py": "this is a file of Python: run it with python",
+    "orbit g.vines": "Give one of the labels BP1, EP1, VG1, B1, B2, B3",
+    "orbit g.vines XX1": "no label 'XX1'; it has B1, B2, B3, BP1, EP1, VG1",
+    "orbit g.vines B1:41": "numbered from 0 to 40",
+    "orbit friction.toml B1": "a study has no labels",
+    "plot g.vines -y speed": "B1 has no measure 'speed'",
+    "plot g.vines --kind multipliers --branch B9": "B9: there is no such branch",
+    "export g.vines -o points.xlsx": "formats are csv, json, graphml, mat",
+    "export g.vines --to csv -o g.vines": "g.vines: names in .vines are kept for graphs",
+    "export g.vines --to mat -o notes.txt": "notes.txt: this file exists and is no .mat",
+    "export g.vines --to csv -o d.csv": "d.csv: this file is a database",
+    "sweep friction.toml -o keep.toml": "use -o keep.csv",
+    "switch g.vines B1": "B1 is a branch",
+    "sweep friction.toml --over g.vines --plot a.png": "g.vines continues in p",
+    "shw g.vines": "contvines: shw: there is no such command; did you mean show?",
+    "show": "contvines: FILE.vines is missing; `contvines show --help` says",
+    "export g.vines": "contvines: the format is missing: --to csv",
+    "show g.vines --jsn": "contvines: --jsn: there is no such option; did you mean --json?",
+    "show g.vines x y": "contvines: x y: this is too much for `contvines show`;",
+    "basins friction.toml --at 0.5 --saddles --plot b.png": "contvines: --saddles: its value is missing, --plot comes at once; see `contvines basins --help`",
+    "diagram friction.toml --quiet=3": "contvines: --quiet: this option takes no value; write --quiet al",
+    "diagram friction.toml -y speed": "contvines: -y speed: there is no such measure; choose one of amp",
+    "trace friction.toml -x impct_loss --plot a.png": "-x impct_loss: there is no such measure (did you mean 'impact_loss'?)",
+    "plot g.vines --branch B1": "--branch B1: --kind diagram draws all branches and has no use",
+    "plot g.vines --kind multipliers -x p": "-x p: --kind multipliers draws over",
+    "design friction.toml --no-plot --plot a.png": "--plot a.png and --no-plot exclude each other",
+    "export g.vines --to csv -o x.json": "x.json: this is not a .csv file by its name",
+    "diagram friction.toml -o x.txt": "x.txt: this is not a .vines file by its name; use -o x.vines",
+    "diagram friction.toml -o -": "-: results are kept in files",
+    "rerun g.vines": "keeps no study",
+    "new foo": "contvines: foo: there is no such choice; choose one of absorber, coupled, cavity, si, machine, flow.",
+    "new flow": "flow.py: this file is there already",
+    "prove g.vines XX": "no label",
+    "prove g.vines B1:9999": "numbered from 0",
+    "prove g.vines BP1:1": "single point",
+    "prove g.vines BP1 --within 0.5 0.6": "for branches",
+    "prove g.vines B1 --within 0.6 0.5": "give the lower value first",
+    "prove stop.toml": "offers no proofs",
+    "design stop.toml": "closed forms of the built-in absorbers",
+    "transient friction.toml --release 1": "has no oscillator",
+    "transient panel.toml": "none is given",
+    "transient panel.toml --release '0 mm'": "give a number other than 0",
+    "transient panel.toml --release 12": "has no unit",
+    "transient panel.toml --release fast": "--release = 'fast' is not a number with a unit",
+    "transient panel.toml --release '12 mm' --tail '1 s'": "this goes with --record",
+    "calibrate panel.toml": "neither is given",
+    "calibrate panel.toml --impacts no.csv": "cannot be read",
+    "survey panel.toml --workers 0": "--workers 0: give a number 1 or above",
+    "random panel.toml": "the section [random] is missing",
+}  # fmt: skip
+
+RECORD = "transient panel.toml --record data.csv"
+HITS = "calibrate panel.toml --impacts data.csv"
+# Lines, rows of data.csv, and what is said
+DATA = [
+    (RECORD + " --tail 1", "0,1 1,2", "has no unit"),
+    (RECORD, "time[s],acceleration[mm] 0,1 1,2", "no unit of this acceleration; expected m/s^2"),
+    (RECORD, "0,1 0,2", "do not grow at row 1"),
+    (RECORD, "0,1 0.5,x", "row 2 holds '0.5, x', not 2 numbers"),
+    (RECORD, "0 1", "row 1 has 1 column; 2 columns are needed"),
+    (HITS, "0 1 x", "row 3 holds 'x', not 1 number"),
+    (HITS, "time[kg] 0 1 2", "which is no unit of this time; expected s"),
+    (HITS, "0 2 1", "the instants do not grow at number 3: sort them"),
+    (HITS, "0 1", "too few impacts"),
+    (HITS, "", "there is no row of numbers; give 1 column"),
+    (HITS + " --unknown restitusion", "0 1 2", "no such parameter (did you mean 'restitution'?)"),
+    (HITS + " --limits restitution=0.9,0.3", "0 1 2", "expected low < high"),
+    (HITS + " --limits friction=0,1", "0 1 2", "friction is not estimated"),
+    (HITS + " --confidence 95", "0 1 2", "give a number between 0 and 1"),
+    (HITS + " --release 12", "0 1 2", "has no unit"),
+    (HITS + " --release '12 kg'", "0 1 2", "--release is shown in mm"),
+    (HITS + " --measure max_abs_q1", "0 1 2", "this goes with --sweep"),
+    (HITS + " --release '12 mm'", "0 0.1 7 7.1 15", "the model follow these impacts"),
+    ("calibrate stop.toml --impacts data.csv --release 1", "1 2 3", "a declared machine says where its motions begin"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(("command", "old", "new", "sentence"), CASES)
-def test_bad_studies_end_with_a_sentence_and_touch_nothing(run, tmp_path, command, old, new, sentence):
-    assert old in GOOD
-    (tmp_path / "bad.toml").write_text(GOOD.replace(old, new, 1))
-    save(fakes.pitchfork_graph(), tmp_path / "other.vines")
-    before = {p: p.read_bytes() for p in tmp_path.iterdir()}
-    status, out, err = run(command, "bad.toml")
-    assert status != 0
-    assert err.startswith("contvines: bad.toml: ")
-    assert sentence in err
-    assert "Traceback" not in out + err
-    assert {p: p.read_bytes() for p in tmp_path.iterdir()} == before
+def still(shaken):
+    return SI.replace('base_amplitude = "0.3 mm"', shaken)
+
+
+NOTHING = still('base_amplitude = "0 mm"')
+GROWING = NOTHING.replace('"frequency"\nwithin = ["7.5 Hz", "8200 mHz"]', '"base_amplitude"\nwithin = ["0 mm", "1 mm"]')  # fmt: skip
+PSD = "[random]\npsd = [[2, 0.1], [20, 0.1]]\n"
+# Lines, the study s.toml, and what is said
+STUDIES = [
+    ("diagram", NOTHING, "base_amplitude = 0 mm: nothing shakes the machine, whatever frequency is; for example base_amplitude = "),
+    ("diagram", still("base_amplitude = 0"), "base_amplitude = 0 mm: nothing shakes the machine, whatever frequency is; for example base_amplitude = "),
+    ("diagram", still('force_amplitude = "0 N"'), "force_amplitude = 0 N: nothing shakes the machine, whatever frequency is; for example force_amplitude = "),
+    ("diagram", still('base_acceleration = "0 m/s^2"'), "base_acceleration = 0 m/s^2: nothing shakes the machine, whatever frequency is; for example base_acceleration = "),
+    ("diagram", GROWING, "base_amplitude = 0 mm: nothing shakes the machine, so no motion with the word 'LR' lasts"),
+    ("diagram", GROWING, 'for example base_amplitude = "0.3 mm"'),
+    ("survey", NOTHING + "[survey]\nvary.restitution = [0.5, 0.6]", "base_amplitude = 0 mm: nothing shakes"),
+    ("sweep", NOTHING, "base_amplitude = 0 mm: nothing shakes"),
+    ("atlas", NOTHING, "base_amplitude = 0 mm: nothing shakes"),
+    ("trace", NOTHING, "base_amplitude = 0 mm: nothing shakes"),
+    ("calibrate --impacts hits.csv", NOTHING, "base_amplitude = 0 mm: nothing shakes"),
+    ("diagram", PAPER + "bounds = { foo = [0, 1] }", "there is no measure 'foo'"),
+    ("diagram", PAPER + "bounds = { B = [2.0, 1.0] }", "B = [2, 1] is no interval"),
+    ("diagram", PAPER + "bounds = { B = [nan, 1.0] }", "is no interval"),
+    ("diagram", PAPER + "bounds = { B = [7.0, 8.0] }", "is outside of its bounds"),
+    ("design", COUPLED.replace("[start]", "slope = 0.1\n[start]"), "closed forms of level cavities"),
+    ("random", SI + "[random]\npsd = [[2, 0.1]]", "rows [frequency, density]"),
+    ("random", SI + "[random]\npsd = [[20, 0.1], [2, 0.1]]", "ascending"),
+    ("random", SI + PSD + 'parameter = "friction"', "leave it out"),
+    ("random", TWO + PSD, "name the parameter that is random"),
+    ("random", TWO + PSD + 'parameter = "frequency"', "sets the clock"),
+    ("random", TWO + PSD + 'parameter = "clearance_1"', "wall 'L1' depends on it"),
+    ("random", TWO + PSD + 'parameter = "frequenc"', "did you mean 'frequency'"),
+    ("recommend", SI + '[survey]\nvary = { half_width = ["60 mm", "80 mm"], friction = [0.1, 0.2] }', "half_width and friction on a grid: contvines recommend chooses one"),
+    ("recommend", SI + "[survey]\nvary.half_width = { within = [60, 80], count = 3 }", "vary.half_width.within[0] = 60 has no unit"),
+    ("recommend", TWO + '[survey]\nvary.clearance_1.within = ["6 mm", "0.03 m"]', "vary.clearance_1 without count is uncertain; for example vary.clearance_1 = { within = [6.0, 30.0], count"),
+    *(
+        (command, FRICTION.replace(old, new, 1), says)
+        for old, new, says in (
+            ("restitution = 0.76", "restitution = 1.5", "restitution = 1.5"),
+            ("within = [0.17, 1.27]", "within = [1.27, 0.17]", "reversed"),
+            ("[chart]", "[chrt]", "did you mean 'chart'"),
+            ("[model]", "[model", "s.toml: this is not valid TOML"),
+            ('word = "LR"', 'word = ""', "stuck"),
+        )
+        for command in ("diagram", "trace", "orbit", "sweep")
+        if (command, says) != ("sweep", "stuck")  # it starts from rest: it needs no word
+    ),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("words", "sentence"),
+    ("line", "file", "text", "sentence"),
     [
-        (("diagram", "none.toml"), "none.toml: there is no such file"),
-        (("show", "none.vines"), "none.vines: there is no such file"),
-        (("show", "notes.txt"), "notes.txt: this is not a .vines file; give one that `contvines diagram`"),
-        (
-            ("plot", "g.vines", "--kind", "pie"),
-            "contvines: --kind pie: there is no such choice; choose one of d",
-        ),
-        (("diagram", EXAMPLE, "-o", "g.vines"), "g.vines: this file belongs to another study"),
-        (("diagram", EXAMPLE.with_suffix(".tml")), "there is no such file (did you mean"),
-        (("diagram", EXAMPLE, "-o", "none/g.vines"), "there is no folder 'none'"),
-        (("diagram", EXAMPLE, "-o", "."), "this is a folder"),
-        (("diagram", EXAMPLE, "--plot", "a.doc"), "must end in .png"),
-        (("diagram", "g.vines"), "this is not a TOML file"),
-        (("orbit", "g.vines"), "Give one of the labels BP1, EP1, VG1, B1, B2, B3"),
-        (("orbit", "g.vines", "XX1"), "no label 'XX1'; it has B1, B2, B3, BP1, EP1, VG1"),
-        (("orbit", "g.vines", "B1:41"), "numbered from 0 to 40"),
-        (("orbit", EXAMPLE, "B1"), "a study has no labels"),
-        (("plot", "g.vines", "-y", "speed"), "B1 has no measure 'speed'"),
-        (("plot", "g.vines", "--kind", "multipliers", "--branch", "B9"), "B9: there is no such branch"),
-        (("export", "g.vines", "-o", "points.xlsx"), "formats are csv, json, graphml, mat"),
-        (
-            ("export", "g.vines", "--to", "csv", "-o", "g.vines"),
-            "g.vines: names in .vines are kept for graphs",
-        ),
-        (
-            ("export", "g.vines", "--to", "mat", "-o", "notes.txt"),
-            "notes.txt: this file exists and is no .mat",
-        ),
-        (("export", "g.vines", "--to", "csv", "-o", "d.csv"), "d.csv: this file is a database"),
-        (("sweep", EXAMPLE, "-o", "keep.toml"), "use -o keep.csv"),
-        (("switch", "g.vines", "B1"), "B1 is a branch"),
-        (("sweep", EXAMPLE, "--over", "g.vines", "--plot", "a.png"), "g.vines continues in p"),
-        (("shw", "g.vines"), "contvines: shw: there is no such command; did you mean show?"),
-        (("show",), "contvines: FILE.vines is missing; `contvines show --help` says"),
-        (("export", "g.vines"), "contvines: the format is missing: --to csv"),
-        (("show", "g.vines", "--jsn"), "contvines: --jsn: there is no such option; did you mean --json?"),
-        (("show", "g.vines", "x", "y"), "contvines: x y: this is too much for `contvines show`;"),
-        (
-            ("basins", EXAMPLE, "--at", "0.5", "--saddles", "--plot", "b.png"),
-            "contvines: --saddles: its value is missing, --plot comes at once; see `contvines basins --help`",
-        ),
-        (
-            ("diagram", EXAMPLE, "--quiet=3"),
-            "contvines: --quiet: this option takes no value; write --quiet al",
-        ),
-        (
-            ("diagram", EXAMPLE, "-y", "speed"),
-            "contvines: -y speed: there is no such measure; choose one of amp",
-        ),
-        (
-            ("trace", EXAMPLE, "-x", "impct_loss", "--plot", "a.png"),
-            "-x impct_loss: there is no such measure (did you mean 'impact_loss'?)",
-        ),
-        (
-            ("plot", "g.vines", "--branch", "B1"),
-            "--branch B1: --kind diagram draws all branches and has no use",
-        ),
-        (("plot", "g.vines", "--kind", "multipliers", "-x", "p"), "-x p: --kind multipliers draws over"),
-        (
-            ("design", EXAMPLE, "--no-plot", "--plot", "a.png"),
-            "--plot a.png and --no-plot exclude each other",
-        ),
-        (("export", "g.vines", "--to", "csv", "-o", "x.json"), "x.json: this is not a .csv file by its name"),
-        (("diagram", EXAMPLE, "-o", "x.txt"), "x.txt: this is not a .vines file by its name; use -o x.vines"),
-        (("diagram", EXAMPLE, "-o", "-"), "-: results are kept in files"),
+        *((line, "notes.txt", "mine, not yours\n" * 20, says) for line, says in REQUESTS.items()),
+        *((line, "data.csv", rows.replace(" ", "\n"), says) for line, rows, says in DATA),
+        *((line.replace(" ", " s.toml ", 1) if " " in line else line + " s.toml", "s.toml", text, says) for line, text, says in STUDIES),
     ],
-)
-def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path, words, sentence):
-    (tmp_path / "notes.txt").write_text("mine, not yours\n" * 20)
-    (tmp_path / "keep.toml").write_text(GOOD)
+)  # fmt: skip
+def test_bad_requests_end_with_a_sentence_and_touch_nothing(run, vines, tmp_path, line, file, text, sentence):
+    files = {
+        "friction.toml": FRICTION, "keep.toml": FRICTION, "panel.toml": laboratory.STUDY, "stop.toml": STOP, "stop.py": STOP_FILE,
+        "flow.py": "mine", "hits.csv": "0\n70\n131\n190\n260\n", "notes.txt": "mine", file: text,
+    }  # fmt: skip
+    for name, content in files.items():
+        (tmp_path / name).write_text(content)
     (tmp_path / "d.csv").write_bytes(vines.read_bytes())
     before = {p: p.read_bytes() for p in tmp_path.iterdir()}
-    status, out, err = run(*words)
+    status, out, err = run(*shlex.split(line))
     assert status != 0
     assert sentence in err
     assert err.startswith("contvines: ") and err.count("\n") == 1  # one sentence
