@@ -1,1 +1,1 @@
-"""Problems: what contvines must know about one, and two that are made of Python callables."""
+"""Problems F(u, p) = 0: the protocol that contvines requires of them, and problems made of Python callables."""

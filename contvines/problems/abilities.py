@@ -1,4 +1,7 @@
-"""What some problems can beside the protocol, each a small protocol of its own; ``isinstance`` tells whether a problem can."""
+"""Optional abilities of problems, each a small protocol; ``isinstance(problem, Ability)`` tests whether a problem has one.
+
+A few are abilities of other objects (orbits, workspaces, populations); their docstrings name the object.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Started(Protocol):
-    """Has a start of its own: unknowns and the value of the parameter."""
+    """A problem with a start: unknowns ``u0`` and parameter value ``p0``."""
 
     @property
     def u0(self) -> np.ndarray: ...
@@ -30,21 +33,21 @@ class Started(Protocol):
 
 @runtime_checkable
 class Evaluable(Protocol):
-    """Its equations can be evaluated without their derivatives."""
+    """A problem whose residual can be evaluated without derivatives."""
 
     def residuals(self, u: np.ndarray, p: float) -> np.ndarray: ...
 
 
 @runtime_checkable
 class Named(Protocol):
-    """Its unknowns have names of their own."""
+    """A problem that names its unknowns."""
 
     def unknown_name(self, i: int) -> str: ...
 
 
 @runtime_checkable
 class Rough(Protocol):
-    """May be given a rough start: its equations can be evaluated without their derivatives, and the lengths over which they bend are known."""
+    """A problem that may begin at a rough guess: its residual can be evaluated without derivatives, and ``lengths`` are the changes of each unknown over which F is nonlinear."""
 
     @property
     def lengths(self) -> np.ndarray: ...
@@ -52,7 +55,7 @@ class Rough(Protocol):
 
 
 class Section(Protocol):
-    """Motions seen once per period; see the contract of :mod:`contvines.circles.section`."""
+    """A stroboscopic or Poincaré section, computed by simulation; the contract is in :mod:`contvines.circles.section`."""
 
     @property
     def names(self) -> tuple[str, ...]: ...
@@ -63,92 +66,99 @@ class Section(Protocol):
 
 @runtime_checkable
 class Sectioned(Protocol):
-    """Its motions can be simulated period by period; see :mod:`contvines.circles.section`."""
+    """A problem whose motions can be simulated period by period; see :mod:`contvines.circles.section`."""
 
     def section(self, p: float) -> Section: ...
 
 
 @runtime_checkable
 class Gauged(Protocol):
-    """Its states may have units: what one of a coordinate of its section is in the unit in which it is shown, and that unit; none for plain numbers."""
+    """A problem or population whose section coordinates may have units.
+
+    ``gauges(names, p)`` returns, for each coordinate with a unit, the factor from computed to displayed numbers, and the unit's name.
+    """
 
     def gauges(self, names: Sequence[str], p: float) -> dict[str, tuple[float, str]]: ...
 
 
 @runtime_checkable
 class Notated(Protocol):
-    """Labels of axes for its parameters and measures, by name, in the field's notation."""
+    """A problem, population or family with axis labels for its parameters and measures, by name."""
 
     @property
     def notation(self) -> Mapping[str, str]: ...
 
 
 def notation_of(*things: object) -> dict[str, str]:
-    """The labels of the first of these (problems, populations, families) that has any; names without one are shown as they are."""
+    """Return the axis labels of the first of these (problems, populations, families) that is `Notated`; empty if none is."""
     return next((dict(thing.notation) for thing in things if isinstance(thing, Notated)), {})
 
 
 @runtime_checkable
 class Populated(Protocol):
-    """Many starts can be simulated; see :mod:`contvines.problems.populations`."""
+    """A problem that can simulate many starts; see :mod:`contvines.problems.populations`."""
 
     def population(self, over: str | None = None, **parameters: float) -> Population: ...
 
 
 @runtime_checkable
 class Attracting(Protocol):
-    """Tells of a solution that is known to be stable what ``simulated_attractors`` would tell of it."""
+    """A problem that describes a stable solution as an entry of ``simulated_attractors``, without a simulation."""
 
     def attractor(self, u: np.ndarray, p: float) -> dict[str, Any]: ...
 
 
 @runtime_checkable
 class Onward(Protocol):
-    """Tells of ``beyond`` what needs no switch alone; what leaves with another period or symmetry only where nothing else is found."""
+    """A problem with a shorter list than ``beyond`` at a border.
+
+    ``onward`` returns only the branches that continue without a switch (``persistence``); branches with another period or symmetry are
+    included only if there are no others.
+    """
 
     def onward(self, point: BorderPoint) -> Sequence[Seed]: ...
 
 
 @runtime_checkable
 class Resolved(Protocol):
-    """Tells the eigenvectors that belong to multipliers, as columns."""
+    """A problem that computes eigenvectors of given multipliers, as columns."""
 
     def eigenvectors(self, u: np.ndarray, p: float, values: np.ndarray) -> np.ndarray: ...
 
 
 @runtime_checkable
 class Limited(Protocol):
-    """Of what ``orbit`` returned: takes the multipliers that a branch has in the limit, where its own equations are singular."""
+    """An orbit (result of ``orbit``) at the end of a branch, where its own equations are singular: ``with_multipliers`` sets the branch's multipliers in the limit."""
 
     def with_multipliers(self, multipliers: np.ndarray) -> object: ...
 
 
 @runtime_checkable
 class Critical(Protocol):
-    """Of what ``orbit`` returned: at a special point its nearest multipliers are on the unit circle (eigenvalues on the axis) by definition."""
+    """An orbit (result of ``orbit``) at a special point, where multipliers lie on the unit circle (eigenvalues on the imaginary axis) by definition."""
 
     def critical(self, near: float) -> object:
-        """The same solution with the multipliers there that are so near to the circle; of an equilibrium one always is."""
+        """Return the same solution with the multipliers nearer than `near` to the unit circle moved onto it; of an equilibrium at least the nearest eigenvalue."""
         ...
 
 
 @runtime_checkable
 class Drawable(Protocol):
-    """Of what ``orbit`` returned: draws itself."""
+    """An orbit (result of ``orbit``) that draws itself."""
 
     def plot(self, **options: object) -> Figure: ...
 
 
 @runtime_checkable
 class Animated(Protocol):
-    """Of what ``orbit`` returned: has a motion, for the page of a report."""
+    """An orbit (result of ``orbit``) with an animation for the report's HTML page."""
 
     def scene(self, samples: int) -> dict[str, Any]: ...
 
 
 @runtime_checkable
 class Provable(Protocol):
-    """Special points and branches can be proved."""
+    """A problem whose special points and branches can be proved in ball arithmetic."""
 
     def prove(
         self, kind: str, u: np.ndarray, p: float, margin: int | None = None, bits: int | None = None
@@ -166,7 +176,7 @@ class Provable(Protocol):
 
 @runtime_checkable
 class Linearised(Protocol):
-    """Of the workspace of problems made of Python callables: F, F_u and F_p."""
+    """A workspace of problems made of Python callables: F, F_u and F_p."""
 
     @property
     def residual(self) -> np.ndarray: ...
@@ -178,16 +188,17 @@ class Linearised(Protocol):
 
 @runtime_checkable
 class Blurred(Protocol):
-    """Tells by how much rounding of its linearisation moves a raw eigenvalue."""
+    """A problem that estimates how much rounding of F_u moves a raw eigenvalue (``blur``)."""
 
     def blur(self, work: object) -> float: ...
 
 
 @runtime_checkable
 class Doubtful(Protocol):
-    """Tells by how much the entries of (F_u, F_p) of its last linearisation may be wrong, shape (N, N + 1), an array or a sparse matrix.
+    """A problem that bounds the errors of its derivatives.
 
-    `rounding`: of an entry relative to it. None where nobody knows.
+    ``doubts(work, rounding)`` returns the largest errors of the entries of (F_u, F_p) in the last linearisation, shape (N, N + 1), dense
+    or sparse; None if unknown. `rounding` is the relative rounding error of an entry.
     """
 
     def doubts(self, work: object, rounding: float) -> np.ndarray | csc_array | None: ...
@@ -195,9 +206,10 @@ class Doubtful(Protocol):
 
 @runtime_checkable
 class Nearing(Protocol):
-    """May have many unknowns: how near it is to a branch point is then told cheaply, by eigenvalues only where it is looked at closely; see :mod:`.spectra`.
+    """A problem that may have too many unknowns for eigenvalues at every point.
 
-    `signed`: whether the sign of the determinant is known. `closer` hands out the same problem with eigenvalues.
+    If ``many``, its spectrum is a cheap distance from a singular F_u (see :mod:`.spectra`), and ``closer`` returns the same problem with
+    eigenvalues, for segments near branch points. ``signed``: whether the sign of det F_u is known.
     """
 
     many: bool
@@ -207,7 +219,7 @@ class Nearing(Protocol):
 
 
 class Returns(Protocol):
-    """A return map near a cycle, in coordinates of the section: states = ``basis`` x."""
+    """A return map near a cycle, in coordinates x of the section: state = ``basis`` x."""
 
     basis: np.ndarray
     inverse: np.ndarray
@@ -219,15 +231,17 @@ class Returns(Protocol):
 
 @runtime_checkable
 class Returning(Protocol):
-    """Its solutions are fixed points of return maps, ``return_map(u, p)``; see :mod:`contvines.flows.returns`."""
+    """A problem whose solutions are fixed points of return maps; see :mod:`contvines.flows.returns`."""
 
     def return_map(self, u: np.ndarray, p: float) -> Returns: ...
 
 
 @runtime_checkable
 class EndsOnMesh(Protocol):
-    """Branches on a mesh of which it is known by how much the parameter at their ends may be off: ``remaining(u, tangent)`` where the period grows
-    without bound, ``touch_error(point)`` at a border that is met between the mesh points.
+    """A problem on a mesh that estimates the error of the parameter where its branches end.
+
+    ``remaining(u, tangent)``: distance of the parameter from its limit where the period grows without bound;
+    ``touch_error(point)``: error at a border that is met between mesh points.
     """
 
     def remaining(self, u: np.ndarray, tangent: np.ndarray) -> float: ...
@@ -236,11 +250,12 @@ class EndsOnMesh(Protocol):
 
 @runtime_checkable
 class Moving(Protocol):
-    """Its unknowns belong to a mesh that moves along while a branch is followed.
+    """A problem whose unknowns include a mesh that moves while a branch is followed.
 
-    ``held`` are those unknowns that no equation determines: corrections leave them as they are. ``steer(u, tangent)`` chooses, in place, of all directions
-    that change the solution alike the one that changes the other unknowns least, ``stand(u, tangent)`` the one of a mesh that stands where it is.
-    ``carried(u, other)`` reads unknowns on the mesh of others.
+    ``held`` is the slice of unknowns that no equation determines (widths of the mesh intervals); corrections do not change them.
+    Many tangents describe the same change of the solution and differ only in the motion of the mesh: ``steer(u, tangent)`` changes the tangent,
+    in place, to the one with the smallest change of the other unknowns, ``stand(u, tangent)`` to the one with a fixed mesh.
+    ``carried(u, other)`` returns the unknowns u interpolated to the mesh of `other`.
     """
 
     held: slice
@@ -252,21 +267,28 @@ class Moving(Protocol):
 
 @runtime_checkable
 class Several(Protocol):
-    """Has a problem for each branch: ``problem_of(description)`` is the one that described itself so."""
+    """A family of problems, such as a flow with its equilibria and cycles: ``problem_of(description)`` rebuilds the one whose ``describe`` returned the description."""
 
     def problem_of(self, description: Mapping[str, Any]) -> Problem: ...
 
 
 @runtime_checkable
 class Adaptive(Protocol):
-    """Its unknowns belong to a mesh, which is adapted while a branch is followed, after every ``chunk`` points.
+    """A problem on a mesh that is adapted after every ``chunk`` points of a branch.
 
-    ``adapted(u)`` returns how unknowns, and directions of unknowns (``image(v, direction=True)``), read on a better mesh, or None;
-    ``accuracy(u, p)`` is the relative accuracy of values on the mesh; ``normal_form`` is the coefficient at a fold (of the sign ``along`` a direction), a period doubling, a pitchfork or a Neimark-Sacker point, with the sum of the magnitudes of its terms;
-    ``anchor(u, p)`` keeps the phase of a solution for those that follow, until ``anchor(None)``, and ``in_phase(u)`` tells whether it suits another one;
-    ``terms(u)`` has the sizes of the terms of each equation, which may cancel and round as numbers of that size do;
-    ``lags(u)`` tells whether a solution asks for another mesh, ``too_coarse(u, p)`` whether more unknowns are needed, and ``refined()`` and ``halved(u, direction)`` have these: on the same intervals,
-    each halved, where ``parts_of_refined`` is 1; rows of an array may be unknowns then.
+    | member | meaning |
+    |---|---|
+    | ``adapted(u)`` | interpolation ``image(v, direction=False)`` of unknowns, or of directions, to a better mesh; None if the mesh is good |
+    | ``accuracy(u, p)`` | relative accuracy of values on the mesh |
+    | ``normal_form`` | coefficient at a fold (with its sign `along` a direction), period doubling, pitchfork or Neimark-Sacker point, and the sum of the magnitudes of its terms |
+    | ``anchor(u, p)`` | use the phase of u in the phase condition, until ``anchor(None)`` |
+    | ``in_phase(u)`` | whether u is similar enough to the solution whose phase is used |
+    | ``terms(u)`` | sizes of the terms of each equation; they may cancel, and their rounding errors have this scale |
+    | ``lags(u)`` | whether the error of u on its own mesh is too large |
+    | ``too_coarse(u, p)`` | whether more unknowns are needed; `stuck`: Newton's method has failed next to u |
+    | ``refined()`` | the problem with more unknowns |
+    | ``halved(u, direction)`` | unknowns, or a direction, in the refined problem |
+    | ``parts_of_refined`` | 1: every interval is halved, and ``halved`` accepts rows of unknowns; 2: the mesh is repeated with equal halves |
     """
 
     chunk: int

@@ -1,59 +1,58 @@
-"""What contvines must know about a problem: the protocol, and nothing else.
+"""The protocol of a problem F(u, p) = 0: every method and attribute that contvines uses.
 
-The contract, in words:
+The contract:
 
-1. A problem is F(u, p) = 0 with N unknowns u (a flat float64 array) and as many equations, and one parameter p.
+1. A problem has N equations F(u, p) = 0 for N unknowns u (a flat float64 array), and one varying parameter p.
 2. ``kernels`` holds three functions, plain Python or a table of C functions (`contvines.core.table`), with the same signatures:
 
    ``linearise(data, u, p, work) -> float``
-       evaluates F, dF/du and dF/dp into ``work`` and returns the largest absolute residual (inf: not evaluable).
-       ``work[0]`` is F itself (any C-contiguous shape with N entries); it may be overwritten between the calls.
+       evaluates F, dF/du and dF/dp into ``work`` and returns the largest absolute residual (inf if the equations cannot
+       be evaluated). ``work[0]`` is F (any C-contiguous shape with N entries); the caller may overwrite it between calls.
    ``bordered(data, work, border, n, step, tangent) -> float``
        solves ``[[F_u, F_p], [border]] x = rhs`` with one elimination for ``rhs = (-F, n)`` (into step) and
-       ``rhs = (0, 1)`` (into tangent); F is taken from ``work[0]``. Returns the sign of the determinant; 0 means
-       singular, and the solution is then that of a matrix with a tiny pivot.
+       ``rhs = (0, 1)`` (into tangent); F is read from ``work[0]``. Returns the sign of the determinant; for a singular
+       matrix it returns 0, and the solution is that of a matrix with a tiny pivot.
    ``inspect(data, u, p, work, row) -> None``
-       from the linearisation in ``work``: ``row[:2 m]`` are the m multipliers (or eigenvalues) as re, im pairs,
-       ``row[2 m:]`` are the margins. A margin is positive on a real solution, +inf where it does not apply.
+       from the linearisation in ``work``, writes the m multipliers (or eigenvalues) into ``row[:2 m]`` as pairs (re, im),
+       and the margins into ``row[2 m:]``. A margin is positive on a real solution, and +inf where it does not apply.
 
-   Loci against a second parameter need five more, optional, entries:
+   Loci against a second parameter need five more entries, which are optional:
 
    ``assign(data, other, value) -> None``
-       gives the parameter that varies in the problem of ``other`` (from ``against``) a value in ``data``, in place.
+       sets, in ``data`` and in place, the parameter that varies in the problem with the data ``other`` (see ``against``).
    ``column``
-       place of F_p in ``work`` (as work[0] that of F; any C-contiguous shape with N entries); it may be overwritten
-       between the calls, and ``bordered`` then takes that column.
+       index of F_p in ``work`` (any C-contiguous shape with N entries); the caller may overwrite F_p between calls, and
+       ``bordered`` then uses the new column.
    ``flip(data, work, sign) -> None``
-       maps only: turns F_u in ``work`` into what acts on perturbations that change sign over the period (sign = -1), and
-       back (sign = 1).
+       maps only: changes F_u in ``work`` into the matrix that acts on perturbations which change sign over the period
+       (sign = -1), or changes it back (sign = 1).
    ``transpose(data, work, column, other) -> None``
-       writes the transposed F_u, with ``column`` in the place of F_p, into another workspace.
+       writes the transposed F_u, and ``column`` in place of F_p, into the workspace ``other``.
    ``matrix(data, work) -> ndarray``
-       F_u as it stands in ``work``, shape (N, N), for normal forms at single points.
-3. ``data`` and ``workspace()`` are the opaque first and last arguments of the kernels.
-4. ``spectrum`` says how the raw spectrum is read: "map" (unit circle), "flow" (imaginary axis), "none". A problem without one
-   may still have real eigenvalues watched for branch points: ``detection`` is then "real".
-   ``flip_kind`` says what a raw multiplier -1 means: "period-doubling" or "symmetry-breaking".
-5. Solutions may be equal up to ``period_shift`` and ``symmetries``; ``canonical(u, p)`` returns a hashable key and a
-   vector which are the same for solutions that are one and the same thing; the vector is counted as the unknowns are or, where
-   it has more entries than these, so that all are of order one. ``root(u, p)`` returns the smaller problem
-   and its unknowns for a solution that only repeats a shorter one (a cycle run through twice), else None.
-   ``same_motion(u, p, other, v)`` tells whether a solution of another problem is this one where ``canonical`` cannot (None:
-   neither can it).
-6. ``offspring`` hands out the larger problem in which a special point is a branch point, ``beyond`` the solutions
-   on the other side of a border; where there are none, ``dead_end`` says why.
-7. ``parameters`` are all parameters by name, and ``against`` hands out the problem against another one. ``check_value``
-   refuses a value that a parameter cannot have, with a ValueError.
-8. ``scale_within`` returns typical sizes of unknowns and parameter, ``amplitude`` the length of a direction of the unknowns
-   as normal forms measure it. Equations without a scale of their own (``scales``, learned or given) have residuals of order 1.
-9. ``movable`` solutions are not isolated: they may be shifted as a whole.
-10. ``uncertainty`` is the relative accuracy of the equations; ``check`` a sentence on derivatives that disagree with them;
-    ``explain_end`` one on why Newton's method fails at the end of a branch. ``at_each_point`` has a measure at each point of a
-    cycle, shape (m, n), or None.
+       returns F_u as ``work`` holds it, shape (N, N), for normal forms at single points.
+3. The attribute ``data`` and the result of ``workspace()`` are the ``data`` and ``work`` of the kernels; their contents are private to the problem.
+4. ``spectrum`` is the kind of the raw spectrum: "map" (stable inside the unit circle), "flow" (stable left of the imaginary axis), "none".
+   With "none", ``detection`` = "real" still lets branch points be found from real eigenvalues.
+   ``flip_kind`` is the bifurcation at a raw multiplier -1: "period-doubling" or "symmetry-breaking".
+5. Solutions that differ by a multiple of ``period_shift`` or by one of the ``symmetries`` are equivalent. ``canonical(u, p)`` returns a
+   hashable key and a vector which are equal for equivalent solutions; the vector has the scales of the unknowns or, if it is longer,
+   entries of order one. If a solution only repeats a shorter one (a cycle run through twice), ``root(u, p)`` returns the smaller
+   problem and its unknowns, else None. ``same_motion(u, p, other, v)`` compares solutions of two problems that ``canonical`` cannot
+   compare (two words of one motion at a border): True, False, or None if the problem cannot decide.
+6. ``offspring`` returns larger problems in which a special point is a branch point (cycles of twice the period); ``beyond`` returns
+   the solutions on the other side of a border, and ``dead_end`` the reason if there are none.
+7. ``parameters`` are all parameters by name; ``against`` returns the problem with another parameter varying. ``check_value``
+   raises ValueError for a value that a parameter cannot have.
+8. ``scale_within`` returns typical sizes of the unknowns and the parameter; ``amplitude`` the length of a direction of the unknowns,
+   by which normal forms are normalised. Equations without ``scales`` (learned or given) must have residuals of order 1.
+9. ``movable`` solutions are not isolated: they form families by a continuous shift.
+10. ``uncertainty`` is the relative accuracy of the equations; ``check`` returns a sentence if given derivatives disagree with the
+    equations; ``explain_end`` returns the reason why Newton's method fails at the end of a branch. ``at_each_point`` returns a
+    measure at each point of the cycles, shape (m, n), or None.
 
-Five small protocols, `Equations`, `Spectrum`, `Symmetries`, `Borders` and `Description`, make it up; a function asks for the one it needs.
-Satisfied by structure: nothing has to be imported or inherited; :class:`ProblemDefaults` answers what a problem has nothing to
-say on. What only some problems can is in ``contvines/problems/abilities.py``.
+The protocol `Problem` consists of five smaller ones, `Equations`, `Spectrum`, `Symmetries`, `Borders` and `Description`; a function
+requires the one that it uses. They are structural: a problem need not inherit from them. :class:`ProblemDefaults` implements the members
+that a simple problem does not need. Optional abilities of some problems are in ``contvines/problems/abilities.py``.
 """
 
 from __future__ import annotations
@@ -71,13 +70,13 @@ if TYPE_CHECKING:
 
 
 class Places(Protocol):
-    """What has arrays by their places."""
+    """A workspace: arrays by index."""
 
     def __getitem__(self, place: int, /) -> object: ...
 
 
 def array_of(work: object, place: int = 0) -> np.ndarray:
-    """An array of a workspace: F is the first, F_p that at the kernels' ``column``."""
+    """Return an array of a workspace: F at index 0, F_p at the kernels' ``column``."""
     found = cast(Places, work)[place]  # unchecked, as it is called at every point
     assert isinstance(found, np.ndarray)
     return found
@@ -85,16 +84,17 @@ def array_of(work: object, place: int = 0) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Kernels:
-    """The functions of a problem, in Python; the contract is at the top of :mod:`contvines.problems.protocol`.
+    """Kernels in Python; the contract is at the top of :mod:`contvines.problems.protocol`.
 
     Parameters
     ----------
     linearise, bordered, inspect : callable
     compiled : bool
-        False.
+        False for kernels in Python.
     assign, flip, transpose, matrix : callable, optional
-    column : int
         For loci against a second parameter.
+    column : int
+        Index of F_p in a workspace, for loci; -1: none.
     """
 
     linearise: Callable[..., float]
@@ -110,21 +110,21 @@ class Kernels:
 
 @dataclass(frozen=True)
 class Symmetry:
-    """An image of u that solves the same problem.
+    """A symmetry: it maps a solution u to another solution of the same problem.
 
     Parameters
     ----------
     kind : str
-        The bifurcation at which branches with less symmetry leave the fixed space: "symmetry-breaking" for a mirror,
-        "period-doubling" for the shift of a doubled cycle by its half.
+        Bifurcation at which branches without this symmetry leave a solution that has it: "symmetry-breaking" for a mirror,
+        "period-doubling" for the shift of a doubled cycle by half its length.
     apply : callable
-        u -> the image of u, both of shape (N,).
+        u -> image of u, both of shape (N,).
     root : callable, optional
-        u -> (problem, u) of the smaller problem for a solution that lies in the fixed space.
+        u -> (problem, u): smaller problem and its unknowns, for a solution u that has the symmetry.
     kind_at : callable, optional
-        u -> the kind at a solution in the fixed space, where it is not the same everywhere.
+        u -> kind, if it depends on the symmetric solution u.
     offset : callable, optional
-        p -> what is added to `apply(u)`, shape (N,), where the image depends on the parameter.
+        p -> vector of shape (N,) added to `apply(u)`, if the image depends on the parameter.
     """
 
     kind: str
@@ -135,18 +135,18 @@ class Symmetry:
 
 
 class Embedding(NamedTuple):
-    """A solution seen in a larger problem, in which it is a branch point.
+    """A solution as unknowns of a larger problem, in which it is a branch point.
 
     Attributes
     ----------
     problem : Problem
-        The larger one, such as that of cycles of twice the length.
+        The larger problem, such as that of cycles of twice the length.
     u : ndarray, shape (N,)
-        The solution, in its unknowns.
+        The solution, as unknowns of the larger problem.
     tangent : ndarray, shape (N + 1,)
-        Of the known branch there.
+        Tangent of the known branch, in the larger problem.
     kind : str
-        Of the special point.
+        Kind of the special point.
     """
 
     problem: Problem
@@ -157,7 +157,7 @@ class Embedding(NamedTuple):
 
 @dataclass(frozen=True)
 class Seed:
-    """A solution from which a branch can be traced.
+    """A solution from which a branch is traced.
 
     Parameters
     ----------
@@ -165,13 +165,13 @@ class Seed:
     u : ndarray, shape (N,)
     p : float
     tangent : ndarray, shape (N + 1,), optional
-        Direction in which the branch leaves; None: both ways.
+        Direction in which the branch leaves; None: the branch is traced both ways.
     kind : str
         "start", "border", "root", or the kind of the special point.
     note : str
-        A sentence for the graph.
+        Sentence shown in the graph.
     persistence : bool
-        At a border: the branch simply goes on with another word (else: a nonsmooth fold).
+        At a border: True if the branch continues with another word on the other side, False for a nonsmooth fold.
     """
 
     problem: Problem
@@ -184,7 +184,7 @@ class Seed:
 
 
 class BorderPoint(Protocol):
-    """What a problem is given of a special point at a border."""
+    """A special point at a border, as problems read it: unknowns, parameter value, outward tangent, index of the vanishing margin."""
 
     @property
     def u(self) -> np.ndarray: ...
@@ -197,7 +197,7 @@ class BorderPoint(Protocol):
 
 
 def margin_of(point: BorderPoint) -> int:
-    """Number of the margin that vanishes at a border.
+    """Index of the margin that vanishes at a border.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def margin_of(point: BorderPoint) -> int:
 
 
 class Equations(Protocol):
-    """F(u, p) = 0, its parameters, and how large its numbers are (1 to 3, 7, 8)."""
+    """F(u, p) = 0, its parameters and scales (items 1 to 3, 7, 8 and 10 of the contract)."""
 
     @property
     def dimension(self) -> int: ...
@@ -239,7 +239,7 @@ class Equations(Protocol):
 
 
 class Spectrum(Protocol):
-    """Multipliers, and what it means that one of them is critical (4, 9)."""
+    """Multipliers, their kind, and the problems of the branches that leave at a critical one (items 4, 6 and 9)."""
 
     @property
     def spectrum(self) -> str: ...
@@ -258,19 +258,19 @@ class Spectrum(Protocol):
 
 
 class Symmetries(Protocol):
-    """Which solutions are one and the same, and which are only part of another one (5)."""
+    """Symmetries, and the identity of solutions (item 5)."""
 
     @property
     def period_shift(self) -> np.ndarray | None: ...
     @property
-    def symmetries(self) -> Sequence[Any]: ...  # with what a Symmetry has
+    def symmetries(self) -> Sequence[Any]: ...  # objects with the attributes of Symmetry
     def canonical(self, u: np.ndarray, p: float) -> tuple[Hashable, np.ndarray]: ...
     def same_motion(self, u: np.ndarray, p: float, other: Problem, v: np.ndarray) -> bool | None: ...
     def root(self, u: np.ndarray, p: float) -> tuple[Problem, np.ndarray] | None: ...
 
 
 class Borders(Protocol):
-    """Margins, and the solutions on the other side where one of them vanishes (6, 9)."""
+    """Margins, and the solutions beyond the borders at which they vanish (items 2 and 6)."""
 
     @property
     def n_margins(self) -> int: ...
@@ -280,7 +280,7 @@ class Borders(Protocol):
 
 
 class Description(Protocol):
-    """What people see of a solution, and what simulation says of it (10)."""
+    """Measures, description and simulation of solutions (item 10)."""
 
     @property
     def measure_names(self) -> Sequence[str]: ...
@@ -297,7 +297,7 @@ class Description(Protocol):
 
 
 class Problem(Equations, Spectrum, Symmetries, Borders, Description, Protocol):
-    """All that may be asked of a problem; the numbers are those of the contract at the top of this module."""
+    """The whole protocol; the contract is at the top of this module."""
 
 
 PARTS = (Equations, Spectrum, Symmetries, Borders, Description)
@@ -306,7 +306,7 @@ MEMBERS = tuple(name for part in PARTS for name in vars(part) if not name.starts
 
 @dataclass(frozen=True)
 class Solution:
-    """What ``orbit`` returns for problems that have nothing better: the bare numbers."""
+    """Parameter value and unknowns of a solution: result of ``orbit`` for problems without an orbit class of their own."""
 
     parameter: str
     value: float
@@ -314,9 +314,9 @@ class Solution:
 
 
 class ProblemDefaults:
-    """Default answers of a problem without symmetries, margins, larger problems and further parameters, and with unknowns of order 1.
+    """Defaults of a problem without symmetries, margins, larger problems and further parameters, and with unknowns of order 1.
 
-    A problem of your own derives from it and adds its equations. What each method is asked is said in :mod:`contvines.problems.protocol`.
+    A problem of your own derives from it and adds its equations. The contract of each member is in :mod:`contvines.problems.protocol`.
     """
 
     parameter = "p"
@@ -345,7 +345,7 @@ class ProblemDefaults:
         )
 
     def check_value(self, name: str, value: float) -> None:
-        """Every value will do."""
+        """Accept every value."""
 
     def scale_within(self, within: tuple[float, float]) -> np.ndarray:
         return np.ones(self.dimension + 1)
