@@ -16,7 +16,7 @@ from ..graph.graph import Graph
 from ..graph.run import Left, Run
 from ..journal import Journal
 from ..long_work import Asked, OnInterrupt, Tell, carried_out, listening
-from ..problems.populations import Population
+from ..problems.abilities import Population
 from .census import Counted, census, join, population_of
 from .effort import BUDGET, Effort
 from .places import Handover, scattered, unasked, unknown, unresolved

@@ -15,8 +15,7 @@ from ..graph.graph import Graph
 from ..graph.run import NO_LIMITS, Limits, Run
 from ..graph.table import short_word
 from ..journal import Journal, NullJournal
-from ..problems.abilities import Populated
-from ..problems.populations import Population
+from ..problems.abilities import Populated, Population
 from ..problems.protocol import Problem
 from ..shared.motions import Motion
 
@@ -176,7 +175,7 @@ def remembered(
 def attractors_of(
     motions: Sequence[Motion[Problem]], index: np.ndarray, mirrored: np.ndarray, p: float
 ) -> list[Attractor]:
-    """What starts have settled on, with shares of them; see `contvines.problems.populations`."""
+    """What starts have settled on, with shares of them; see `contvines.problems.abilities.Population`."""
     return [
         Attractor(
             float(p), m.word, int(m.periods), m.kind, None, float((index == k).mean()),

@@ -8,7 +8,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..problems.populations import Population
+    from ..problems.abilities import Population
 
 BUDGET = 500_000  # units of work that an atlas may take where no number is given: some minutes
 PERIODS = 100  # simulated forcing periods, or steps of a map, that take about as long as a point of a branch

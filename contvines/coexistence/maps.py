@@ -62,7 +62,7 @@ class MapPopulation(StartsInBox):
         return self._box[:, 0] + points * np.ptp(self._box, axis=1)
 
     def settle(self, starts: np.ndarray, p: float) -> tuple[list[Motion[Problem]], np.ndarray, np.ndarray]:
-        """Iterate all starts and recognise what they settle on; see `contvines.problems.populations`."""
+        """Iterate all starts and recognise what they settle on; see `contvines.problems.abilities.Population`."""
         step = _Iteration(self.problem, p, np.asarray(starts, dtype=float))
         x = np.array(starts, dtype=float)
         n = len(x)
@@ -120,7 +120,7 @@ class MapPopulation(StartsInBox):
         return motions, index, np.zeros(len(x), dtype=bool)
 
     def embedded(self, state: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Unstable cycles that the chaotic motion through a state passes near; see `contvines.problems.populations`."""
+        """Unstable cycles that the chaotic motion through a state passes near; see `contvines.problems.abilities.Population`."""
         step = _Iteration(self.problem, p, state[None])
         self.work += EMBEDDED_IN
         run = np.empty((EMBEDDED_IN, self.node))
@@ -141,7 +141,7 @@ class MapPopulation(StartsInBox):
         return [(self.problem.cycle_through(points, p), points.ravel()) for points in cycles]
 
     def returning(self, starts: np.ndarray, p: float) -> list[tuple[Problem, np.ndarray]]:
-        """Cycles, stable or not, to which Newton's method leads from starts; see `contvines.problems.populations`.
+        """Cycles, stable or not, to which Newton's method leads from starts; see `contvines.problems.abilities.Population`.
 
         One of their points at least lies in the box of starts.
         """

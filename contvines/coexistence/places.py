@@ -18,7 +18,7 @@ from ..circles.section import section_of
 from ..graph.graph import Graph
 from ..graph.run import Run
 from ..graph.stretches import MEETING
-from ..problems.populations import Population
+from ..problems.abilities import Population
 from .census import UNBRANCHED, Counted, followed
 from .settings import ATLAS
 

@@ -15,9 +15,8 @@ from ..continuation.settings import hinting
 from ..continuation.starts import problem_and_start
 from ..graph.automatic import diagram
 from ..graph.table import short_word
-from ..problems.abilities import Gauged
+from ..problems.abilities import Gauged, Population
 from ..problems.maps import MapProblem
-from ..problems.populations import Population
 from ..shared.motions import called
 from ..shared.numbers import figures
 from ..text_table import fitted

@@ -14,7 +14,7 @@ from ..graph.builder import begin, work
 from ..graph.graph import Graph
 from ..graph.run import Run
 from ..journal import Part
-from ..problems.populations import Population
+from ..problems.abilities import Population
 from ..problems.protocol import Problem
 from .census import Counted, Solution, add_root, remembered
 from .effort import Effort

@@ -210,19 +210,21 @@ def _run(
     draw(plot, lambda: _picture(graph, x, y, compare, study), quiet)
 
 
+def _budget(study: Study) -> int:
+    """Units of work that the atlas of a study may take."""
+    from ..coexistence.effort import BUDGET
+
+    return study.atlas.budget or BUDGET
+
+
 def graph_of(study: Study, command: str, target: Path, quiet: bool, *, problems: bool, look: bool) -> Graph:
     """The graph of a study: from its file if that is finished, computed else."""
-    from ..coexistence.effort import BUDGET
     from ..graph.graph import Graph
     from .compose import first_orbit, population, run_atlas, run_diagram
 
     fingerprint = study.fingerprint(command)
     graph = finished_of(Graph, target, fingerprint, quiet, problems=problems)
-    if (
-        graph is not None
-        and graph.stopped
-        and (budget := study.atlas.budget or BUDGET) > graph.settings["budget"]
-    ):
+    if graph is not None and graph.stopped and (budget := _budget(study)) > graph.settings["budget"]:
         say(f"{target} was stopped at budget = {graph.settings['budget']}: going on to {budget}.", quiet)
         graph = None
     if graph is None:

@@ -10,7 +10,6 @@ import numpy as np
 from contvines.shared.numbers import ROUNDED
 
 from ..problems.abilities import Named, Rough, Started
-from ..problems.functions import NotEvaluable, difference_text
 from ..problems.protocol import MEMBERS, Problem
 from .engine import Engine, Solved
 from .settings import SOLUTION
@@ -166,6 +165,8 @@ def unlike_twice(engine: Engine, u: np.ndarray, p: float) -> str:
     problem = engine.problem
     if engine.compiled or not isinstance(problem, Rough):
         return ""
+    from ..problems.functions import NotEvaluable, difference_text
+
     try:
         one, other = problem.residuals(u, p), problem.residuals(u, p)
     except NotEvaluable:

@@ -24,7 +24,7 @@ from .returns import FlowSection, ReturnMap
 from .work import CoreWork, CycleWork, workspace
 
 if TYPE_CHECKING:
-    from ..problems.populations import Population
+    from ..problems.abilities import Population
     from ..problems.protocol import BorderPoint, Seed
 
 CAUTION = 10.0  # times the estimated error of values on the mesh

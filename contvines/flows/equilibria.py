@@ -17,7 +17,7 @@ from ..shared.motions import attracts, marginal_text, onto_axis
 from . import mesh
 
 if TYPE_CHECKING:
-    from ..problems.populations import Population
+    from ..problems.abilities import Population
     from ..problems.protocol import BorderPoint
     from .flow import Flow
 

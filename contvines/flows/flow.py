@@ -17,9 +17,9 @@ from ..problems.scales import given_scale
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ..problems.abilities import Population
     from ..problems.algebraic import AlgebraicProblem
     from ..problems.functions import ParameterSet
-    from ..problems.populations import Population
     from ..problems.protocol import BorderPoint, Problem, Seed
     from ..problems.symmetries import Image
     from .field import Events, Field

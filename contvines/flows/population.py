@@ -1,4 +1,4 @@
-"""Many starts of a flow, and the equilibria and cycles that they settle on; the contract is that of `contvines.problems.populations`."""
+"""Many starts of a flow, and the equilibria and cycles that they settle on; the contract is that of `contvines.problems.abilities.Population`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a graph holds beside branches, special points and switches: attractors that simulation has met, and stretches that are not resolved.
+"""What a graph holds beside branches, special points and switches: attractors that simulation has met, proofs, and stretches that are not resolved.
 
 A stretch of a branch is not resolved where its two ends do not agree with the special points found between them.
 """
@@ -8,11 +8,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, Protocol
 
+from ..continuation.settings import Settings
 from ..shared.motions import called
 from ..shared.numbers import number_text
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from ..branches.branch import Branch
+
+STABLE = {True: ", stable", False: ", unstable", None: ""}
 MOST = 10  # stretches of one branch that are listed
 
 
@@ -136,3 +143,43 @@ class Unresolved:
         """What `to_dict` made."""
         found: dict[str, Any] = {name: tuple(v) if isinstance(v, list) else v for name, v in content.items()}
         return cls(**found)
+
+
+class Proved(Protocol):
+    """A graph with the claims and certificates of what is proved, by label."""
+
+    @property
+    def branches(self) -> Mapping[str, Branch]: ...
+    @property
+    def proofs(self) -> Mapping[str, Mapping[str, Any]]: ...
+
+
+def proved_stretches(graph: Proved, label: str) -> list[tuple[list[int], dict[str, Any]]]:
+    """The proved stretches of a branch: the numbers of its points on each, and what is proved of them."""
+    branch, found = graph.branches[label], []
+    for stretch in graph.proofs.get(label, {}).get("stretches", ()):
+        if stretch["covered"] is not None and stretch["real"] is not None:
+            first, last = stretch["between"]
+            low, high = (
+                value * (1 + side * Settings.located) for side, value in zip((-1, 1), stretch["covered"])
+            )
+            points = [i for i in range(first, last + 1) if low <= branch.values[i] <= high]
+            found.append((points, stretch))
+    return found
+
+
+def proof_text(graph: Proved, label: str) -> str:
+    """The proved stretches of a branch in words."""
+    return ", ".join(
+        f"{low:.6g}..{high:.6g} {'real' if about['real'] else 'virtual'}{STABLE[about['stable']]}"
+        for _, about in proved_stretches(graph, label)
+        for low, high in [about["covered"]]
+    )
+
+
+def proof_mark(graph: Proved, label: str) -> str:
+    """How tables and pictures mark a label: "proved", "proved virtual" or nothing."""
+    proof = graph.proofs.get(label)
+    if not proof or not proof["existence"] or proof["real"] is None:
+        return ""
+    return "proved" if proof["real"] else "proved virtual"

@@ -6,12 +6,9 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from ..branches.branch import Branch
-from ..continuation.settings import Settings
 
 if TYPE_CHECKING:
     from .graph import Graph
-
-STABLE = {True: ", stable", False: ", unstable", None: ""}
 
 
 @runtime_checkable
@@ -139,34 +136,3 @@ def _stretch(piece: Piece, places: tuple[int, int]) -> dict[str, Any]:
         "real": piece.real,
         "stable": piece.stable,
     }
-
-
-def stretches(graph: Graph, label: str) -> list[tuple[list[int], dict[str, Any]]]:
-    """The proved stretches of a branch: the numbers of its points on each, and what is proved of them."""
-    branch, found = graph.branches[label], []
-    for stretch in graph.proofs.get(label, {}).get("stretches", ()):
-        if stretch["covered"] is not None and stretch["real"] is not None:
-            first, last = stretch["between"]
-            low, high = (
-                value * (1 + side * Settings.located) for side, value in zip((-1, 1), stretch["covered"])
-            )
-            points = [i for i in range(first, last + 1) if low <= branch.values[i] <= high]
-            found.append((points, stretch))
-    return found
-
-
-def proof_text(graph: Graph, label: str) -> str:
-    """The proved stretches of a branch in words."""
-    return ", ".join(
-        f"{low:.6g}..{high:.6g} {'real' if about['real'] else 'virtual'}{STABLE[about['stable']]}"
-        for _, about in stretches(graph, label)
-        for low, high in [about["covered"]]
-    )
-
-
-def mark(graph: Graph, label: str) -> str:
-    """How tables and pictures mark a label: "proved", "proved virtual" or nothing."""
-    proof = graph.proofs.get(label)
-    if not proof or not proof["existence"] or proof["real"] is None:
-        return ""
-    return "proved" if proof["real"] else "proved virtual"

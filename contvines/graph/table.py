@@ -19,9 +19,8 @@ from ..shared.motions import MODULATIONS
 from ..shared.numbers import PART, complex_figures, figures, figures_in
 from ..shared.numbers import number_text as number
 from ..text_table import Table, fitted, terminal_width
-from .contents import Attractor, sentences
+from .contents import Attractor, proof_mark, proof_text, sentences
 from .graph import Graph
-from .proving import mark, proof_text
 from .stretches import Stretch, at_points, default_measure, gaps, stretches, united
 
 MOST = 8  # motions that a summary lists
@@ -102,7 +101,7 @@ def special_table(graph: Graph, reasons: bool = True) -> Table:
     number = figures_in(graph.within, [point.value for point in graph.special.values()])
     for point in graph.special.values():
         side = point.criticality or (TRANSCRITICAL if TRANSCRITICAL in point.remarks else "")
-        remarks = [side, "" if point.real else "virtual", mark(graph, point.label)]
+        remarks = [side, "" if point.real else "virtual", proof_mark(graph, point.label)]
         if point.kind != "end" and any(
             abs(point.value - end) <= Settings.located * width for end in graph.within
         ):

@@ -10,8 +10,8 @@ import numpy as np
 from contvines.shared.figures import shrinking
 
 from ..bifurcation.kinds import BY_NAME
-from ..graph.proving import mark as proof_of
-from ..graph.proving import stretches
+from ..graph.contents import proof_mark as proof_of
+from ..graph.contents import proved_stretches
 from ..graph.stretches import measure_at, measured, undrawn
 from ..graph.table import motion_name, told_apart
 from .curves import Curve
@@ -104,7 +104,7 @@ class Picture:
                 behind = state in ("unstable", "virtual")
                 curve.draw(self.axes, {"zorder": 2.5 if behind else 3, **line_of(state, tint)})
                 self.curves.append(curve)
-            for points, _ in stretches(self.graph, branch.label):
+            for points, _ in proved_stretches(self.graph, branch.label):
                 width = 5.0 * float(rcParams["lines.linewidth"])
                 band = {"linewidth": width, "solid_capstyle": "butt", "zorder": 1.5, **PROVED}
                 self.axes.plot(xs[points], ys[points], **band)

@@ -24,8 +24,7 @@ from .symmetries import image_map, in_order, refuse_no_mirror
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from .abilities import Linearised
-    from .populations import Population
+    from .abilities import Linearised, Population
 
 
 class MapSection:

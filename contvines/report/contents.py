@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bifurcation.kinds import CRITICAL
 from ..continuation.settings import Settings
-from ..graph.proving import mark, proof_text
+from ..graph.contents import proof_mark, proof_text
 from ..graph.stretches import default_measure
 from ..graph.table import motion_name, short_word
 from ..plots.chart import COLORS
@@ -62,7 +62,7 @@ def contents(graph: Graph, source: str) -> dict[str, Any]:
         "within": list(graph.within),
         "axes": {"x": graph.parameter, "y": y},
         "branches": [_branch(graph, branch, y) for branch in graph.branches.values()],
-        "special": [_point(graph, point, mark(graph, point.label)) for point in graph.special.values()],
+        "special": [_point(graph, point, proof_mark(graph, point.label)) for point in graph.special.values()],
         "switches": [switch.to_dict() for switch in graph.switches],
         "attractors": [_attractor(about) for about in graph.attractors],
         "orbits": _orbits(graph),

@@ -15,7 +15,7 @@ from ..coexistence.places import Handover
 from ..graph.graph import Graph
 from ..graph.run import Limits, Run
 from ..graph.stretches import COVERAGE, SIMULATED, default_measure, gaps, spread, stretches, unseen
-from ..problems.populations import Population
+from ..problems.abilities import Population
 
 if TYPE_CHECKING:
     from ..problems.protocol import Problem

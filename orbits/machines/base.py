@@ -26,12 +26,12 @@ import numpy as np
 from contvines.shared.near_names import did_you_mean, no_parameter
 from orbits.machines.measures import COMMON, MEANS
 from orbits.machines.parameters import CONTACT_TIME, Limits, Parameter, ParameterError
-from orbits.machines.rest import Rest
 from orbits.machines.varying import Varying
 from orbits.words import Word
 from orbits.words.alphabet import shaken
 
 if TYPE_CHECKING:
+    from orbits.machines.rest import Rest
     from orbits.numbers import Reals
 
 ONE = np.float64(1.0)
@@ -62,7 +62,6 @@ class Model(Varying):
     settable: ClassVar[tuple[Parameter, ...]]
     """What may be given: the table, and names that stand for several of its numbers."""
 
-    rest: ClassVar[Rest]
     limits: ClassVar[Mapping[str, Limits]]
 
     def __init_subclass__(cls) -> None:
@@ -74,7 +73,13 @@ class Model(Varying):
             cls.limits = {entry.name: entry.limits for entry in cls.table}
             cls.node_names = ("phase", "B or w", *(("v", "v_rate") if cls.moving_cavity else ()))
             cls.node = len(cls.node_names)
-            cls.rest = Rest(cls.name)
+
+    @property
+    def rest(self) -> Rest:
+        """The motion without events."""
+        from orbits.machines.rest import Rest
+
+        return Rest(self.name)
 
     def __new__(cls, *values: object, **options: object) -> Self:
         """A machine; a name that it does not have is refused with those that it has, one that is missing with its meaning."""

@@ -20,7 +20,6 @@ from orbits.machines.events import contacts, event_table
 from orbits.machines.measures import ANGLES as ANGLES
 from orbits.machines.measures import COMMON, KINDS, LOADS, MEANS, WITHOUT_IMPACTS, loads, way_out
 from orbits.machines.native_stepper import stepper
-from orbits.machines.rest import share_of_the_base
 from orbits.words import Word
 
 
@@ -170,6 +169,8 @@ def own_measures(
             "C2": sine**2 + cosine**2,
         }
         if power:
+            from orbits.machines.rest import share_of_the_base
+
             functions.works(states[i], params[i], spans[i], work)
             force, ground = work[:, 0].sum() / eps[i], work[:, 1].sum() / eps[i]
             more = share_of_the_base(model.rest.law(params[i]), periods, shape[:, 3].sum())
